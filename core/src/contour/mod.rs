@@ -1,0 +1,1 @@
+//! Contours traced from masks: in a grid of pixels, out closed polygons.

@@ -1,0 +1,177 @@
+//! RGB images, planar: all of red, then green, then blue, each row by row from the top.
+//!
+//! Planes are what vector units, losses and networks read; [`Image::from_interleaved`] and [`Image::to_interleaved`]
+//! convert from and to the r, g, b, r, g, b order of files.
+
+use alloc::vec;
+use alloc::vec::Vec;
+use core::fmt;
+
+use crate::dims::ImageSize;
+use crate::real::Real;
+
+/// Color channels of every image.
+pub const CHANNELS: usize = 3;
+
+/// An owned RGB image; every value finite, \[0, 1\] by convention.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Image<T> {
+    size: ImageSize,
+    data: Vec<T>,
+}
+
+impl<T: Real> Image<T> {
+    /// An image of zeros (black).
+    #[must_use]
+    pub fn zeros(size: ImageSize) -> Self {
+        Self { size, data: vec![T::zero(); size.pixels() * CHANNELS] }
+    }
+
+    /// An image from planar data.
+    ///
+    /// # Errors
+    /// [`ImageError`] if the length is not 3 x pixels or a value is not finite.
+    pub fn from_planar(size: ImageSize, data: Vec<T>) -> Result<Self, ImageError> {
+        ImageView::new(size, &data)?;
+        Ok(Self { size, data })
+    }
+
+    /// An image from r, g, b, r, g, b, ... data.
+    ///
+    /// # Errors
+    /// [`ImageError`] if the length is not 3 x pixels or a value is not finite.
+    pub fn from_interleaved(size: ImageSize, data: &[T]) -> Result<Self, ImageError> {
+        ImageView::new(size, data)?;
+        let mut image = Self::zeros(size);
+        for (i, pixel) in data.chunks_exact(CHANNELS).enumerate() {
+            for (c, &value) in pixel.iter().enumerate() {
+                image.data[c * size.pixels() + i] = value;
+            }
+        }
+        Ok(image)
+    }
+
+    /// The pixels in r, g, b, r, g, b, ... order.
+    #[must_use]
+    pub fn to_interleaved(&self) -> Vec<T> {
+        let pixels = self.size.pixels();
+        (0..pixels).flat_map(|i| (0..CHANNELS).map(move |c| (c, i))).map(|(c, i)| self.data[c * pixels + i]).collect()
+    }
+
+    /// A checked view of the whole image.
+    #[must_use]
+    pub fn view(&self) -> ImageView<'_, T> {
+        ImageView { size: self.size, data: &self.data }
+    }
+
+    /// Width and height.
+    #[must_use]
+    pub fn size(&self) -> ImageSize {
+        self.size
+    }
+
+    /// Planar data, 3 x height x width.
+    #[must_use]
+    pub fn data(&self) -> &[T] {
+        &self.data
+    }
+
+    /// Planar data to write to. Values written must be finite; consumers that need certainty check again.
+    #[must_use]
+    pub fn data_mut(&mut self) -> &mut [T] {
+        &mut self.data
+    }
+}
+
+/// A borrowed RGB image, planar, all values finite when made by [`ImageView::new`].
+#[derive(Clone, Copy, Debug)]
+pub struct ImageView<'a, T> {
+    size: ImageSize,
+    data: &'a [T],
+}
+
+impl<'a, T: Real> ImageView<'a, T> {
+    /// A view of planar data, 3 x height x width.
+    ///
+    /// # Errors
+    /// [`ImageError`] if the length is not 3 x pixels or a value is not finite.
+    pub fn new(size: ImageSize, data: &'a [T]) -> Result<Self, ImageError> {
+        let expected = size.pixels() * CHANNELS;
+        if data.len() != expected {
+            return Err(ImageError::Length { expected, len: data.len() });
+        }
+        // The sum of v * 0 is 0 exactly if all are finite; one pass that vectorizes, then the search for the culprit.
+        if data.iter().map(|&v| v * T::zero()).sum::<T>().is_nan()
+            && let Some(index) = data.iter().position(|v| !v.is_finite())
+        {
+            return Err(ImageError::NotFinite { index });
+        }
+        Ok(Self { size, data })
+    }
+
+    /// Width and height.
+    #[must_use]
+    pub fn size(&self) -> ImageSize {
+        self.size
+    }
+
+    /// Planar data, 3 x height x width.
+    #[must_use]
+    pub fn data(&self) -> &'a [T] {
+        self.data
+    }
+
+    /// One channel (0 red, 1 green, 2 blue), height x width.
+    ///
+    /// # Panics
+    /// If `channel` is above 2.
+    #[must_use]
+    pub fn channel(&self, channel: usize) -> &'a [T] {
+        let pixels = self.size.pixels();
+        &self.data[channel * pixels..(channel + 1) * pixels]
+    }
+
+    /// The color of the pixel with index row x width + column.
+    ///
+    /// # Panics
+    /// If the index is outside the image.
+    #[must_use]
+    #[inline]
+    pub fn pixel(&self, index: usize) -> [T; 3] {
+        let pixels = self.size.pixels();
+        [self.data[index], self.data[pixels + index], self.data[2 * pixels + index]]
+    }
+}
+
+/// Why a slice is no image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ImageError {
+    /// The slice has the wrong length.
+    Length {
+        /// 3 x width x height.
+        expected: usize,
+        /// What came.
+        len: usize,
+    },
+    /// A value is NaN or infinite.
+    NotFinite {
+        /// Where in the slice.
+        index: usize,
+    },
+}
+
+impl fmt::Display for ImageError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Length { expected, len } => {
+                write!(f, "image data has {len} values, needs {expected} (3 x width x height)")
+            }
+            Self::NotFinite { index } => {
+                write!(f, "image value {index} is NaN or infinite; replace it before the call")
+            }
+        }
+    }
+}
+
+impl core::error::Error for ImageError {}

@@ -1,0 +1,55 @@
+//! Scenes of flat objects with elliptic Fourier outlines, and the differentiable renderers that paint them.
+//!
+//! # Data flow
+//!
+//! ```text
+//! image -> contour -> shape -> scene -> drawing -> render -> loss -> gradient
+//! ```
+//!
+//! | module | comes in | goes out |
+//! |---|---|---|
+//! | [`real`] | f32 or f64 | one trait for both |
+//! | [`dims`] | numbers of pixels | a checked image size |
+//! | [`image`] | slices of pixels | checked views |
+//! | [`contour`] | a mask | closed polygons traced from it |
+//! | [`shape`] | a contour or parameters | EFD, its symmetry, unit outlines |
+//! | [`scene`] | objects and background | a drawing: posed outlines with colors |
+//! | [`render`] | a drawing | an image and, backward, gradients |
+//! | [`matching`] | a cost matrix | the best assignment |
+//! | [`loss`], [`metric`] | two images or two scenes | a number and, for losses, gradients |
+//!
+//! # Units and signs
+//!
+//! | quantity | unit |
+//! |---|---|
+//! | scene coordinates | the *shorter* image side is 1; x right, y down; the pixel (row r, column c) has its center at ((c + 0.5)/m, (r + 0.5)/m), m = min(width, height). A square image spans \[0, 1\] x \[0, 1\] |
+//! | rotation | radians; a point v of the unit outline goes to `s R v + t`, R = \[\[cos a, -sin a\], \[sin a, cos a\]\] |
+//! | [`EdgeProfile`](render::EdgeProfile) `offset`, `sigma`, `cut` | squared length in the *doubled* frame of the reference renderer, where the shorter side is 2 |
+//! | signed distance | positive outside, negative inside |
+//! | color | linear in the stored values, \[0, 1\] per channel |
+//! | image memory | planar: channel, row, column |
+//!
+//! Every differentiable step `x` has an `x_vjp` beside it: the gradient of a scalar pulled back through the step,
+//! **added** to what the caller's gradient already holds.
+#![no_std]
+
+extern crate alloc;
+#[cfg(feature = "std")]
+extern crate std;
+
+pub mod contour;
+pub mod dims;
+pub mod image;
+pub mod loss;
+pub mod matching;
+pub mod metric;
+pub mod real;
+pub mod render;
+pub mod scene;
+pub mod shape;
+
+pub use dims::ImageSize;
+pub use image::{Image, ImageView};
+pub use real::Real;
+pub use scene::{Drawing, DrawingGrad, Object, Pose, Scene, SceneGrad};
+pub use shape::Efd;

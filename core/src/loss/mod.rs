@@ -1,0 +1,1 @@
+//! Losses: a number and its gradient from two images or two scenes.

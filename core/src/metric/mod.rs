@@ -1,0 +1,1 @@
+//! Metrics: numbers from two images or two scenes, by the rules of the reference system.

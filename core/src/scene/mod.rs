@@ -1,0 +1,152 @@
+//! Scenes: a background and objects, and the drawing (posed outlines with colors) that renderers take.
+
+use alloc::vec::Vec;
+
+use crate::real::Real;
+use crate::render::{Compositing, EdgeProfile};
+use crate::shape::Efd;
+
+/// Where a unit outline stands: v' = scale R(rotation) v + translation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose<T> {
+    /// Center, scene units (the shorter image side is 1).
+    pub translation: [T; 2],
+    /// Scene units per unit of the outline.
+    pub scale: T,
+    /// Radians; R = [[cos, -sin], [sin, cos]] with y down.
+    pub rotation: T,
+}
+
+/// One flat object.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Object<T> {
+    /// Position, size and angle.
+    pub pose: Pose<T>,
+    /// RGB, [0, 1].
+    pub color: [T; 3],
+    /// Probability of being there, and opacity; [0, 1].
+    pub confidence: T,
+    /// Shape of the unit outline.
+    pub efd: Efd<T>,
+    /// Index into the bank the shape was taken from.
+    pub prototype: Option<usize>,
+}
+
+/// A background, objects, and how they are painted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene<T> {
+    /// RGB, [0, 1].
+    pub background: [T; 3],
+    /// Under `over` compositing later objects hide earlier ones; under `blend` the order has no effect.
+    pub objects: Vec<Object<T>>,
+    /// How coverage falls off at an outline.
+    pub edge: EdgeProfile<T>,
+    /// How overlapping objects mix.
+    pub compositing: Compositing,
+}
+
+/// Gradient of a scalar with respect to one [`Object`].
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ObjectGrad<T> {
+    /// With respect to `pose.translation`.
+    pub translation: [T; 2],
+    /// With respect to `pose.scale`.
+    pub scale: T,
+    /// With respect to `pose.rotation`, per radian.
+    pub rotation: T,
+    /// With respect to `color`.
+    pub color: [T; 3],
+    /// With respect to `confidence`.
+    pub confidence: T,
+    /// With respect to `efd`, row by row.
+    pub efd: Vec<[T; 4]>,
+}
+
+/// Gradient of a scalar with respect to a [`Scene`].
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SceneGrad<T> {
+    /// With respect to `background`.
+    pub background: [T; 3],
+    /// Object by object.
+    pub objects: Vec<ObjectGrad<T>>,
+}
+
+/// What a renderer paints: closed polygons in scene units with color and confidence.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Drawing<T> {
+    /// RGB, [0, 1].
+    pub background: [T; 3],
+    /// The outlines one after the other, scene units.
+    pub vertices: Vec<[T; 2]>,
+    /// Object k owns `vertices[starts[k]..starts[k + 1]]`; one longer than the number of objects (empty: no objects).
+    pub starts: Vec<usize>,
+    /// RGB per object.
+    pub colors: Vec<[T; 3]>,
+    /// Per object, [0, 1].
+    pub confidences: Vec<T>,
+}
+
+/// Gradient of a scalar with respect to a [`Drawing`]; same layout.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct DrawingGrad<T> {
+    /// With respect to `background`.
+    pub background: [T; 3],
+    /// With respect to `vertices`.
+    pub vertices: Vec<[T; 2]>,
+    /// With respect to `colors`.
+    pub colors: Vec<[T; 3]>,
+    /// With respect to `confidences`.
+    pub confidences: Vec<T>,
+}
+
+impl<T: Real> Drawing<T> {
+    /// Number of objects.
+    #[must_use]
+    pub fn object_count(&self) -> usize {
+        self.colors.len()
+    }
+
+    /// The outline of object `k`, scene units.
+    ///
+    /// # Panics
+    /// If there is no object `k`.
+    #[must_use]
+    pub fn outline(&self, k: usize) -> &[[T; 2]] {
+        &self.vertices[self.starts[k]..self.starts[k + 1]]
+    }
+
+    /// Removes everything, keeps the memory.
+    pub fn clear(&mut self) {
+        self.background = [T::zero(); 3];
+        self.vertices.clear();
+        self.starts.clear();
+        self.starts.push(0);
+        self.colors.clear();
+        self.confidences.clear();
+    }
+
+    /// Appends an object.
+    pub fn push(&mut self, outline: &[[T; 2]], color: [T; 3], confidence: T) {
+        if self.starts.is_empty() {
+            self.starts.push(0);
+        }
+        self.vertices.extend_from_slice(outline);
+        self.starts.push(self.vertices.len());
+        self.colors.push(color);
+        self.confidences.push(confidence);
+    }
+}
+
+impl<T: Real> DrawingGrad<T> {
+    /// Zeros in the layout of `drawing`; keeps the memory.
+    pub fn reset(&mut self, drawing: &Drawing<T>) {
+        let zero = T::zero();
+        self.background = [zero; 3];
+        self.vertices.clear();
+        self.vertices.resize(drawing.vertices.len(), [zero; 2]);
+        self.colors.clear();
+        self.colors.resize(drawing.colors.len(), [zero; 3]);
+        self.confidences.clear();
+        self.confidences.resize(drawing.confidences.len(), zero);
+    }
+}

@@ -1,0 +1,131 @@
+//! Shapes: elliptic Fourier descriptors and the other models of a unit outline.
+//!
+//! In: a contour, or parameters of a model. Out: descriptors, their symmetry, unit outlines with their vjp.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use crate::real::Real;
+
+/// Vertices of an outline in the reference system: 64 parameters t = i / 63, both end points included.
+pub const REFERENCE_VERTICES: usize = 64;
+
+/// Elliptic Fourier descriptors: row n - 1 holds (a_n, b_n, c_n, d_n), n from 1, of
+/// x(t) = sum a_n cos(2 pi n t) + b_n sin(2 pi n t), y(t) = sum c_n cos(2 pi n t) + d_n sin(2 pi n t).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Efd<T> {
+    rows: Vec<[T; 4]>,
+}
+
+impl<T: Real> Efd<T> {
+    /// Descriptors from rows (a_n, b_n, c_n, d_n).
+    #[must_use]
+    pub fn new(rows: Vec<[T; 4]>) -> Self {
+        Self { rows }
+    }
+
+    /// `harmonic_count` rows of zeros.
+    #[must_use]
+    pub fn zeros(harmonic_count: usize) -> Self {
+        Self { rows: vec![[T::zero(); 4]; harmonic_count] }
+    }
+
+    /// Number of harmonics, N.
+    #[must_use]
+    pub fn harmonic_count(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Rows (a_n, b_n, c_n, d_n), n from 1.
+    #[must_use]
+    pub fn rows(&self) -> &[[T; 4]] {
+        &self.rows
+    }
+
+    /// Rows to write to.
+    #[must_use]
+    pub fn rows_mut(&mut self) -> &mut [[T; 4]] {
+        &mut self.rows
+    }
+
+    /// The first `harmonic_count` harmonics, padded with zeros if there are fewer.
+    #[must_use]
+    pub fn resized(&self, harmonic_count: usize) -> Self {
+        let mut rows = self.rows.clone();
+        rows.resize(harmonic_count, [T::zero(); 4]);
+        Self { rows }
+    }
+}
+
+/// A family of unit outlines: parameters in, vertices out, and the way back for gradients.
+pub trait ShapeModel<T: Real> {
+    /// Length of the parameter slice.
+    fn parameter_count(&self) -> usize;
+
+    /// Number of vertices written by [`Self::outline`].
+    fn vertex_count(&self) -> usize;
+
+    /// Writes the closed unit outline; the edge from the last vertex to the first is part of it (of length 0 where the
+    /// model repeats its first vertex, as EFD outlines do).
+    ///
+    /// # Errors
+    /// [`ShapeError`] if a slice has the wrong length.
+    fn outline(&self, parameters: &[T], vertices: &mut [[T; 2]]) -> Result<(), ShapeError>;
+
+    /// Adds the pulled-back gradient of the parameters to `grad_parameters`.
+    ///
+    /// # Errors
+    /// [`ShapeError`] if a slice has the wrong length.
+    fn outline_vjp(
+        &self,
+        parameters: &[T],
+        grad_vertices: &[[T; 2]],
+        grad_parameters: &mut [T],
+    ) -> Result<(), ShapeError>;
+}
+
+/// Why a shape step was refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ShapeError {
+    /// A slice has the wrong length.
+    Length {
+        /// Which slice.
+        what: &'static str,
+        /// Expected length.
+        expected: usize,
+        /// What came.
+        len: usize,
+    },
+    /// Fewer than three distinct points.
+    TooFewPoints {
+        /// Distinct points found.
+        len: usize,
+    },
+    /// A coordinate or coefficient is NaN or infinite.
+    NotFinite {
+        /// Where.
+        index: usize,
+    },
+    /// A count that must not be zero is zero.
+    Zero {
+        /// Which count.
+        what: &'static str,
+    },
+    /// The first harmonic vanishes, so that there is no size to normalize by.
+    Degenerate,
+}
+
+impl core::fmt::Display for ShapeError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Length { what, expected, len } => write!(f, "{what} has {len} values, needs {expected}"),
+            Self::TooFewPoints { len } => write!(f, "contour has {len} distinct points, needs at least 3"),
+            Self::NotFinite { index } => write!(f, "value {index} of the shape is NaN or infinite"),
+            Self::Zero { what } => write!(f, "{what} must be at least 1"),
+            Self::Degenerate => write!(f, "the first harmonic is zero: the shape has no size to normalize by"),
+        }
+    }
+}
+
+impl core::error::Error for ShapeError {}

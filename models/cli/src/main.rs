@@ -1,0 +1,2 @@
+//! The command `dvp`.
+fn main() {}

@@ -1,0 +1,83 @@
+//! From one image to its scene by optimisation.
+#![no_std]
+
+extern crate alloc;
+
+use alloc::string::String;
+use alloc::vec::Vec;
+
+use dvp_core::shape::Efd;
+use dvp_core::{Real, Scene};
+
+/// Shapes that objects are known to have.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bank<T> {
+    /// Name and normalized descriptors per prototype.
+    pub prototypes: Vec<(String, Efd<T>)>,
+}
+
+/// Why a fit stopped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum StopReason {
+    /// The step or the gain fell below the tolerance.
+    Converged,
+    /// The number of steps was used up.
+    StepLimit,
+    /// No damping made the loss fall.
+    Stalled,
+    /// Nothing to fit: the image is one flat color.
+    Empty,
+}
+
+/// What a fit cannot tell.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Ambiguity {
+    /// The angle of the object is known modulo 2 pi / order (order 0: not at all, a disk).
+    Symmetry {
+        /// Index of the object.
+        object: usize,
+        /// Symmetry order; 0 for a disk.
+        order: usize,
+    },
+    /// The object leaves the image; the share of its outline that is visible.
+    Cropped {
+        /// Index of the object.
+        object: usize,
+        /// Visible share of the outline, [0, 1].
+        visible: f64,
+    },
+    /// Another prototype explains the object nearly as well.
+    Twin {
+        /// Index of the object.
+        object: usize,
+        /// The other prototype.
+        prototype: usize,
+        /// Its squared error over that of the one chosen; at least 1.
+        ratio: f64,
+    },
+}
+
+/// The result of a fit, with its doubt.
+#[derive(Clone, Debug)]
+pub struct Fit<T> {
+    /// The scene found.
+    pub scene: Scene<T>,
+    /// Mean absolute error of its rendering against the image.
+    pub loss: T,
+    /// Optimiser steps (LM or Adam) in all.
+    pub steps: usize,
+    /// Why the last optimisation stopped.
+    pub stop: StopReason,
+    /// Per object, row-major 4 x 4: covariance of (x, y, log scale, rotation) from the normal equations.
+    pub covariance: Vec<[T; 16]>,
+    /// What remains open.
+    pub ambiguity: Vec<Ambiguity>,
+    /// Description length of the scene and what it leaves unexplained, in bits.
+    pub bits: f64,
+}
+
+/// Marker that keeps the trait in scope of the docs.
+#[doc(hidden)]
+pub fn _real<T: Real>() {}

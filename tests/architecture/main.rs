@@ -1,0 +1,1 @@
+//! The architecture tests; a module per concern.

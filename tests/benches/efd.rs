@@ -1,0 +1,2 @@
+//! Bench `efd`.
+fn main() {}

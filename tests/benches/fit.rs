@@ -1,0 +1,2 @@
+//! Bench `fit`.
+fn main() {}

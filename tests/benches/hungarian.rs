@@ -1,0 +1,2 @@
+//! Bench `hungarian`.
+fn main() {}

@@ -1,0 +1,2 @@
+//! Bench `render`.
+fn main() {}

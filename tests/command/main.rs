@@ -1,0 +1,1 @@
+//! The command tests; a module per concern.

@@ -1,0 +1,1 @@
+//! The golden tests; a module per concern.

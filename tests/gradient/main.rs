@@ -1,0 +1,1 @@
+//! The gradient tests; a module per concern.

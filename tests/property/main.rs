@@ -1,0 +1,1 @@
+//! The property tests; a module per concern.
