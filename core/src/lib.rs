@@ -17,6 +17,7 @@
 //! | [`render`] | a drawing | an image and, backward, gradients |
 //! | [`matching`] | a cost matrix | the best assignment |
 //! | [`loss`], [`metric`] | two images or two scenes | a number and, for losses, gradients |
+//! | [`simd`] | a hot loop | the same, compiled for the processor at hand |
 //!
 //! # Units and signs
 //!
@@ -47,6 +48,7 @@ pub mod real;
 pub mod render;
 pub mod scene;
 pub mod shape;
+pub mod simd;
 
 pub use dims::ImageSize;
 pub use image::{Image, ImageView};

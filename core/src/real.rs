@@ -41,6 +41,8 @@ pub trait Real:
     fn as_f64(self) -> f64;
     /// The value as f32; rounded for f64.
     fn as_f32(self) -> f32;
+    /// The value without its fraction; 0 for NaN and below 0, the largest count above it.
+    fn to_count(self) -> usize;
     /// A glam vector of two components.
     fn vec2(x: Self, y: Self) -> Self::Vec2;
     /// The components of a glam vector.
@@ -70,6 +72,11 @@ impl Real for f32 {
     #[inline(always)]
     fn as_f32(self) -> f32 {
         self
+    }
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturation is what is asked for")]
+    #[inline(always)]
+    fn to_count(self) -> usize {
+        self as usize
     }
     #[inline(always)]
     fn vec2(x: Self, y: Self) -> Self::Vec2 {
@@ -120,6 +127,11 @@ impl Real for f64 {
     #[inline(always)]
     fn as_f32(self) -> f32 {
         self as f32
+    }
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturation is what is asked for")]
+    #[inline(always)]
+    fn to_count(self) -> usize {
+        self as usize
     }
     #[inline(always)]
     fn vec2(x: Self, y: Self) -> Self::Vec2 {

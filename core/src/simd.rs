@@ -1,0 +1,42 @@
+//! Run-time choice of the instruction set for hot loops.
+//!
+//! A [`Kernel`] is plain generic code, written so that it vectorizes (loops over fixed-size arrays, no branches inside).
+//! [`dispatch`] compiles its `run` once per instruction set and picks the best one the processor has: with the feature
+//! `std` AVX-512, AVX2 with FMA, or the compile-time target; without it the compile-time target. Everything that `run`
+//! calls in a hot loop must be `#[inline(always)]`: a function that stays a call is compiled for the compile-time
+//! target only.
+
+/// A piece of work to compile for several instruction sets.
+pub trait Kernel {
+    /// What [`Self::run`] returns.
+    type Output;
+
+    /// Does the work. Implementations mark it `#[inline(always)]`.
+    fn run(self) -> Self::Output;
+}
+
+/// Runs `kernel` with the best instruction set of this processor.
+#[cfg(feature = "std")]
+#[inline]
+pub fn dispatch<K: Kernel>(kernel: K) -> K::Output {
+    static ARCH: std::sync::OnceLock<pulp::Arch> = std::sync::OnceLock::new();
+
+    struct Dispatched<K>(K);
+    impl<K: Kernel> pulp::NullaryFnOnce for Dispatched<K> {
+        type Output = K::Output;
+
+        #[inline(always)]
+        fn call(self) -> K::Output {
+            self.0.run()
+        }
+    }
+
+    ARCH.get_or_init(pulp::Arch::new).dispatch(Dispatched(kernel))
+}
+
+/// Runs `kernel` with the instruction set of the compile-time target.
+#[cfg(not(feature = "std"))]
+#[inline]
+pub fn dispatch<K: Kernel>(kernel: K) -> K::Output {
+    kernel.run()
+}
