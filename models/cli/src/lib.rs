@@ -1,1 +1,3 @@
 //! The library behind the command `dvp`: formats, data sets, sub-commands.
+
+pub mod format;

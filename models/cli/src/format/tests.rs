@@ -1,0 +1,121 @@
+use std::path::Path;
+
+use dvp_core::render::{Compositing, EdgeProfile};
+use dvp_core::{Efd, Image, ImageSize, Object, Pose, Scene};
+
+use super::*;
+
+fn scene() -> Scene<f32> {
+    Scene {
+        background: [0.1, 0.2, 0.3],
+        objects: vec![Object {
+            pose: Pose { translation: [0.25, 0.75], scale: 0.2, rotation: -1.5 },
+            color: [1.0, 0.0, 0.7],
+            confidence: 1.0,
+            efd: Efd::new(vec![[1.0, 0.0, 0.0, -0.5], [0.01, 0.02, -0.03, 1e-7]]),
+            prototype: None,
+        }],
+        edge: EdgeProfile::reference(),
+        compositing: Compositing::Over,
+    }
+}
+
+fn parse(text: &str) -> Result<Scene<f64>, FormatError> {
+    let place = Place::line(Path::new("scenes.jsonl"), 3);
+    SceneJson::parse(text.as_bytes(), &place)?.to_scene(Some(&mdshr_bank()?), &place)
+}
+
+fn object_with(fields: &str) -> String {
+    format!(r#"{{"background":[0,0,0],"objects":[{{"translation":[0.5,0.5],"color":[1,1,1],{fields}}}]}}"#)
+}
+
+#[test]
+fn a_scene_comes_back_bit_for_bit() {
+    let place = Place::file(Path::new("a.json"));
+    let size = ImageSize::new(64, 48).unwrap();
+    let text = SceneJson::from_scene(&scene(), size).to_line(&place).unwrap();
+    assert!(text.contains("\"background\":[0.1,0.2,0.3]"), "short decimals: {text}");
+    assert!(!text.contains("cut"), "the default cut is left out: {text}");
+    let back = SceneJson::parse(text.as_bytes(), &place).unwrap();
+    assert_eq!(back.size(&place).unwrap(), Some(size));
+    let mut back: Scene<f32> = back.to_scene(None, &place).unwrap();
+    // The default cut is computed, so it may differ by a rounding.
+    assert!((back.edge.cut - scene().edge.cut).abs() < 1e-9);
+    back.edge.cut = scene().edge.cut;
+    assert_eq!(back, scene());
+}
+
+#[test]
+fn published_lines_are_read() {
+    // sin = 0.6, cos = -0.8; shape 2 of the built-in bank is the ellipse, d_1 = -0.5.
+    let scene = parse(&object_with(r#""scale":0.2,"rotation_vec":[0.6,-0.8],"confidence":1.0,"shape":2"#)).unwrap();
+    let object = &scene.objects[0];
+    assert!((object.pose.rotation - 0.6f64.atan2(-0.8)).abs() < 1e-15);
+    assert_eq!(object.prototype, Some(2));
+    assert!((object.efd.rows()[0][3] + 0.5).abs() < 1e-12);
+    assert_eq!(scene.edge, EdgeProfile::reference());
+}
+
+#[test]
+fn errors_name_line_field_and_remedy() {
+    let efd = r#""efd":[[1,0,0,-1]]"#;
+    for (text, parts) in [
+        (object_with(&format!(r#""scale":-1,"rotation":0,{efd}"#)), ["line 3", "objects[0].scale is -1", "above 0"]),
+        (object_with(&format!(r#""scale":1,{efd}"#)), ["line 3", "objects[0].rotation", "either"]),
+        (object_with(r#""scale":1,"rotation":0,"efd":[]"#), ["line 3", "objects[0].efd has 0 rows", "1 to"]),
+        (object_with(r#""scale":1,"rotation":0,"efd":[[1,0,0]]"#), ["line 3", "not a scene", "length 3"]),
+        (object_with(r#""scale":1,"rotation":0,"prototype":7"#), ["line 3", "objects[0].efd", "only 3 prototypes"]),
+        (object_with(r#""scale":1,"rotation":0,"rotation_vec":[0,1]"#), ["line 3", "rotation", "either"]),
+        (object_with(&format!(r#""scale":1,"rotation":0,"wings":2,{efd}"#)), ["line 3", "unknown field", "wings"]),
+        (object_with(&format!(r#""scale":NaN,"rotation":0,{efd}"#)), ["line 3", "not a scene", "column"]),
+        (object_with(&format!(r#""scale":1e999,"rotation":0,{efd}"#)), ["line 3", "not a scene", "out of range"]),
+        (r#"{"version":2,"what":1}"#.to_owned(), ["line 3", "format version 2", "newer dvp"]),
+        (r#"{"background":[0,0,2],"objects":[]}"#.to_owned(), ["line 3", "background is 2", "from 0 to 1"]),
+        ("{}".to_owned(), ["line 3", "not a scene", "missing field"]),
+        ("[1, 2".to_owned(), ["line 3", "not a scene", "column"]),
+    ] {
+        let error = parse(&text).unwrap_err().to_string();
+        for part in parts {
+            assert!(error.contains(part), "{text} gives '{error}', which lacks '{part}'");
+        }
+    }
+}
+
+#[test]
+fn the_built_in_bank_survives_its_own_text() {
+    let bank = mdshr_bank::<f64>().unwrap();
+    let names: Vec<&str> = bank.prototypes.iter().map(|(name, _)| name.as_str()).collect();
+    assert_eq!(names, ["heart", "square", "ellipse"]);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("bank.json");
+    write_atomic(&path, bank_to_json(&bank).as_bytes()).unwrap();
+    assert!(read_bank::<f64>(&path).unwrap() == bank, "a number changed on the way");
+}
+
+#[test]
+fn both_bank_layouts_are_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("bank.json");
+    for text in [
+        r#"{"version":1,"prototypes":[{"name":"disk","efd":[[1,0,0,-1]]}]}"#,
+        r#"{"order":["disk"],"layout":"rows","disk":[[1,0,0,-1]]}"#,
+    ] {
+        write_atomic(&path, text.as_bytes()).unwrap();
+        let bank = read_bank::<f32>(&path).unwrap();
+        assert_eq!(bank.prototypes, [("disk".to_owned(), Efd::new(vec![[1.0, 0.0, 0.0, -1.0]]))]);
+    }
+}
+
+#[test]
+fn png_keeps_eight_bits() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.png");
+    let size = ImageSize::new(16, 16).unwrap();
+    let values: Vec<f32> = (0..768).map(|i| f32::from(u8::try_from(i % 256).unwrap()) / 255.0).collect();
+    let image = Image::from_planar(size, values).unwrap();
+    write_atomic(&path, &encode_png(image.view()).unwrap()).unwrap();
+    let back: Image<f32> = read_picture(&path, 256).unwrap();
+    assert_eq!(back, image);
+    let error = read_picture::<f32>(&path, 255).unwrap_err().to_string();
+    assert!(error.contains("16 x 16") && error.contains("--max-pixels"), "{error}");
+}
