@@ -1,1 +1,4 @@
 //! The gradient tests; a module per concern.
+
+mod efd;
+mod scene;

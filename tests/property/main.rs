@@ -1,1 +1,3 @@
 //! The property tests; a module per concern.
+
+mod scene;

@@ -1,10 +1,25 @@
 //! Scenes: a background and objects, and the drawing (posed outlines with colors) that renderers take.
+//!
+//! | file | forward | backward |
+//! |---|---|---|
+//! | `pose` | unit outline to scene units, [`Pose::transform`]; (sin, cos) pair to angle | `pose_vjp` |
+//! | `draw` | scene to drawing, [`Scene::draw`] | `draw_vjp`, [`Scene::draw_vjp`] |
+
+mod draw;
+mod draw_vjp;
+mod pose;
+mod pose_vjp;
+#[cfg(test)]
+mod tests;
 
 use alloc::vec::Vec;
 
 use crate::real::Real;
 use crate::render::{Compositing, EdgeProfile};
 use crate::shape::Efd;
+
+pub use pose::rotation_from_pair;
+pub use pose_vjp::{PoseGrad, rotation_from_pair_vjp};
 
 /// Where a unit outline stands: v' = scale R(rotation) v + translation.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -97,6 +112,29 @@ pub struct DrawingGrad<T> {
     pub colors: Vec<[T; 3]>,
     /// With respect to `confidences`.
     pub confidences: Vec<T>,
+}
+
+impl<T: Real> Scene<T> {
+    /// A background without objects, in the reference system's edge profile and compositing.
+    #[must_use]
+    pub fn empty(background: [T; 3]) -> Self {
+        Self { background, objects: Vec::new(), edge: EdgeProfile::reference(), compositing: Compositing::default() }
+    }
+}
+
+impl<T: Real> SceneGrad<T> {
+    /// Zeros in the layout of `scene`; keeps the memory.
+    pub fn reset(&mut self, scene: &Scene<T>) {
+        let zero = T::zero();
+        self.background = [zero; 3];
+        self.objects.resize(scene.objects.len(), ObjectGrad::default());
+        for (grad, object) in self.objects.iter_mut().zip(&scene.objects) {
+            let mut efd = core::mem::take(&mut grad.efd);
+            efd.clear();
+            efd.resize(object.efd.harmonic_count(), [zero; 4]);
+            *grad = ObjectGrad { efd, ..ObjectGrad::default() };
+        }
+    }
 }
 
 impl<T: Real> Drawing<T> {

@@ -1,11 +1,25 @@
 //! Shapes: elliptic Fourier descriptors and the other models of a unit outline.
 //!
 //! In: a contour, or parameters of a model. Out: descriptors, their symmetry, unit outlines with their vjp.
+//!
+//! | file | forward | backward |
+//! |---|---|---|
+//! | `efd` | descriptors to outline, [`OutlineBasis::outline`] | `efd_vjp` |
+//! | `efd_model` | [`EfdModel`], descriptors as a [`ShapeModel`] | same file |
+
+mod efd;
+mod efd_model;
+mod efd_vjp;
+#[cfg(test)]
+mod tests;
 
 use alloc::vec;
 use alloc::vec::Vec;
 
 use crate::real::Real;
+
+pub use efd::OutlineBasis;
+pub use efd_model::EfdModel;
 
 /// Vertices of an outline in the reference system: 64 parameters t = i / 63, both end points included.
 pub const REFERENCE_VERTICES: usize = 64;
@@ -82,6 +96,20 @@ pub trait ShapeModel<T: Real> {
         grad_vertices: &[[T; 2]],
         grad_parameters: &mut [T],
     ) -> Result<(), ShapeError>;
+
+    /// Refuses slices of a wrong length.
+    ///
+    /// # Errors
+    /// [`ShapeError::Length`] that names the slice.
+    fn check(&self, parameters: &[T], vertices: &[[T; 2]]) -> Result<(), ShapeError> {
+        let lengths = [
+            ("parameters", self.parameter_count(), parameters.len()),
+            ("outline", self.vertex_count(), vertices.len()),
+        ];
+        lengths.into_iter().try_for_each(|(what, expected, len)| {
+            if len == expected { Ok(()) } else { Err(ShapeError::Length { what, expected, len }) }
+        })
+    }
 }
 
 /// Why a shape step was refused.
@@ -112,6 +140,13 @@ pub enum ShapeError {
         /// Which count.
         what: &'static str,
     },
+    /// More harmonics than the table of cosines and sines has.
+    TooManyHarmonics {
+        /// Harmonics of the descriptors.
+        harmonic_count: usize,
+        /// Harmonics of the table.
+        limit: usize,
+    },
     /// The first harmonic vanishes, so that there is no size to normalize by.
     Degenerate,
 }
@@ -123,6 +158,12 @@ impl core::fmt::Display for ShapeError {
             Self::TooFewPoints { len } => write!(f, "contour has {len} distinct points, needs at least 3"),
             Self::NotFinite { index } => write!(f, "value {index} of the shape is NaN or infinite"),
             Self::Zero { what } => write!(f, "{what} must be at least 1"),
+            Self::TooManyHarmonics { harmonic_count, limit } => {
+                write!(
+                    f,
+                    "{harmonic_count} harmonics, but the outline basis has {limit}: make a larger basis or resize the EFD"
+                )
+            }
             Self::Degenerate => write!(f, "the first harmonic is zero: the shape has no size to normalize by"),
         }
     }

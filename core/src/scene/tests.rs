@@ -1,0 +1,80 @@
+#![expect(clippy::float_cmp, reason = "numbers exact by construction")]
+
+use alloc::vec;
+
+use super::*;
+use crate::shape::{OutlineBasis, ShapeError};
+
+fn scene() -> Scene<f64> {
+    let object = |harmonics: usize| Object {
+        pose: Pose { translation: [0.25, 0.5], scale: 0.5, rotation: core::f64::consts::FRAC_PI_2 },
+        color: [0.1, 0.2, 0.3],
+        confidence: 0.75,
+        efd: Efd::new(vec![[1.0, 0.0, 0.0, -1.0]]).resized(harmonics),
+        prototype: None,
+    };
+    Scene { objects: vec![object(1), object(3)], ..Scene::empty([1.0, 0.5, 0.0]) }
+}
+
+#[test]
+fn a_quarter_turn_takes_x_to_y() {
+    // (1, 0) turns to (0, 1), halves to (0, 0.5), moves to (0.25, 1).
+    let pose = scene().objects[0].pose;
+    let [x, y] = f64::xy(pose.transform_point(f64::vec2(1.0, 0.0)));
+    assert!((x - 0.25).abs() < 1e-15 && (y - 1.0).abs() < 1e-15, "({x}, {y})");
+    let back = pose.inverse().unwrap();
+    let [x, y] = f64::xy(back.transform_point(f64::vec2(0.25, 1.0)));
+    assert!((x - 1.0).abs() < 1e-15 && y.abs() < 1e-15, "({x}, {y})");
+    assert_eq!(Pose { scale: 0.0, ..pose }.inverse(), None);
+    assert_eq!(Pose::<f64>::identity().inverse(), Some(Pose::identity()));
+}
+
+#[test]
+fn the_pair_of_the_reference_is_sine_then_cosine() {
+    assert_eq!(rotation_from_pair([0.0, 2.0]), 0.0);
+    assert_eq!(rotation_from_pair([3.0, 0.0]), core::f64::consts::FRAC_PI_2);
+    let mut grad = [7.0; 2];
+    rotation_from_pair_vjp([0.0, 0.0], 1.0, &mut grad);
+    assert_eq!(grad, [7.0; 2]);
+}
+
+#[test]
+fn harmonics_may_differ_between_objects() {
+    let basis = OutlineBasis::new(16, 3).unwrap();
+    let mut drawing = Drawing::default();
+    scene().draw(&basis, &mut drawing).unwrap();
+    assert_eq!(drawing.object_count(), 2);
+    assert_eq!(drawing.starts, [0, 16, 32]);
+    assert_eq!(drawing.outline(0), drawing.outline(1));
+    assert_eq!(drawing.background, [1.0, 0.5, 0.0]);
+    assert_eq!(drawing.confidences, [0.75; 2]);
+    let small = OutlineBasis::new(16, 2).unwrap();
+    let refused = scene().draw(&small, &mut drawing);
+    assert_eq!(refused, Err(ShapeError::TooManyHarmonics { harmonic_count: 3, limit: 2 }));
+}
+
+#[test]
+fn a_second_drawing_reuses_the_memory() {
+    let basis = OutlineBasis::new(16, 3).unwrap();
+    let (mut drawing, mut grad) = (Drawing::default(), SceneGrad::default());
+    scene().draw(&basis, &mut drawing).unwrap();
+    grad.reset(&scene());
+    let before = (drawing.vertices.as_ptr(), drawing.starts.as_ptr(), grad.objects[1].efd.as_ptr());
+    scene().draw(&basis, &mut drawing).unwrap();
+    grad.reset(&scene());
+    assert_eq!(before, (drawing.vertices.as_ptr(), drawing.starts.as_ptr(), grad.objects[1].efd.as_ptr()));
+}
+
+#[test]
+fn a_gradient_of_another_layout_is_refused() {
+    let (basis, scene) = (OutlineBasis::new(16, 3).unwrap(), scene());
+    let (mut drawing, mut grad_drawing, mut grad) = (Drawing::default(), DrawingGrad::default(), SceneGrad::default());
+    scene.draw(&basis, &mut drawing).unwrap();
+    grad_drawing.reset(&drawing);
+    let refused = scene.draw_vjp(&basis, &grad_drawing, &mut grad);
+    assert_eq!(refused, Err(ShapeError::Length { what: "gradient of the objects", expected: 2, len: 0 }));
+    grad.reset(&scene);
+    grad.objects[1].efd.pop();
+    let refused = scene.draw_vjp(&basis, &grad_drawing, &mut grad);
+    assert_eq!(refused, Err(ShapeError::Length { what: "gradient of the EFD", expected: 3, len: 2 }));
+}

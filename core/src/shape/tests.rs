@@ -1,0 +1,49 @@
+use super::*;
+
+#[test]
+fn four_vertices_of_an_ellipse() {
+    // x = 2 cos, y = sin at t = 0, 1/4, 1/2, 3/4, 1.
+    let basis = OutlineBasis::<f64>::new(5, 3).unwrap();
+    let mut outline = [[9.0; 2]; 5];
+    basis.outline(&[[2.0, 0.0, 0.0, 1.0]], &mut outline).unwrap();
+    let expected = [[2.0, 0.0], [0.0, 1.0], [-2.0, 0.0], [0.0, -1.0], [2.0, 0.0]];
+    for (vertex, expected) in outline.iter().zip(expected) {
+        assert!((vertex[0] - expected[0]).abs() < 1e-15 && (vertex[1] - expected[1]).abs() < 1e-15, "{outline:?}");
+    }
+    assert_eq!(outline[0], outline[4]);
+}
+
+#[test]
+fn the_table_gives_the_defining_sum() {
+    // Vertex counts around the block size, odd and even.
+    for vertex_count in [4, 5, 15, 16, 17, 63, 64, 65, 130, 300] {
+        let basis = OutlineBasis::<f64>::new(vertex_count, 7).unwrap();
+        let rows: Vec<[f64; 4]> = (1..=7).map(|n| f64::from(n)).map(|n| [1.0 / n, 0.3, -0.2 * n, 0.1]).collect();
+        let mut outline = vec![[0.0; 2]; vertex_count];
+        basis.outline(&rows, &mut outline).unwrap();
+        for (i, vertex) in outline.iter().enumerate() {
+            let t = f64::of_usize(i) / f64::of_usize(vertex_count - 1) * core::f64::consts::TAU;
+            let mut expected = [0.0; 2];
+            for (n, row) in rows.iter().enumerate() {
+                let (sin, cos) = num_traits::Float::sin_cos(t * f64::of_usize(n + 1));
+                expected[0] += row[0] * cos + row[1] * sin;
+                expected[1] += row[2] * cos + row[3] * sin;
+            }
+            let error = (vertex[0] - expected[0]).abs() + (vertex[1] - expected[1]).abs();
+            assert!(error < 1e-12, "{vertex_count} vertices, vertex {i}: {vertex:?} against {expected:?}");
+        }
+    }
+}
+
+#[test]
+fn wrong_lengths_are_refused() {
+    assert_eq!(OutlineBasis::<f32>::new(3, 1), Err(ShapeError::TooFewPoints { len: 2 }));
+    assert_eq!(OutlineBasis::<f32>::new(64, 0), Err(ShapeError::Zero { what: "harmonic_count" }));
+    let basis = OutlineBasis::<f32>::new(64, 2).unwrap();
+    let error = basis.outline(&[[0.0; 4]; 3], &mut [[0.0; 2]; 64]);
+    assert_eq!(error, Err(ShapeError::TooManyHarmonics { harmonic_count: 3, limit: 2 }));
+    let error = basis.outline_vjp(&[[0.0; 2]; 63], &mut [[0.0; 4]; 2]);
+    assert_eq!(error, Err(ShapeError::Length { what: "outline", expected: 64, len: 63 }));
+    let error = EfdModel::new(basis).outline(&[0.0; 7], &mut [[0.0; 2]; 64]);
+    assert_eq!(error, Err(ShapeError::Length { what: "parameters", expected: 8, len: 7 }));
+}

@@ -1,0 +1,72 @@
+//! Random inputs for the property tests, one function per kind.
+
+use core::f64::consts::PI;
+use core::ops::Range;
+
+use dvp_core::{Efd, Object, Pose, Scene};
+use proptest::collection::vec;
+use proptest::prelude::*;
+
+/// Descriptors that fall as 1 / n^2, as those of closed contours without jumps do; the first harmonic is an ellipse
+/// with half axes of 0.5 to 1 and the direction of travel of an MDS-HR shape.
+pub fn efd(harmonic_count: Range<usize>) -> impl Strategy<Value = Efd<f64>> {
+    vec(prop::array::uniform4(-0.5..0.5), harmonic_count).prop_map(|mut rows| {
+        for (n, row) in (1_u32..).zip(&mut rows) {
+            let n = f64::from(n);
+            row.iter_mut().for_each(|value| *value /= n * n);
+        }
+        if let Some([a, b, c, d]) = rows.first_mut() {
+            *a = 0.75 + *a / 2.0;
+            *d = -0.75 + *d / 2.0;
+            *b /= 4.0;
+            *c /= 4.0;
+        }
+        Efd::new(rows)
+    })
+}
+
+/// Poses that MDS-HR could have drawn.
+pub fn pose() -> impl Strategy<Value = Pose<f64>> {
+    (prop::array::uniform2(0.05..0.95), 0.1..0.3, -PI..PI).prop_map(|(translation, scale, rotation)| Pose {
+        translation,
+        scale,
+        rotation,
+    })
+}
+
+/// One object with `harmonic_count` harmonics.
+pub fn object(harmonic_count: Range<usize>) -> impl Strategy<Value = Object<f64>> {
+    (pose(), color(), 0.0..1.0, efd(harmonic_count)).prop_map(|(pose, color, confidence, efd)| Object {
+        pose,
+        color,
+        confidence,
+        efd,
+        prototype: None,
+    })
+}
+
+/// A color with every channel in [0, 1].
+pub fn color() -> impl Strategy<Value = [f64; 3]> {
+    prop::array::uniform3(0.0..1.0)
+}
+
+/// Scenes in the reference system's edge profile; every object has its own number of harmonics.
+pub fn scene(object_count: Range<usize>, harmonic_count: Range<usize>) -> impl Strategy<Value = Scene<f64>> {
+    (color(), vec(object(harmonic_count), object_count))
+        .prop_map(|(background, objects)| Scene { objects, ..Scene::empty(background) })
+}
+
+/// A closed polygon around the origin, counter-clockwise with y up: distinct rays, radii 0.3 to 1, so that it never
+/// crosses itself.
+pub fn star_polygon(vertex_count: Range<usize>) -> impl Strategy<Value = Vec<[f64; 2]>> {
+    vec((0.3..1.0, 0.1..0.9), vertex_count).prop_map(|points| {
+        let count = f64::from(u32::try_from(points.len()).unwrap_or(u32::MAX));
+        (0_u32..)
+            .zip(points)
+            .map(|(i, (radius, jitter)): (u32, (f64, f64))| {
+                let (sin, cos) = ((f64::from(i) + jitter) / count * 2.0 * PI).sin_cos();
+                [radius * cos, radius * sin]
+            })
+            .collect()
+    })
+}
