@@ -1,3 +1,4 @@
 //! The property tests; a module per concern.
 
+mod matching;
 mod scene;
