@@ -1,0 +1,30 @@
+//! Scenes as SVG: few smooth paths that draw what the renderers show, in a file that people can edit.
+//!
+//! In: a scene and an image size. Out: one `<path>` per object, in unit coordinates, with the pose as a readable
+//! `transform="translate(x y) rotate(degrees) scale(pixels)"`.
+//!
+//! Renderers fatten an outline by the edge profile's offset (1.43 px at 128 px for the reference profile), so each path has
+//! a stroke of its own color, twice that wide. Under `blend`, the common part of overlapping objects shows the mean
+//! of their colors: it is drawn again, through a mask.
+//!
+//! Approximations: the softness of edges is left to the viewer's anti-aliasing; fully confident objects mix exactly
+//! except for the outermost pixel of the common part; objects with a confidence below 0.99 are drawn with that
+//! opacity, one over the other; outlines follow the smooth curve of the descriptors within 0.05 px, not the polygon of
+//! 64 vertices that renderers paint.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `path.rs` | descriptors to cubic Bezier curves within a tolerance |
+//! | `overlap.rs` | which sets of objects share pixels |
+//! | `write.rs` | the text |
+//!
+//! `tests/command/svg.rs` compares with pixels drawn by another program (resvg).
+
+mod overlap;
+mod path;
+mod write;
+
+pub use write::to_svg;
+
+#[cfg(test)]
+mod tests;

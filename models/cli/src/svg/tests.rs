@@ -1,0 +1,58 @@
+use dvp_core::render::{Compositing, EdgeProfile};
+use dvp_core::{Efd, ImageSize, Object, Pose, Scene};
+
+use super::overlap::{Body, shared_regions};
+use super::path::{Curve, short};
+use super::to_svg;
+
+fn square(x: f64, y: f64, half: f64) -> Body {
+    let vertices = vec![[x - half, y - half], [x + half, y - half], [x + half, y + half], [x - half, y + half]];
+    Body { vertices, reach: 0.5 }
+}
+
+fn disk(x: f32, color: [f32; 3]) -> Object<f32> {
+    let pose = Pose { translation: [x, 0.5], scale: 0.2, rotation: 0.0 };
+    Object { pose, color, confidence: 1.0, efd: Efd::new(vec![[1.0, 0.0, 0.0, -1.0]]), prototype: None }
+}
+
+#[test]
+fn numbers_are_short() {
+    let texts = [(0.0, "0"), (-0.0001, "0"), (0.5, ".5"), (-0.25, "-.25"), (12.0, "12"), (1.23456, "1.235")];
+    for (value, text) in texts {
+        assert_eq!(short(value, 3.0), text);
+    }
+}
+
+#[test]
+fn a_circle_needs_few_pieces() {
+    // Quarter circles as cubics are off by 2.7e-4 of the radius at best; with matched velocities (pi/6 instead of
+    // 0.5523) by 0.014; eighths by 16 times less.
+    let rows = [[1.0, 0.0, 0.0, -1.0]];
+    let coarse = Curve { rows: &rows }.path_data(0.05);
+    assert_eq!(coarse.matches('C').count(), 4, "{coarse}");
+    let fine = Curve { rows: &rows }.path_data(0.002);
+    assert_eq!(fine.matches('C').count(), 8, "{fine}");
+    assert!(fine.starts_with("M1,0C") && fine.ends_with('Z'), "{fine}");
+}
+
+#[test]
+fn overlaps_are_found() {
+    // Three squares of side 8: the first two share a strip, all three a corner of it.
+    let bodies = [square(10.0, 10.0, 4.0), square(15.0, 10.0, 4.0), square(12.0, 16.0, 4.0)];
+    assert_eq!(shared_regions(&bodies, 32.0, 32.0), [vec![0, 1], vec![0, 2], vec![1, 2], vec![0, 1, 2]]);
+    assert!(shared_regions(&bodies[..1], 32.0, 32.0).is_empty());
+}
+
+#[test]
+fn blended_objects_get_their_mean_color() {
+    let objects = vec![disk(0.4, [1.0, 0.0, 0.0]), disk(0.6, [0.0, 0.0, 1.0])];
+    let mut scene =
+        Scene { background: [1.0; 3], objects, edge: EdgeProfile::reference(), compositing: Compositing::Blend };
+    let size = ImageSize::new(128, 128).unwrap();
+    let text = to_svg(&scene, size);
+    assert!(text.contains("<g mask=\"url(#in-object-0)\"><use href=\"#object-1\" fill=\"#800080\""), "{text}");
+    // 2 x 1.431 px over 25.6 px
+    assert!(text.contains("stroke-width=\".1118\""), "{text}");
+    scene.compositing = Compositing::Over;
+    assert!(!to_svg(&scene, size).contains("mask"));
+}
