@@ -3,6 +3,13 @@
 
 extern crate alloc;
 
+pub mod adam;
+pub mod opt_iter;
+pub mod opt_p;
+pub mod parameters;
+pub mod plateau;
+pub mod rand_opt_p;
+
 use alloc::string::String;
 use alloc::vec::Vec;
 

@@ -1,0 +1,148 @@
+//! The largest blob of an error map: where, in which color and orientation the next object starts.
+
+use alloc::vec::Vec;
+
+use dvp_core::image::CHANNELS;
+use dvp_core::{ImageView, Real};
+
+/// Mean absolute error over the channels below which a pixel counts as explained.
+const EXPLAINED: f64 = 0.02;
+
+/// Largest difference of a channel between neighbors of one blob: objects that touch in different colors are two blobs,
+/// and noise of a few 8-bit steps tears none apart.
+const SAME_COLOR: f64 = 0.04;
+
+/// A connected region of one color that the scene does not explain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Blob<T> {
+    /// Mean position, scene units.
+    pub center: [T; 2],
+    /// Direction of the long axis, radians in (-pi/2, pi/2\].
+    pub orientation: T,
+    /// Mean color of the image in the region.
+    pub color: [T; CHANNELS],
+    /// Sum over the region of the mean absolute error per pixel.
+    pub error: T,
+    /// Pixels of the region.
+    pub pixels: usize,
+}
+
+/// Finds blobs; keeps its memory from call to call.
+#[derive(Clone, Debug, Default)]
+pub struct BlobFinder<T> {
+    error: Vec<T>,
+    stack: Vec<usize>,
+}
+
+impl<T: Real> BlobFinder<T> {
+    /// A finder without memory yet.
+    #[must_use]
+    pub fn new() -> Self {
+        Self { error: Vec::new(), stack: Vec::new() }
+    }
+
+    /// The blob with the largest summed error of `image` against planar `painted`; none if they are equal.
+    ///
+    /// A pixel is unexplained if its error is above 0.02, or above half the largest error where that is less. Blobs are
+    /// connected through edges of pixels.
+    pub fn largest(&mut self, image: ImageView<'_, T>, painted: &[T]) -> Option<Blob<T>> {
+        let pixels = image.size().pixels();
+        let third = T::of(1.0 / 3.0);
+        self.error.clear();
+        self.error.resize(pixels, T::zero());
+        for (target, painted) in image.data().chunks_exact(pixels).zip(painted.chunks_exact(pixels)) {
+            for ((error, &a), &b) in self.error.iter_mut().zip(target).zip(painted) {
+                *error += (a - b).abs() * third;
+            }
+        }
+        let largest = self.error.iter().copied().fold(T::zero(), T::max);
+        let threshold = T::of(EXPLAINED).min(largest / T::of(2.0));
+        let mut best = None;
+        for seed in 0..pixels {
+            if self.error[seed] > threshold {
+                let sums = self.flood(image, seed, threshold);
+                if best.as_ref().is_none_or(|best: &Sums<T>| sums.error > best.error) {
+                    best = Some(sums);
+                }
+            }
+        }
+        best.map(|sums| sums.blob(image))
+    }
+
+    /// Sums over the blob of `seed`; its pixels are marked as explained.
+    fn flood(&mut self, image: ImageView<'_, T>, seed: usize, threshold: T) -> Sums<T> {
+        let (width, height) = (image.size().width(), image.size().height());
+        let tolerance = T::of(SAME_COLOR);
+        let mut sums = Sums::default();
+        let mut enter = |error: &mut [T], stack: &mut Vec<usize>, index: usize, from: [T; CHANNELS]| {
+            let color = image.pixel(index);
+            let same = color.iter().zip(from).all(|(&a, b)| (a - b).abs() <= tolerance);
+            if error[index] > threshold && same {
+                sums.add(index % width, index / width, color, error[index]);
+                error[index] = T::zero();
+                stack.push(index);
+            }
+        };
+        enter(&mut self.error, &mut self.stack, seed, image.pixel(seed));
+        while let Some(index) = self.stack.pop() {
+            let color = image.pixel(index);
+            let (x, y) = (index % width, index / width);
+            if x > 0 {
+                enter(&mut self.error, &mut self.stack, index - 1, color);
+            }
+            if x + 1 < width {
+                enter(&mut self.error, &mut self.stack, index + 1, color);
+            }
+            if y > 0 {
+                enter(&mut self.error, &mut self.stack, index - width, color);
+            }
+            if y + 1 < height {
+                enter(&mut self.error, &mut self.stack, index + width, color);
+            }
+        }
+        sums
+    }
+}
+
+/// Moments of a blob up to order 2, in pixels.
+#[derive(Clone, Debug, Default)]
+struct Sums<T> {
+    count: usize,
+    x: f64,
+    y: f64,
+    xx: f64,
+    xy: f64,
+    yy: f64,
+    color: [T; CHANNELS],
+    error: T,
+}
+
+impl<T: Real> Sums<T> {
+    fn add(&mut self, x: usize, y: usize, color: [T; CHANNELS], error: T) {
+        let (x, y) = (f64::of_usize(x), f64::of_usize(y));
+        self.count += 1;
+        self.x += x;
+        self.y += y;
+        self.xx += x * x;
+        self.xy += x * y;
+        self.yy += y * y;
+        for (sum, value) in self.color.iter_mut().zip(color) {
+            *sum += value;
+        }
+        self.error += error;
+    }
+
+    fn blob(&self, image: ImageView<'_, T>) -> Blob<T> {
+        let count = f64::of_usize(self.count);
+        let (x, y) = (self.x / count, self.y / count);
+        let (xx, xy, yy) = (self.xx / count - x * x, self.xy / count - x * y, self.yy / count - y * y);
+        let unit = f64::of_usize(image.size().unit_px());
+        Blob {
+            center: [T::of((x + 0.5) / unit), T::of((y + 0.5) / unit)],
+            orientation: T::of(0.5 * num_traits::Float::atan2(2.0 * xy, xx - yy)),
+            color: self.color.map(|sum| sum / T::of(count)),
+            error: self.error,
+            pixels: self.count,
+        }
+    }
+}
