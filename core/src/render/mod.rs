@@ -1,4 +1,19 @@
 //! Renderers: a drawing in, an image out, and gradients back.
+//!
+//! | module | holds |
+//! |---|---|
+//! | `mod.rs` | the contract: settings, the trait [`Renderer`], errors |
+//! | [`tile`] | coverage tiles per object, the trait of coverage models, and the renderer over any of them |
+//! | `composite` | one pass over the image: mixing, loss, gradients with respect to colors, confidences and coverage |
+//! | [`contour`] | coverage by the distance to the outline: the default renderer |
+
+#[expect(clippy::needless_range_loop, reason = "loops over lanes walk several arrays")]
+mod composite;
+pub mod contour;
+pub mod tile;
+
+pub use contour::{ContourDistance, ContourRenderer};
+pub use tile::{CoverageModel, TileRenderer};
 
 use crate::dims::ImageSize;
 use crate::image::ImageView;
@@ -114,6 +129,8 @@ pub enum RenderError {
         /// What came.
         len: usize,
     },
+    /// `starts` does not begin at 0 or falls.
+    Starts,
     /// A setting is out of range.
     Setting {
         /// Which setting.
@@ -131,6 +148,7 @@ impl core::fmt::Display for RenderError {
             Self::NotFinite { what, object: Some(k) } => write!(f, "{what} of object {k} is NaN or infinite"),
             Self::NotFinite { what, object: None } => write!(f, "{what} is NaN or infinite"),
             Self::Length { what, expected, len } => write!(f, "{what} has {len} values, needs {expected}"),
+            Self::Starts => write!(f, "starts must begin at 0 and never fall"),
             Self::Setting { what, value, must } => write!(f, "{what} is {value}, must be {must}"),
         }
     }

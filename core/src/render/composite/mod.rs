@@ -1,0 +1,220 @@
+//! The compositing pass: coverage tiles and colors in; pixels, loss and gradients out, in one walk over the image.
+//!
+//! The walk goes chunk by chunk. Most chunks have one color (the background's, or that of one object that covers all of
+//! it): they are merged into spans, whose gradient follows from the sum of the pixels' gradients. Chunks on the edge of
+//! a single object have a closed form too; only where objects meet is the general formula worked out.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `mod.rs` | [`Composition`], the walk, the spans |
+//! | `single.rs` | a chunk with one object in it |
+//! | `blend.rs`, `over.rs` | a chunk with several, for each way of mixing |
+//! | `sink.rs` | what happens to pixels: stored, or compared with a target |
+//! | `scratch.rs` | sums per object, and their way into the gradient |
+
+mod blend;
+mod over;
+mod scratch;
+mod single;
+mod sink;
+
+pub(super) use scratch::CompositeScratch;
+pub(super) use sink::{Forward, Loss, Mae, Mse, Pull};
+
+use crate::dims::ImageSize;
+use crate::image::CHANNELS;
+use crate::real::Real;
+use crate::render::Compositing;
+use crate::render::tile::{ChunkState, LANES, Tile};
+use crate::scene::Drawing;
+use crate::simd::{Kernel, dispatch};
+use sink::PixelSink;
+
+/// The reference's guard of the division by the sum of weights.
+const SMALLEST_WEIGHT: f64 = 1e-7;
+
+/// The reference's 1 / gamma: a weight is p exp((f - 1) / gamma).
+const SHARPNESS: f64 = 10.0;
+
+/// What there is to composite.
+pub(super) struct Composition<'a, T> {
+    pub(super) drawing: &'a Drawing<T>,
+    pub(super) size: ImageSize,
+    pub(super) compositing: Compositing,
+    /// A lower bound of coverage where it is not 0.
+    pub(super) smallest_coverage: T,
+    /// One per object; windows without rows are skipped.
+    pub(super) tiles: &'a mut [Tile<T>],
+}
+
+/// What a chunk is painted with.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Paint {
+    /// The background alone.
+    Background,
+    /// One object, everywhere in the chunk.
+    Solid(usize),
+    /// The edge of one object.
+    Edge { object: usize, chunk: usize },
+    /// Several objects.
+    Several,
+}
+
+/// Where a chunk stands in the image.
+#[derive(Clone, Copy)]
+pub(super) struct Place {
+    /// First pixel, row x width + column.
+    start: usize,
+    /// Pixels inside the image, 1 to [`LANES`].
+    len: usize,
+}
+
+/// An object in a chunk of several.
+#[derive(Clone, Copy, Debug)]
+struct Layer {
+    object: usize,
+    /// Index into the tile, or `None` where the object covers all of the chunk.
+    chunk: Option<usize>,
+}
+
+/// Consecutive pixels of one color.
+#[derive(Clone, Copy)]
+struct Span {
+    object: Option<usize>,
+    start: usize,
+    len: usize,
+}
+
+impl<'a, T: Real> Composition<'a, T> {
+    /// Paints into `sink` and returns its loss (0 if it has none). Backward sinks leave gradients in the tiles (coverage)
+    /// and in `scratch` (everything else).
+    pub(super) fn run<S: PixelSink<T>>(self, scratch: &mut CompositeScratch<T>, sink: S) -> T {
+        scratch.reset(self.drawing, self.compositing, self.smallest_coverage);
+        dispatch(Pass { composition: self, scratch, sink })
+    }
+}
+
+/// The walk, ready to be compiled per instruction set.
+struct Pass<'a, 's, T, S> {
+    composition: Composition<'a, T>,
+    scratch: &'s mut CompositeScratch<T>,
+    sink: S,
+}
+
+impl<T: Real, S: PixelSink<T>> Kernel for Pass<'_, '_, T, S> {
+    type Output = T;
+
+    #[inline(always)]
+    fn run(mut self) -> T {
+        let width = self.composition.size.width();
+        let chunks = width.div_ceil(LANES);
+        let mut span = Span { object: None, start: 0, len: 0 };
+        for row in 0..self.composition.size.height() {
+            self.find_active(row);
+            let mut c = 0;
+            while c < chunks {
+                let (paint, until) = self.paints(row, c, chunks);
+                let start = row * width + c * LANES;
+                let end = (row * width + until * LANES).min((row + 1) * width);
+                let object = match paint {
+                    Paint::Background => Some(None),
+                    Paint::Solid(object) => Some(Some(object)),
+                    Paint::Edge { .. } | Paint::Several => None,
+                };
+                if let Some(object) = object {
+                    if span.object == object {
+                        span.len += end - start;
+                    } else {
+                        self.flush(span);
+                        span = Span { object, start, len: end - start };
+                    }
+                } else {
+                    self.flush(span);
+                    span = Span { object: None, start: end, len: 0 };
+                    let place = Place { start, len: end - start };
+                    match paint {
+                        Paint::Edge { object, chunk } => self.edge(place, object, chunk),
+                        _ => self.several(place),
+                    }
+                }
+                c = until;
+            }
+        }
+        self.flush(span);
+        self.sink.finish()
+    }
+}
+
+impl<T: Real, S: PixelSink<T>> Pass<'_, '_, T, S> {
+    /// Lists the objects whose window holds the row.
+    #[inline(always)]
+    fn find_active(&mut self, row: usize) {
+        self.scratch.active.clear();
+        for (k, tile) in self.composition.tiles.iter().enumerate() {
+            let window = tile.window();
+            if row >= window.top && row - window.top < window.rows {
+                self.scratch.active.push(k);
+            }
+        }
+    }
+
+    /// What paints chunk `c` of the row, and the chunk up to which that holds. Fills `scratch.layers` for several objects.
+    #[inline(always)]
+    fn paints(&mut self, row: usize, c: usize, chunks: usize) -> (Paint, usize) {
+        if self.scratch.active.is_empty() {
+            return (Paint::Background, chunks);
+        }
+        self.scratch.layers.clear();
+        for &object in &self.scratch.active {
+            let tile = &self.composition.tiles[object];
+            let window = tile.window();
+            let column = c.wrapping_sub(window.left_chunk);
+            if column < window.chunks {
+                let chunk = (row - window.top) * window.chunks + column;
+                match tile.states[chunk] {
+                    ChunkState::Empty => {}
+                    ChunkState::Mixed => self.scratch.layers.push(Layer { object, chunk: Some(chunk) }),
+                    ChunkState::Full => self.scratch.layers.push(Layer { object, chunk: None }),
+                }
+            }
+        }
+        let paint = match *self.scratch.layers {
+            [] => Paint::Background,
+            [Layer { object, chunk }] if self.scratch.objects[object].plain => match chunk {
+                None => Paint::Solid(object),
+                Some(chunk) => Paint::Edge { object, chunk },
+            },
+            _ => Paint::Several,
+        };
+        (paint, c + 1)
+    }
+
+    /// Paints a span, and adds its gradient: with p = 1, pixel = b + f (c - b).
+    #[inline(always)]
+    fn flush(&mut self, span: Span) {
+        if span.len == 0 {
+            return;
+        }
+        let drawing = self.composition.drawing;
+        for channel in 0..CHANNELS {
+            let b = drawing.background[channel];
+            let value = span.object.map_or(b, |k| b + drawing.confidences[k] * (drawing.colors[k][channel] - b));
+            let sum = self.sink.span(channel, span.start, span.len, value);
+            if S::BACKWARD {
+                self.scratch.background[channel][0] += sum;
+                if let Some(k) = span.object {
+                    self.scratch.objects[k].covered[channel][0] += sum;
+                }
+            }
+        }
+    }
+
+    /// Paints a chunk of several objects.
+    #[inline(always)]
+    fn several(&mut self, place: Place) {
+        match self.composition.compositing {
+            Compositing::Blend => self.blend(place),
+            Compositing::Over => self.over(place),
+        }
+    }
+}

@@ -1,0 +1,104 @@
+//! Sums per object, and their way into the gradient of the drawing.
+
+use alloc::vec::Vec;
+
+use super::{Layer, SHARPNESS, SMALLEST_WEIGHT};
+use crate::image::CHANNELS;
+use crate::real::Real;
+use crate::render::Compositing;
+use crate::render::tile::{LANES, Lanes};
+use crate::scene::{Drawing, DrawingGrad};
+
+/// Memory of the pass, kept between calls.
+#[derive(Debug)]
+pub(in crate::render) struct CompositeScratch<T> {
+    pub(super) objects: Vec<Sums<T>>,
+    /// Sum of g, over chunks where the background's share is not written out yet (see [`Sums::covered`]), of g x share elsewhere.
+    pub(super) background: [Lanes<T>; CHANNELS],
+    /// Objects whose window holds the current row.
+    pub(super) active: Vec<usize>,
+    /// Objects in the current chunk, in painting order.
+    pub(super) layers: Vec<Layer>,
+    /// What the general formulas keep per layer between their way up and their way down.
+    pub(super) kept: Vec<Kept<T>>,
+}
+
+/// What is known of an object, and what is summed up for it; g stands for the gradient of a pixel.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sums<T> {
+    /// exp(10 (f - 1)).
+    pub(super) weight: T,
+    /// Alone in a pixel, its color is the mean: the guard of the division never acts.
+    pub(super) plain: bool,
+    /// Where the object is alone: sum of p g per channel. There pixel = b + p f (c - b), so that the gradient of c is
+    /// f x this, that of f is this . (c - b), and that of b is sum g - f x this.
+    pub(super) covered: [Lanes<T>; CHANNELS],
+    /// Elsewhere: the gradient of the color.
+    pub(super) color: [Lanes<T>; CHANNELS],
+    /// Elsewhere: the gradient of the confidence.
+    pub(super) confidence: Lanes<T>,
+}
+
+/// Per layer of a chunk.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Kept<T> {
+    pub(super) coverage: Lanes<T>,
+    /// What lies below: the product of 1 - p f of earlier layers (blend), or their color per channel (over).
+    pub(super) below: [Lanes<T>; CHANNELS],
+}
+
+impl<T: Real> Default for CompositeScratch<T> {
+    fn default() -> Self {
+        Self { objects: Vec::new(), background: zeros(), active: Vec::new(), layers: Vec::new(), kept: Vec::new() }
+    }
+}
+
+impl<T: Real> CompositeScratch<T> {
+    /// Forgets all sums and looks up what is known of the objects.
+    pub(super) fn reset(&mut self, drawing: &Drawing<T>, compositing: Compositing, smallest_coverage: T) {
+        let count = drawing.object_count();
+        self.background = zeros();
+        self.objects.clear();
+        self.objects.extend(drawing.confidences.iter().map(|&f| {
+            let weight = (T::of(SHARPNESS) * (f - T::one())).exp();
+            Sums {
+                weight,
+                plain: compositing == Compositing::Over || weight * smallest_coverage >= T::of(SMALLEST_WEIGHT),
+                covered: zeros(),
+                color: zeros(),
+                confidence: [T::zero(); LANES],
+            }
+        }));
+        self.active.reserve(count);
+        self.layers.reserve(count);
+        if self.kept.len() < count {
+            self.kept.resize(count, Kept { coverage: [T::zero(); LANES], below: zeros() });
+        }
+    }
+
+    /// Adds the gradient of background, colors and confidences.
+    pub(in crate::render) fn add_grad(&self, drawing: &Drawing<T>, grad: &mut DrawingGrad<T>) {
+        for channel in 0..CHANNELS {
+            grad.background[channel] += total(&self.background[channel]);
+        }
+        for (k, sums) in self.objects.iter().enumerate() {
+            let f = drawing.confidences[k];
+            grad.confidences[k] += total(&sums.confidence);
+            for channel in 0..CHANNELS {
+                let covered = total(&sums.covered[channel]);
+                grad.background[channel] -= f * covered;
+                grad.colors[k][channel] += f * covered + total(&sums.color[channel]);
+                grad.confidences[k] += (drawing.colors[k][channel] - drawing.background[channel]) * covered;
+            }
+        }
+    }
+}
+
+fn zeros<T: Real>() -> [Lanes<T>; CHANNELS] {
+    [[T::zero(); LANES]; CHANNELS]
+}
+
+/// The sum of the lanes.
+fn total<T: Real>(lanes: &Lanes<T>) -> T {
+    lanes.iter().copied().sum()
+}

@@ -1,0 +1,40 @@
+//! A chunk on the edge of one object: pixel = b + p f (c - b), whichever way objects mix.
+
+use super::sink::PixelSink;
+use super::{Pass, Place};
+use crate::image::CHANNELS;
+use crate::real::Real;
+use crate::render::tile::LANES;
+
+impl<T: Real, S: PixelSink<T>> Pass<'_, '_, T, S> {
+    /// Paints chunk `chunk` of the tile of `object`.
+    #[inline(always)]
+    pub(super) fn edge(&mut self, place: Place, object: usize, chunk: usize) {
+        let drawing = self.composition.drawing;
+        let f = drawing.confidences[object];
+        let tile = &mut self.composition.tiles[object];
+        let p = tile.coverage[chunk];
+        let sums = &mut self.scratch.objects[object].covered;
+        let mut grad = [T::zero(); LANES];
+        for channel in 0..CHANNELS {
+            let b = drawing.background[channel];
+            let contrast = f * (drawing.colors[object][channel] - b);
+            let mut values = [T::zero(); LANES];
+            for i in 0..LANES {
+                values[i] = b + p[i] * contrast;
+            }
+            let g = self.sink.chunk(channel, place, &values);
+            if S::BACKWARD {
+                let background = &mut self.scratch.background[channel];
+                for i in 0..LANES {
+                    background[i] += g[i];
+                    sums[channel][i] += p[i] * g[i];
+                    grad[i] += g[i] * contrast;
+                }
+            }
+        }
+        if S::BACKWARD {
+            tile.grad[chunk] = grad;
+        }
+    }
+}

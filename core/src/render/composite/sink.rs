@@ -1,0 +1,206 @@
+//! What happens to pixels: stored, multiplied with a given gradient, or compared with a target.
+
+use core::marker::PhantomData;
+
+use super::Place;
+use crate::image::CHANNELS;
+use crate::real::Real;
+use crate::render::tile::{LANES, Lanes};
+
+/// Takes pixels, and gives back the gradient of the scalar with respect to them.
+pub(in crate::render) trait PixelSink<T: Real> {
+    /// Whether gradients are wanted; if not, what comes back is not looked at.
+    const BACKWARD: bool;
+
+    /// Takes a chunk; the gradient is 0 in the lanes beyond its length.
+    fn chunk(&mut self, channel: usize, place: Place, values: &Lanes<T>) -> Lanes<T>;
+
+    /// Takes `len` pixels of one value; returns the sum of their gradients.
+    fn span(&mut self, channel: usize, start: usize, len: usize, value: T) -> T;
+
+    /// The loss, if there is one.
+    fn finish(self) -> T;
+}
+
+/// Stores the image.
+pub(in crate::render) struct Forward<'a, T> {
+    pub(in crate::render) image: &'a mut [T],
+}
+
+impl<T: Real> PixelSink<T> for Forward<'_, T> {
+    const BACKWARD: bool = false;
+
+    #[inline(always)]
+    fn chunk(&mut self, channel: usize, place: Place, values: &Lanes<T>) -> Lanes<T> {
+        let pixels = self.image.len() / CHANNELS;
+        let start = channel * pixels + place.start;
+        if place.len == LANES {
+            self.image[start..start + LANES].copy_from_slice(values);
+        } else {
+            self.image[start..start + place.len].copy_from_slice(&values[..place.len]);
+        }
+        [T::zero(); LANES]
+    }
+
+    #[inline(always)]
+    fn span(&mut self, channel: usize, start: usize, len: usize, value: T) -> T {
+        let start = channel * (self.image.len() / CHANNELS) + start;
+        self.image[start..start + len].fill(value);
+        T::zero()
+    }
+
+    #[inline(always)]
+    fn finish(self) -> T {
+        T::zero()
+    }
+}
+
+/// Pulls a given gradient of the image back.
+pub(in crate::render) struct Pull<'a, T> {
+    pub(in crate::render) grad_image: &'a [T],
+}
+
+impl<T: Real> PixelSink<T> for Pull<'_, T> {
+    const BACKWARD: bool = true;
+
+    #[inline(always)]
+    fn chunk(&mut self, channel: usize, place: Place, _: &Lanes<T>) -> Lanes<T> {
+        load(self.grad_image, channel, place, &[T::zero(); LANES])
+    }
+
+    #[inline(always)]
+    fn span(&mut self, channel: usize, start: usize, len: usize, _: T) -> T {
+        let start = channel * (self.grad_image.len() / CHANNELS) + start;
+        let mut sums = [T::zero(); LANES];
+        let (blocks, rest) = self.grad_image[start..start + len].as_chunks::<LANES>();
+        for block in blocks {
+            for i in 0..LANES {
+                sums[i] += block[i];
+            }
+        }
+        for (sum, &g) in sums.iter_mut().zip(rest) {
+            *sum += g;
+        }
+        total(sums)
+    }
+
+    #[inline(always)]
+    fn finish(self) -> T {
+        T::zero()
+    }
+}
+
+/// A loss per value.
+pub(in crate::render) trait ValueLoss<T: Real> {
+    /// Value and derivative at a difference.
+    fn at(difference: T) -> (T, T);
+}
+
+/// |d|.
+pub(in crate::render) struct Mae;
+
+impl<T: Real> ValueLoss<T> for Mae {
+    #[inline(always)]
+    fn at(difference: T) -> (T, T) {
+        let up = if difference > T::zero() { T::one() } else { T::zero() };
+        let down = if difference < T::zero() { T::one() } else { T::zero() };
+        (difference.abs(), up - down)
+    }
+}
+
+/// d^2.
+pub(in crate::render) struct Mse;
+
+impl<T: Real> ValueLoss<T> for Mse {
+    #[inline(always)]
+    fn at(difference: T) -> (T, T) {
+        (difference * difference, difference + difference)
+    }
+}
+
+/// The mean of a loss per value against a target.
+pub(in crate::render) struct Loss<'a, T, L> {
+    target: &'a [T],
+    /// 1 / number of values.
+    share: T,
+    sum: f64,
+    lanes: Lanes<T>,
+    loss: PhantomData<L>,
+}
+
+impl<'a, T: Real, L: ValueLoss<T>> Loss<'a, T, L> {
+    /// Against planar `target`.
+    pub(in crate::render) fn new(target: &'a [T]) -> Self {
+        let share = T::one() / T::of_usize(target.len());
+        Self { target, share, sum: 0.0, lanes: [T::zero(); LANES], loss: PhantomData }
+    }
+}
+
+impl<T: Real, L: ValueLoss<T>> PixelSink<T> for Loss<'_, T, L> {
+    const BACKWARD: bool = true;
+
+    #[inline(always)]
+    fn chunk(&mut self, channel: usize, place: Place, values: &Lanes<T>) -> Lanes<T> {
+        let target = load(self.target, channel, place, values);
+        let mut grad = [T::zero(); LANES];
+        for i in 0..LANES {
+            let (value, slope) = L::at(values[i] - target[i]);
+            self.lanes[i] += value;
+            grad[i] = slope * self.share;
+        }
+        grad
+    }
+
+    #[inline(always)]
+    fn span(&mut self, channel: usize, start: usize, len: usize, value: T) -> T {
+        let start = channel * (self.target.len() / CHANNELS) + start;
+        let (blocks, rest) = self.target[start..start + len].as_chunks::<LANES>();
+        let (mut losses, mut slopes) = ([T::zero(); LANES], [T::zero(); LANES]);
+        for block in blocks {
+            for i in 0..LANES {
+                let (loss, slope) = L::at(value - block[i]);
+                losses[i] += loss;
+                slopes[i] += slope;
+            }
+        }
+        for (i, &t) in rest.iter().enumerate() {
+            let (loss, slope) = L::at(value - t);
+            losses[i] += loss;
+            slopes[i] += slope;
+        }
+        self.sum += total(losses).as_f64();
+        total(slopes) * self.share
+    }
+
+    #[inline(always)]
+    fn finish(self) -> T {
+        T::of(self.sum + total(self.lanes).as_f64()) * self.share
+    }
+}
+
+/// A chunk of a plane; lanes beyond its length are taken from `beyond`.
+#[inline(always)]
+fn load<T: Real>(planes: &[T], channel: usize, place: Place, beyond: &Lanes<T>) -> Lanes<T> {
+    let start = channel * (planes.len() / CHANNELS) + place.start;
+    let mut lanes = *beyond;
+    if place.len == LANES {
+        lanes.copy_from_slice(&planes[start..start + LANES]);
+    } else {
+        lanes[..place.len].copy_from_slice(&planes[start..start + place.len]);
+    }
+    lanes
+}
+
+/// The sum of the lanes, by halves so that it vectorizes.
+#[inline(always)]
+pub(super) fn total<T: Real>(mut lanes: Lanes<T>) -> T {
+    let mut half = LANES / 2;
+    while half > 0 {
+        for i in 0..half {
+            let other = lanes[i + half];
+            lanes[i] += other;
+        }
+        half /= 2;
+    }
+    lanes[0]
+}

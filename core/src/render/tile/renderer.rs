@@ -1,0 +1,223 @@
+//! The renderer that every coverage model shares.
+
+use alloc::vec::Vec;
+
+use super::check::{check_drawing, check_finite, check_grad, check_image};
+use super::{ChunkState, CoverageModel, FARTHEST_PX, LANES, Tile, Window};
+use crate::dims::ImageSize;
+use crate::image::ImageView;
+use crate::real::Real;
+use crate::render::composite::{CompositeScratch, Composition, Forward, Loss, Mae, Mse, Pull};
+use crate::render::{Compositing, PixelLoss, RenderError, Renderer};
+use crate::scene::{Drawing, DrawingGrad};
+
+/// Paints with any coverage model: a coverage tile per object, then one pass of compositing over the image, fused with
+/// the loss and its gradient where one is asked for.
+///
+/// *Memory*: the scratch grows to the largest windows seen (up to 256 x 256 pixels: to the whole image at once); no call
+/// allocates otherwise. Objects outside the view cost nothing and get zero gradient.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TileRenderer<C> {
+    /// How much of each pixel an outline covers.
+    pub coverage: C,
+    /// How objects that share a pixel mix.
+    pub compositing: Compositing,
+}
+
+/// Memory of a [`TileRenderer`], kept between calls.
+#[derive(Debug)]
+pub struct TileScratch<T, R> {
+    outline_px: Vec<[T; 2]>,
+    grad_px: Vec<[T; 2]>,
+    tiles: Vec<Tile<T>>,
+    records: Vec<R>,
+    composite: CompositeScratch<T>,
+}
+
+impl<T: Real, R> Default for TileScratch<T, R> {
+    fn default() -> Self {
+        Self {
+            outline_px: Vec::new(),
+            grad_px: Vec::new(),
+            tiles: Vec::new(),
+            records: Vec::new(),
+            composite: CompositeScratch::default(),
+        }
+    }
+}
+
+impl<C> TileRenderer<C> {
+    /// Writes the coverage of every object, objects x height x width, with no regard to confidence. It is above 0
+    /// exactly on the pixels that the object's fattened outline reaches: the reference's mask.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`].
+    pub fn object_coverage<T: Real>(
+        &self,
+        drawing: &Drawing<T>,
+        size: ImageSize,
+        scratch: &mut TileScratch<T, C::Record>,
+        coverage: &mut [T],
+    ) -> Result<(), RenderError>
+    where
+        C: CoverageModel<T>,
+    {
+        let expected = drawing.object_count() * size.pixels();
+        if coverage.len() != expected {
+            return Err(RenderError::Length { what: "coverage", expected, len: coverage.len() });
+        }
+        self.cover_all(drawing, size, scratch)?;
+        coverage.fill(T::zero());
+        for (tile, plane) in scratch.tiles.iter().zip(coverage.chunks_exact_mut(size.pixels())) {
+            let window = tile.window();
+            for i in 0..window.rows * window.chunks {
+                let left = (window.left_chunk + i % window.chunks) * LANES;
+                let start = (window.top + i / window.chunks) * size.width() + left;
+                let pixels = &mut plane[start..start + LANES.min(size.width() - left)];
+                match tile.states[i] {
+                    ChunkState::Empty => {}
+                    ChunkState::Mixed => pixels.copy_from_slice(&tile.coverage[i][..pixels.len()]),
+                    ChunkState::Full => pixels.fill(T::one()),
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Checks everything, then covers a tile per object; objects outside the view get an empty window.
+    fn cover_all<T: Real>(
+        &self,
+        drawing: &Drawing<T>,
+        size: ImageSize,
+        scratch: &mut TileScratch<T, C::Record>,
+    ) -> Result<(), RenderError>
+    where
+        C: CoverageModel<T>,
+    {
+        self.coverage.check()?;
+        check_drawing(drawing)?;
+        let objects = drawing.object_count();
+        if scratch.tiles.len() < objects {
+            scratch.tiles.resize_with(objects, Tile::default);
+            scratch.records.resize_with(objects, C::Record::default);
+        }
+        scratch.outline_px.clear();
+        scratch.outline_px.extend(drawing.vertices.iter().map(|&v| to_px(v, size)));
+        let reach_px = self.coverage.reach_px(T::of_usize(size.unit_px()));
+        for (k, (tile, record)) in scratch.tiles[..objects].iter_mut().zip(&mut scratch.records).enumerate() {
+            let outline_px = &scratch.outline_px[drawing.starts[k]..drawing.starts[k + 1]];
+            match Window::around(outline_px, reach_px, size) {
+                Some(window) => {
+                    tile.reset(window, size);
+                    self.coverage.cover(outline_px, size, tile, record)?;
+                }
+                None => tile.reset(Window::default(), size),
+            }
+        }
+        Ok(())
+    }
+
+    /// Pulls the tiles' gradients back to the vertices and adds everything to `grad`.
+    fn pull_back<T: Real>(
+        &self,
+        drawing: &Drawing<T>,
+        size: ImageSize,
+        scratch: &mut TileScratch<T, C::Record>,
+        grad: &mut DrawingGrad<T>,
+    ) where
+        C: CoverageModel<T>,
+    {
+        let objects = drawing.object_count();
+        scratch.composite.add_grad(drawing, grad);
+        scratch.grad_px.clear();
+        scratch.grad_px.resize(drawing.vertices.len(), [T::zero(); 2]);
+        for (k, (tile, record)) in scratch.tiles[..objects].iter_mut().zip(&mut scratch.records).enumerate() {
+            if tile.window().rows > 0 {
+                let range = drawing.starts[k]..drawing.starts[k + 1];
+                let outline_px = &scratch.outline_px[range.clone()];
+                self.coverage.cover_vjp(outline_px, size, tile, record, &mut scratch.grad_px[range]);
+            }
+        }
+        let unit = T::of_usize(size.unit_px());
+        for (sum, &g) in grad.vertices.as_flattened_mut().iter_mut().zip(scratch.grad_px.as_flattened()) {
+            *sum += g * unit;
+        }
+    }
+
+    fn composition<'a, T: Real>(
+        &self,
+        drawing: &'a Drawing<T>,
+        size: ImageSize,
+        tiles: &'a mut [Tile<T>],
+    ) -> Composition<'a, T>
+    where
+        C: CoverageModel<T>,
+    {
+        let smallest_coverage = self.coverage.smallest_coverage();
+        Composition { drawing, size, compositing: self.compositing, smallest_coverage, tiles }
+    }
+}
+
+impl<T: Real, C: CoverageModel<T>> Renderer<T> for TileRenderer<C> {
+    type Scratch = TileScratch<T, C::Record>;
+
+    fn render(
+        &self,
+        drawing: &Drawing<T>,
+        size: ImageSize,
+        scratch: &mut Self::Scratch,
+        image: &mut [T],
+    ) -> Result<(), RenderError> {
+        check_image("image", image, size)?;
+        self.cover_all(drawing, size, scratch)?;
+        let composition = self.composition(drawing, size, &mut scratch.tiles[..drawing.object_count()]);
+        composition.run(&mut scratch.composite, Forward { image });
+        Ok(())
+    }
+
+    fn render_vjp(
+        &self,
+        drawing: &Drawing<T>,
+        size: ImageSize,
+        scratch: &mut Self::Scratch,
+        grad_image: &[T],
+        grad: &mut DrawingGrad<T>,
+    ) -> Result<(), RenderError> {
+        check_image("grad_image", grad_image, size)?;
+        check_finite("grad_image", grad_image)?;
+        check_grad(drawing, grad)?;
+        self.cover_all(drawing, size, scratch)?;
+        let composition = self.composition(drawing, size, &mut scratch.tiles[..drawing.object_count()]);
+        composition.run(&mut scratch.composite, Pull { grad_image });
+        self.pull_back(drawing, size, scratch, grad);
+        Ok(())
+    }
+
+    fn loss_and_grad(
+        &self,
+        drawing: &Drawing<T>,
+        target: ImageView<'_, T>,
+        loss: PixelLoss,
+        scratch: &mut Self::Scratch,
+        grad: &mut DrawingGrad<T>,
+    ) -> Result<T, RenderError> {
+        check_grad(drawing, grad)?;
+        let size = target.size();
+        self.cover_all(drawing, size, scratch)?;
+        let composition = self.composition(drawing, size, &mut scratch.tiles[..drawing.object_count()]);
+        let target = target.data();
+        let value = match loss {
+            PixelLoss::Mae => composition.run(&mut scratch.composite, Loss::<T, Mae>::new(target)),
+            PixelLoss::Mse => composition.run(&mut scratch.composite, Loss::<T, Mse>::new(target)),
+        };
+        self.pull_back(drawing, size, scratch, grad);
+        Ok(value)
+    }
+}
+
+/// Scene units to pixels. The bound keeps far vertices from overflowing: their edges still run in their direction.
+fn to_px<T: Real>(v: [T; 2], size: ImageSize) -> [T; 2] {
+    let unit = T::of_usize(size.unit_px());
+    let far = T::of(FARTHEST_PX);
+    v.map(|x| (x * unit - T::of(0.5)).max(-far).min(far))
+}
