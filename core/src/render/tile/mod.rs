@@ -101,7 +101,7 @@ impl Window {
 /// First and last integer in \[low, high\] and in 0..count; `None` if there is none.
 #[inline(always)]
 pub fn pixel_range<T: Real>(low: T, high: T, count: usize) -> Option<(usize, usize)> {
-    if !(high >= T::zero()) {
+    if high < T::zero() {
         return None;
     }
     let first = low.ceil().to_count();
