@@ -1,8 +1,2 @@
 //! The command `dvp`.
-
-use std::io::{stderr, stdout};
-use std::process::ExitCode;
-
-fn main() -> ExitCode {
-    ExitCode::from(dvp::command::run(std::env::args_os(), &mut stdout(), &mut stderr()))
-}
+fn main() {}

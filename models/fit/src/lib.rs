@@ -1,4 +1,16 @@
 //! From one image to its scene by optimisation.
+//!
+//! ```text
+//! image -> segment -> pose | free -> joint refinement -> scene, with its doubt
+//! ```
+//!
+//! | module | comes in | goes out |
+//! |---|---|---|
+//! | `segment` | an image | objects as colors and distance samples along their outlines |
+//! | `pose` | samples, a bank | prototype and pose |
+//! | `free` | samples, no bank | elliptic Fourier descriptors, as few as the samples support |
+//! | `fitter` | all of it | a [`Fit`] |
+//! | [`opt_p`], [`opt_iter`], [`rand_opt_p`] | an image, for OptP and Rand-OptP a start | a [`Fit`] by the paper's Adam |
 #![no_std]
 
 extern crate alloc;
@@ -10,18 +22,18 @@ pub mod parameters;
 pub mod plateau;
 pub mod rand_opt_p;
 
-use alloc::string::String;
+mod fitter;
+mod free;
+mod options;
+mod pose;
+mod segment;
+
 use alloc::vec::Vec;
 
-use dvp_core::shape::Efd;
-use dvp_core::{Real, Scene};
+use dvp_core::Scene;
 
-/// Shapes that objects are known to have.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Bank<T> {
-    /// Name and normalized descriptors per prototype.
-    pub prototypes: Vec<(String, Efd<T>)>,
-}
+pub use fitter::{FitScratch, Fitter, fit_image};
+pub use options::{Bank, FitError, FitOptions};
 
 /// Why a fit stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -84,7 +96,3 @@ pub struct Fit<T> {
     /// Description length of the scene and what it leaves unexplained, in bits.
     pub bits: f64,
 }
-
-/// Marker that keeps the trait in scope of the docs.
-#[doc(hidden)]
-pub fn _real<T: Real>() {}

@@ -1,0 +1,106 @@
+//! What a fit takes: settings, the shapes it may use, and why it may refuse.
+
+use alloc::string::String;
+use alloc::vec::Vec;
+
+use dvp_core::Real;
+use dvp_core::render::{Compositing, EdgeProfile, RenderError};
+use dvp_core::shape::{Efd, ShapeError};
+
+/// Shapes that objects are known to have.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Bank<T> {
+    /// Name and normalized descriptors per prototype.
+    pub prototypes: Vec<(String, Efd<T>)>,
+}
+
+/// Settings of [`Fitter`](crate::Fitter).
+#[derive(Clone, Debug, PartialEq)]
+pub struct FitOptions<T> {
+    /// The shapes objects have; none: shapes are unknown and fitted freely.
+    pub bank: Option<Bank<T>>,
+    /// More objects than this are not reported; those that explain most come first.
+    pub max_objects: usize,
+    /// Most harmonics of a free shape.
+    pub max_harmonics: usize,
+    /// Most joint Levenberg-Marquardt steps per image; 0 leaves the objects as they were found one by one.
+    pub max_steps: usize,
+    /// Edge profile of the picture; none: the reference renderer's or area coverage, whichever the soft pixels speak for.
+    pub edge: Option<EdgeProfile<T>>,
+    /// How overlapping objects mix.
+    pub compositing: Compositing,
+}
+
+impl<T: Real> Default for FitOptions<T> {
+    fn default() -> Self {
+        Self {
+            bank: None,
+            max_objects: 256,
+            max_harmonics: 24,
+            max_steps: 10,
+            edge: None,
+            compositing: Compositing::Blend,
+        }
+    }
+}
+
+/// Why an image was not fitted.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum FitError {
+    /// A pixel is NaN or infinite.
+    NotFinite {
+        /// Index into the planar data.
+        index: usize,
+    },
+    /// A prototype of the bank is no shape.
+    Prototype {
+        /// Its index.
+        index: usize,
+        /// What is wrong with it.
+        source: ShapeError,
+    },
+    /// A prototype of the bank encloses no area.
+    FlatPrototype {
+        /// Its index.
+        index: usize,
+    },
+    /// A setting is out of range.
+    Setting {
+        /// Its name.
+        what: &'static str,
+        /// What it must be.
+        must: &'static str,
+    },
+    /// A scene on the way could not be drawn.
+    Shape(ShapeError),
+    /// A scene on the way could not be rendered.
+    Render(RenderError),
+}
+
+impl core::fmt::Display for FitError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::NotFinite { index } => write!(f, "image value {index} is NaN or infinite; replace it before the fit"),
+            Self::Prototype { index, source } => write!(f, "prototype {index} of the bank: {source}"),
+            Self::FlatPrototype { index } => write!(f, "prototype {index} of the bank encloses no area; remove it"),
+            Self::Setting { what, must } => write!(f, "{what} must be {must}"),
+            Self::Shape(error) => write!(f, "{error}"),
+            Self::Render(error) => write!(f, "{error}"),
+        }
+    }
+}
+
+impl core::error::Error for FitError {}
+
+impl From<ShapeError> for FitError {
+    fn from(error: ShapeError) -> Self {
+        Self::Shape(error)
+    }
+}
+
+impl From<RenderError> for FitError {
+    fn from(error: RenderError) -> Self {
+        Self::Render(error)
+    }
+}

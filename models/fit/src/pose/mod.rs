@@ -1,0 +1,8 @@
+//! From edge samples to the pose of a known shape.
+//!
+//! In: the samples of one segment and the prototypes. Out: candidate poses, best first. `field` knows exact distances to
+//! a unit outline, `gauss_newton` moves a pose until its outline lies at the sampled distances, `search` finds starts.
+
+pub(crate) mod field;
+pub(crate) mod gauss_newton;
+pub(crate) mod search;

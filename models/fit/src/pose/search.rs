@@ -1,0 +1,223 @@
+//! From a segment to the pose of a prototype without a start: many cheap starts, the best few refined.
+
+use alloc::vec::Vec;
+
+use dvp_core::{ImageSize, Real};
+
+use super::field::OutlineField;
+use super::gauss_newton::{Frame, PosePx, Robustness};
+use crate::segment::{EdgeSample, Segment, Segmentation};
+
+/// Samples used while searching; all are used at the end.
+const SEARCH_SAMPLES: usize = 40;
+/// Start angles over a full turn.
+const FULL_TURN_STARTS: usize = 12;
+/// Sizes tried for an object that leaves the image, relative to its visible part.
+const CROPPED_SIZES: [f64; 4] = [1.0, 1.3, 1.7, 2.4];
+
+/// A shape ready to be searched for.
+#[derive(Clone, Debug)]
+pub(crate) struct Prototype<T> {
+    /// Unit outline, closed.
+    pub(crate) outline: Vec<[T; 2]>,
+    pub(crate) field: OutlineField<T>,
+    /// Symmetry order; 0: every rotation.
+    pub(crate) symmetry: usize,
+}
+
+/// A prototype at a pose, with its robust mean squared distance error.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Candidate<T> {
+    pub(crate) prototype: usize,
+    pub(crate) pose: PosePx<T>,
+    /// px^2, weighted by slope, plus the price of outline where the image is flat.
+    pub(crate) cost: T,
+    pub(crate) steps: usize,
+}
+
+/// Poses of every prototype that could explain `segment`, best first; empty if it has too few samples.
+pub(crate) fn search<T: Real>(
+    segment: &Segment<T>,
+    prototypes: &[Prototype<T>],
+    size: ImageSize,
+    segmentation: &Segmentation<T>,
+    out: &mut Vec<Candidate<T>>,
+) {
+    out.clear();
+    if segment.samples.len() < 4 || segment.pixels == 0 {
+        return;
+    }
+    let cropped = segment.border > 0;
+    for (index, prototype) in prototypes.iter().enumerate() {
+        let sizes = if cropped { &CROPPED_SIZES[..] } else { &CROPPED_SIZES[..1] };
+        rough(segment, prototype, index, size, sizes, if cropped { 4 } else { 2 }, out);
+    }
+    // The best of the rough ones are worth all samples.
+    sort(out);
+    let Some(best) = out.first().map(|candidate| candidate.cost) else { return };
+    out.retain(|candidate| candidate.cost <= T::of(8.0) * best + T::of(0.05));
+    let mut kept = 0;
+    for i in 0..out.len() {
+        let refined = finish(out[i], segment, prototypes, size, segmentation);
+        // Two starts that ended in one pose are one candidate.
+        let twin = out[..kept].iter().any(|c| same(c, &refined));
+        if !twin {
+            out[kept] = refined;
+            kept += 1;
+        }
+    }
+    out.truncate(kept);
+    sort(out);
+}
+
+fn sort<T: Real>(candidates: &mut [Candidate<T>]) {
+    candidates.sort_by(|a, b| a.cost.partial_cmp(&b.cost).unwrap_or(core::cmp::Ordering::Equal));
+}
+
+fn same<T: Real>(a: &Candidate<T>, b: &Candidate<T>) -> bool {
+    let near = |x: T, y: T, tolerance: f64| (x - y).abs() <= T::of(tolerance);
+    a.prototype == b.prototype
+        && near(a.pose.translation[0], b.pose.translation[0], 0.2)
+        && near(a.pose.translation[1], b.pose.translation[1], 0.2)
+        && near(a.pose.log_scale, b.pose.log_scale, 0.02)
+        && near(a.pose.rotation, b.pose.rotation, 0.02)
+}
+
+/// Adds up to `keep` refined starts of one prototype.
+fn rough<T: Real>(
+    segment: &Segment<T>,
+    prototype: &Prototype<T>,
+    index: usize,
+    size: ImageSize,
+    sizes: &[f64],
+    keep: usize,
+    out: &mut Vec<Candidate<T>>,
+) {
+    let stride = 1 + segment.samples.len() / SEARCH_SAMPLES;
+    let wide = Robustness { width_px: T::of(3.0), weighted: false, stride };
+    let turns = prototype.symmetry.max(1);
+    let starts = if prototype.symmetry == 0 { 1 } else { FULL_TURN_STARTS.div_ceil(turns).max(3) };
+    let range = T::of(2.0 * core::f64::consts::PI) / T::of_usize(turns);
+    let field = &prototype.field;
+    let mut best: [Option<(T, PosePx<T>)>; 4] = [None; 4];
+    for &enlarged in sizes {
+        for i in 0..starts {
+            let rotation = range * T::of_usize(i) / T::of_usize(starts);
+            let pose = start(segment, field, size, T::of(enlarged), rotation);
+            let cost = pose.cost(field, &segment.samples, wide);
+            // Insertion into a short list of the best.
+            let mut entry = Some((cost, pose));
+            for slot in &mut best[..keep.min(4)] {
+                let better = match (&entry, &slot) {
+                    (Some((cost, _)), Some((held, _))) => cost < held,
+                    (Some(_), None) => true,
+                    _ => false,
+                };
+                if better {
+                    core::mem::swap(slot, &mut entry);
+                }
+            }
+        }
+    }
+    for (_, pose) in best.into_iter().flatten() {
+        let narrow = Robustness { width_px: T::of(1.5), weighted: false, stride };
+        let (pose, _, first) = pose.refine(field, &segment.samples, wide, 6);
+        let (pose, cost, second) = pose.refine(field, &segment.samples, narrow, 6);
+        out.push(Candidate { prototype: index, pose, cost, steps: first + second });
+    }
+}
+
+/// A start whose area is that of the segment and whose centroid is its centroid; for an enlarged object the centroid
+/// moves out of the image, away from the image's center line, so that the inner rim stays where it is.
+fn start<T: Real>(
+    segment: &Segment<T>,
+    field: &OutlineField<T>,
+    size: ImageSize,
+    enlarged: T,
+    rotation: T,
+) -> PosePx<T> {
+    let count = T::of_usize(segment.pixels);
+    let pi = T::of(core::f64::consts::PI);
+    let visible = [segment.sums[0] / count, segment.sums[1] / count];
+    // Flat pixels end about 0.7 px inside the outline.
+    let radius = (count / pi).sqrt() + T::of(0.7);
+    let scale = enlarged * radius / (field.area / pi).sqrt();
+    let mut center = visible;
+    let growth = radius * (enlarged - T::one());
+    let (width, height) = (T::of_usize(size.width()), T::of_usize(size.height()));
+    for (c, extent) in [width, height].into_iter().enumerate() {
+        if visible[c] < radius {
+            center[c] -= growth;
+        } else if visible[c] > extent - radius {
+            center[c] += growth;
+        }
+    }
+    let (sin, cos) = rotation.sin_cos();
+    let [x, y] = field.centroid;
+    let translation = [center[0] - scale * (cos * x - sin * y), center[1] - scale * (sin * x + cos * y)];
+    PosePx { translation, log_scale: scale.ln(), rotation }
+}
+
+/// All samples, weighted by slope; the symmetric twins of the pose are tried too, since 64 vertices at t = i / 63 are not
+/// exactly symmetric.
+fn finish<T: Real>(
+    candidate: Candidate<T>,
+    segment: &Segment<T>,
+    prototypes: &[Prototype<T>],
+    size: ImageSize,
+    segmentation: &Segmentation<T>,
+) -> Candidate<T> {
+    let prototype = &prototypes[candidate.prototype];
+    let field = &prototype.field;
+    let fine = Robustness { width_px: T::of(0.3), weighted: true, stride: 1 };
+    let (mut pose, mut cost, mut steps) = candidate.pose.refine(field, &segment.samples, fine, 8);
+    let turn = T::of(2.0 * core::f64::consts::PI) / T::of_usize(prototype.symmetry.max(1));
+    let base = pose;
+    for i in 1..prototype.symmetry {
+        let twin = PosePx { rotation: base.rotation + turn * T::of_usize(i), ..base };
+        let twin_cost = twin.cost(field, &segment.samples, fine);
+        if twin_cost < cost {
+            (pose, cost) = (twin, twin_cost);
+        }
+    }
+    if pose.rotation != base.rotation {
+        let (refined, refined_cost, more) = pose.refine(field, &segment.samples, fine, 4);
+        (pose, cost, steps) = (refined, refined_cost, steps + more);
+    }
+    let surplus = outline_over_flat(&pose, prototype, size, segmentation);
+    Candidate {
+        prototype: candidate.prototype,
+        pose,
+        cost: cost + T::of(0.09) * surplus,
+        steps: candidate.steps + steps,
+    }
+}
+
+/// Share of the visible outline that runs through flat pixels, where no outline can be.
+fn outline_over_flat<T: Real>(
+    pose: &PosePx<T>,
+    prototype: &Prototype<T>,
+    size: ImageSize,
+    segmentation: &Segmentation<T>,
+) -> T {
+    let frame = Frame::new(pose);
+    let (mut visible, mut flat) = (0usize, 0usize);
+    for &v in &prototype.outline {
+        // A vertex moved 1 px outward: well inside the soft band.
+        let length = (v[0] * v[0] + v[1] * v[1]).sqrt().max(T::of(1e-6));
+        let grown = T::one() + T::one() / (length * frame.scale);
+        let p = frame.to_pixels([v[0] * grown, v[1] * grown]);
+        let (Some(x), Some(y)) = (p[0].floor().to_usize(), p[1].floor().to_usize()) else { continue };
+        if p[0] < T::zero() || p[1] < T::zero() || x >= size.width() || y >= size.height() {
+            continue;
+        }
+        visible += 1;
+        flat += usize::from(segmentation.is_flat(y * size.width() + x));
+    }
+    if visible == 0 { T::zero() } else { T::of_usize(flat) / T::of_usize(visible) }
+}
+
+/// Mean squared error (px^2) of samples that a pose leaves unexplained.
+pub(crate) fn unexplained<T: Real>(pose: &PosePx<T>, field: &OutlineField<T>, samples: &[EdgeSample<T>]) -> T {
+    pose.cost(field, samples, Robustness { width_px: T::one(), weighted: false, stride: 1 })
+}

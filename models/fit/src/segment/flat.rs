@@ -1,0 +1,144 @@
+//! Flat pixels and their connected regions.
+//!
+//! A pixel is flat if no channel differs from a direct neighbor's by more than a tolerance; two neighbors that are both
+//! flat therefore belong together, and regions are found from runs of flat pixels alone.
+
+use alloc::vec::Vec;
+
+use dvp_core::{ImageView, Real};
+
+/// A run of flat pixels of one row.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Run {
+    pub(crate) row: u32,
+    pub(crate) start: u32,
+    pub(crate) end: u32,
+    /// Region (from 1); while labeling, the index of another run of the same region.
+    pub(crate) label: u32,
+}
+
+/// Labels of all pixels; 0 is soft, regions count from 1 in reading order.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct FlatMap {
+    pub(crate) runs: Vec<Run>,
+    pub(crate) labels: Vec<u32>,
+    pub(crate) region_count: usize,
+    parents: Vec<u32>,
+    sizes: Vec<u32>,
+    horizontal: Vec<u8>,
+    vertical: Vec<u8>,
+}
+
+/// Marks where two pixels one `step` apart differ by more than the tolerance in some channel.
+#[inline(always)]
+fn mark_steps<T: Real>(image: &ImageView<'_, T>, step: usize, tolerance: T, marks: &mut Vec<u8>) {
+    let pixels = image.size().pixels();
+    marks.clear();
+    marks.resize(pixels, 0);
+    let count = pixels.saturating_sub(step);
+    let (r, g, b) = (image.channel(0), image.channel(1), image.channel(2));
+    let marks = &mut marks[..count];
+    let (r0, g0, b0) = (&r[..count], &g[..count], &b[..count]);
+    let (r1, g1, b1) = (&r[step..], &g[step..], &b[step..]);
+    for i in 0..count {
+        let d = (r0[i] - r1[i]).abs().max((g0[i] - g1[i]).abs()).max((b0[i] - b1[i]).abs());
+        marks[i] = u8::from(d > tolerance);
+    }
+}
+
+fn root(parents: &mut [u32], mut i: u32) -> u32 {
+    while parents[i as usize] != i {
+        let up = parents[parents[i as usize] as usize];
+        parents[i as usize] = up;
+        i = up;
+    }
+    i
+}
+
+impl FlatMap {
+    /// Labels `image`; regions below `min_pixels` count as soft.
+    pub(crate) fn label<T: Real>(&mut self, image: &ImageView<'_, T>, tolerance: T, min_pixels: u32) {
+        let (width, height) = (image.size().width(), image.size().height());
+        mark_steps(image, 1, tolerance, &mut self.horizontal);
+        mark_steps(image, width, tolerance, &mut self.vertical);
+        self.collect_runs(width, height);
+        self.link_runs(min_pixels);
+        self.labels.clear();
+        self.labels.resize(width * height, 0);
+        for run in &self.runs {
+            let row = run.row as usize * width;
+            self.labels[row + run.start as usize..row + run.end as usize].fill(run.label);
+        }
+    }
+
+    #[expect(clippy::cast_possible_truncation, reason = "an image has at most 2^28 pixels")]
+    fn collect_runs(&mut self, width: usize, height: usize) {
+        self.runs.clear();
+        self.parents.clear();
+        let zeros = [0u8; 0];
+        let (mut above, mut above_next) = (0usize, 0usize);
+        for row in 0..height {
+            let steps = &self.horizontal[row * width..(row + 1) * width];
+            let up = if row == 0 { &zeros[..] } else { &self.vertical[(row - 1) * width..row * width] };
+            let down = if row + 1 == height { &zeros[..] } else { &self.vertical[row * width..(row + 1) * width] };
+            let mut start = None;
+            for x in 0..=width {
+                let flat = x < width
+                    && (x == 0 || steps[x - 1] == 0)
+                    && (x + 1 == width || steps[x] == 0)
+                    && up.get(x).is_none_or(|&m| m == 0)
+                    && down.get(x).is_none_or(|&m| m == 0);
+                match (flat, start) {
+                    (true, None) => start = Some(x),
+                    (false, Some(s)) => {
+                        let id = self.runs.len() as u32;
+                        self.runs.push(Run { row: row as u32, start: s as u32, end: x as u32, label: id });
+                        self.parents.push(id);
+                        start = None;
+                        // Runs of the row above that overlap this one are the same region.
+                        while above < above_next && self.runs[above].end <= s as u32 {
+                            above += 1;
+                        }
+                        let mut other = above;
+                        while other < above_next && self.runs[other].start < x as u32 {
+                            let (a, b) = (root(&mut self.parents, other as u32), root(&mut self.parents, id));
+                            let (low, high) = if a < b { (a, b) } else { (b, a) };
+                            self.parents[high as usize] = low;
+                            other += 1;
+                        }
+                    }
+                    _ => {}
+                }
+            }
+            above = self.runs.partition_point(|run| (run.row as usize) < row);
+            above_next = self.runs.len();
+        }
+    }
+
+    fn link_runs(&mut self, min_pixels: u32) {
+        self.sizes.clear();
+        self.sizes.resize(self.runs.len(), 0);
+        for i in 0..self.runs.len() {
+            #[expect(clippy::cast_possible_truncation, reason = "an image has at most 2^28 pixels")]
+            let top = root(&mut self.parents, i as u32);
+            self.runs[i].label = top;
+            self.sizes[top as usize] += self.runs[i].end - self.runs[i].start;
+        }
+        // The first run of a region is its own root: it hands out the number.
+        let mut count = 0;
+        for i in 0..self.runs.len() {
+            let top = self.runs[i].label as usize;
+            if top == i {
+                self.parents[i] = if self.sizes[i] >= min_pixels {
+                    count += 1;
+                    count
+                } else {
+                    0
+                };
+            }
+            self.runs[i].label = self.parents[top];
+        }
+        self.runs.retain(|run| run.label != 0);
+        self.region_count = count as usize;
+    }
+}

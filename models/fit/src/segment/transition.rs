@@ -1,0 +1,137 @@
+//! Soft pixels: between which two regions each one lies, and how far along from one color to the other.
+
+use alloc::vec::Vec;
+
+use dvp_core::{ImageView, Real};
+
+use super::flat::FlatMap;
+use super::region::Region;
+
+/// A pixel whose color lies on the line between the colors of two regions.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Transition<T> {
+    /// Column and row.
+    pub(crate) pixel: [u32; 2],
+    /// The two regions, indices into the list of regions, the lower first.
+    pub(crate) pair: [u32; 2],
+    /// 0 at the color of the first region, 1 at that of the second; a little beyond either for noise.
+    pub(crate) weight: T,
+}
+
+/// Soft pixel with the nearest regions to the left, right, above and below (0: none, else region + 1), and the lengths
+/// of the soft runs through it.
+#[derive(Clone, Copy, Debug)]
+struct Soft {
+    pixel: [u32; 2],
+    ends: [u32; 4],
+    runs: [u32; 2],
+}
+
+/// Memory of [`find`].
+#[derive(Clone, Debug, Default)]
+pub(crate) struct SoftScratch {
+    soft: Vec<Soft>,
+    column: Vec<(u32, u32)>,
+}
+
+/// Fills `transitions` in reading order. `tolerance`: how far from the line between two colors a pixel may lie.
+pub(crate) fn find<T: Real>(
+    image: &ImageView<'_, T>,
+    map: &FlatMap,
+    regions: &[Region<T>],
+    tolerance: T,
+    scratch: &mut SoftScratch,
+    transitions: &mut Vec<Transition<T>>,
+) {
+    collect_soft(image.size().width(), image.size().height(), map, scratch);
+    transitions.clear();
+    let width = image.size().width();
+    for soft in &scratch.soft {
+        let color = image.pixel(soft.pixel[1] as usize * width + soft.pixel[0] as usize);
+        let across = [(soft.ends[0], soft.ends[1], soft.runs[0]), (soft.ends[2], soft.ends[3], soft.runs[1])];
+        let mut best: Option<(T, Transition<T>)> = None;
+        for (a, b, run) in across {
+            if a == b || a == 0 || b == 0 {
+                continue;
+            }
+            let pair = [a.min(b) - 1, a.max(b) - 1];
+            let (weight, off) = along(color, regions[pair[0] as usize].color, regions[pair[1] as usize].color);
+            // Of two crossings that explain the pixel about as well, the shorter is the more perpendicular one.
+            let cost = off + tolerance * T::of(0.05) * T::of_usize(run as usize);
+            if off <= tolerance && best.as_ref().is_none_or(|(c, _)| cost < *c) {
+                best = Some((cost, Transition { pixel: soft.pixel, pair, weight }));
+            }
+        }
+        if let Some((_, transition)) = best {
+            transitions.push(transition);
+        }
+    }
+}
+
+/// Position along the line from `from` to `to`, and the largest channel distance from it.
+fn along<T: Real>(color: [T; 3], from: [T; 3], to: [T; 3]) -> (T, T) {
+    let (mut dot, mut length) = (T::zero(), T::zero());
+    for c in 0..3 {
+        let d = to[c] - from[c];
+        dot += (color[c] - from[c]) * d;
+        length += d * d;
+    }
+    if length <= T::zero() {
+        return (T::zero(), T::infinity());
+    }
+    let weight = dot / length;
+    let clamped = weight.max(T::zero()).min(T::one());
+    let mut off = T::zero();
+    for c in 0..3 {
+        off = off.max((color[c] - from[c] - clamped * (to[c] - from[c])).abs());
+    }
+    (weight, off)
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "an image has at most 2^28 pixels")]
+fn collect_soft(width: usize, height: usize, map: &FlatMap, scratch: &mut SoftScratch) {
+    let SoftScratch { soft, column } = scratch;
+    soft.clear();
+    column.clear();
+    column.resize(width, (0, 0));
+    let mut next = 0;
+    for row in 0..height {
+        let mut x = 0;
+        let mut left = 0;
+        loop {
+            let run = map.runs.get(next).filter(|run| run.row as usize == row);
+            let (end, right) = run.map_or((width, 0), |run| (run.start as usize, run.label));
+            for at in x..end {
+                let (up, _) = column[at];
+                soft.push(Soft {
+                    pixel: [at as u32, row as u32],
+                    ends: [left, right, up, 0],
+                    runs: [(end - x) as u32, row as u32 - if up == 0 { 0 } else { column[at].1 }],
+                });
+            }
+            let Some(run) = run else { break };
+            column[run.start as usize..run.end as usize].fill((run.label, row as u32));
+            left = run.label;
+            x = run.end as usize;
+            next += 1;
+        }
+    }
+    // The same from below.
+    column.clear();
+    column.resize(width, (0, 0));
+    let mut runs = map.runs.iter().rev().peekable();
+    let mut at = soft.len();
+    for row in (0..height).rev() {
+        while at > 0 && soft[at - 1].pixel[1] as usize == row {
+            at -= 1;
+            let entry = &mut soft[at];
+            let (down, below) = column[entry.pixel[0] as usize];
+            entry.ends[3] = down;
+            entry.runs[1] += if down == 0 { 0 } else { below - row as u32 };
+        }
+        while let Some(run) = runs.peek().filter(|run| run.row as usize == row) {
+            column[run.start as usize..run.end as usize].fill((run.label, row as u32));
+            runs.next();
+        }
+    }
+}
