@@ -44,8 +44,8 @@ impl<T: Real> MatchingCost<T> {
 
     /// Writes the costs of all pairs, a row per object of `rows`, a column per object of `columns`; keeps the memory of
     /// `costs`.
-    pub fn fill(&self, rows: &[Object<T>], columns: &[Object<T>], costs: &mut Vec<T>) {
+    pub fn fill<'a>(&self, rows: impl IntoIterator<Item = &'a Object<T>>, columns: &[Object<T>], costs: &mut Vec<T>) {
         costs.clear();
-        costs.extend(rows.iter().flat_map(|a| columns.iter().map(move |b| self.between(a, b))));
+        costs.extend(rows.into_iter().flat_map(|a| columns.iter().map(move |b| self.between(a, b))));
     }
 }

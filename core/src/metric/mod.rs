@@ -1,1 +1,71 @@
 //! Metrics: numbers from two images or two scenes, by the rules of the reference system.
+//!
+//! In: an [`ImagePair`](crate::loss::ImagePair), and for each scene the pixels that its objects own ([`Ownership`]).
+//! Out: MAE, MSE, SSIM, IoU, ARI and counts, for one image or, through [`Tally`], for a data set.
+//!
+//! | file | does |
+//! |---|---|
+//! | `ownership.rs` | coverage and confidence to the union mask and the index of objects |
+//! | `overlap.rs` | IoU of union masks, pooled over images |
+//! | `rand_index.rs` | the adjusted Rand index of two labelings |
+//! | `tally.rs` | all metrics of a data set |
+//!
+//! Shown by `tests/golden/metric.rs` (the reference's masks, indices and scores) and `tests/property/metric.rs`.
+
+mod overlap;
+mod ownership;
+mod rand_index;
+mod tally;
+#[cfg(test)]
+mod tests;
+
+use core::fmt;
+
+pub use overlap::MaskOverlap;
+pub use ownership::{Ownership, visible_object_count};
+pub use rand_index::{RandIndexScratch, adjusted_rand_index};
+pub use tally::{Scores, Tally};
+
+use crate::loss::LossError;
+
+/// Why there is no metric.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum MetricError {
+    /// A slice has the wrong length.
+    Length {
+        /// Which slice.
+        what: &'static str,
+        /// Expected length.
+        expected: usize,
+        /// What came.
+        len: usize,
+    },
+    /// More objects than an index of bytes can name.
+    TooManyObjects {
+        /// Objects that came.
+        len: usize,
+    },
+    /// A metric of the images was refused.
+    Image(LossError),
+}
+
+impl fmt::Display for MetricError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Length { what, expected, len } => write!(f, "{what} has {len} values, needs {expected}"),
+            Self::TooManyObjects { len } => {
+                write!(f, "{len} objects in a scene; at most {} can be told apart", ownership::MAX_OBJECTS)
+            }
+            Self::Image(error) => write!(f, "{error}"),
+        }
+    }
+}
+
+impl core::error::Error for MetricError {}
+
+impl From<LossError> for MetricError {
+    fn from(error: LossError) -> Self {
+        Self::Image(error)
+    }
+}
