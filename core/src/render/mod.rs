@@ -15,6 +15,8 @@ pub mod tile;
 pub use contour::{ContourDistance, ContourRenderer};
 pub use tile::{CoverageModel, TileRenderer};
 
+pub mod exact;
+
 use crate::dims::ImageSize;
 use crate::image::ImageView;
 use crate::real::Real;

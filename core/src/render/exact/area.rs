@@ -1,0 +1,135 @@
+//! Forward: the area of each pixel that lies inside an outline.
+
+use alloc::vec::Vec;
+
+use super::pieces::for_each_piece;
+use crate::dims::ImageSize;
+use crate::real::Real;
+use crate::render::tile::{ChunkState, LANES, Lanes, Tile, grow, reserved_chunks};
+use crate::simd::Kernel;
+
+/// What the forward pass of an outline leaves for the backward pass, and memory.
+#[derive(Clone, Debug, Default)]
+pub struct ExactRecord<T> {
+    /// The outline from the upper left corner of the tile, where pixel (r, c) spans \[c, c + 1\] x \[r, r + 1\].
+    pub(super) outline: Vec<[T; 2]>,
+    /// Integral of the winding number over each pixel of mixed chunks.
+    pub(super) winding: Vec<Lanes<T>>,
+    /// Per chunk, what its last pixel hands on to the pixels further right.
+    carry: Vec<T>,
+    /// Per row, the height of the edges to the left of the tile.
+    entry: Vec<T>,
+}
+
+/// Covers one outline.
+pub(super) struct Cover<'a, T> {
+    pub(super) outline_px: &'a [[T; 2]],
+    pub(super) size: ImageSize,
+    pub(super) tile: &'a mut Tile<T>,
+    pub(super) record: &'a mut ExactRecord<T>,
+}
+
+impl<T: Real> Kernel for Cover<'_, T> {
+    type Output = ();
+
+    /// Each piece of an edge adds its height, weighted by the area to its right, to its pixel and the rest to the next
+    /// pixel of the row; a running sum along the row carries it to everything further right. Chunks without a piece
+    /// are wholly inside or outside: the sum is rounded there, so that no rounding error travels on.
+    #[inline(always)]
+    fn run(self) {
+        let Self { outline_px, size, tile, record } = self;
+        let window = tile.window();
+        let (width, chunks) = (window.width(), window.chunks);
+        record.prepare(outline_px, [window.left(), window.top], chunks * window.rows, window.rows, size);
+        let ExactRecord { outline, winding, carry, entry } = record;
+        let (one, half) = (T::one(), T::of(0.5));
+        let Some(&last) = outline.last() else { return };
+        let mut a = last;
+        for &b in outline.iter() {
+            for_each_piece(a, b, width, window.rows, |piece| {
+                let height = piece.to[1] - piece.from[1];
+                if piece.is_left_of_window() {
+                    entry[piece.row] += height;
+                    return;
+                }
+                let (chunk, lane) = (piece.row * chunks + piece.column / LANES, piece.column % LANES);
+                if tile.states[chunk] == ChunkState::Empty {
+                    tile.states[chunk] = ChunkState::Mixed;
+                    winding[chunk] = [T::zero(); LANES];
+                    carry[chunk] = T::zero();
+                }
+                let right = half * (piece.from[0] + piece.to[0]) - T::of_usize(piece.column);
+                winding[chunk][lane] += height * (one - right);
+                let next = if lane + 1 < LANES { &mut winding[chunk][lane + 1] } else { &mut carry[chunk] };
+                *next += height * right;
+            });
+            a = b;
+        }
+        for (row, &entry) in entry.iter().enumerate() {
+            let mut sum = entry;
+            for chunk in row * chunks..(row + 1) * chunks {
+                if tile.states[chunk] == ChunkState::Mixed {
+                    for value in &mut winding[chunk] {
+                        sum += *value;
+                        *value = sum;
+                    }
+                    sum += carry[chunk];
+                    tile.coverage[chunk] = winding[chunk].map(even_odd);
+                } else {
+                    sum = sum.round();
+                    if even_odd(sum) > half {
+                        tile.states[chunk] = ChunkState::Full;
+                    }
+                }
+            }
+        }
+    }
+}
+
+impl<T: Real> ExactRecord<T> {
+    #[inline(always)]
+    fn prepare(&mut self, outline_px: &[[T; 2]], corner: [usize; 2], chunks: usize, rows: usize, size: ImageSize) {
+        let shift = corner.map(|corner| T::of(0.5) - T::of_usize(corner));
+        self.outline.clear();
+        self.outline.extend(outline_px.iter().map(|&[x, y]| [x + shift[0], y + shift[1]]));
+        let reserved = reserved_chunks(size);
+        grow(&mut self.winding, chunks, reserved);
+        grow(&mut self.carry, chunks, reserved);
+        if self.entry.capacity() < rows {
+            self.entry.reserve(size.height());
+        }
+        self.entry.clear();
+        self.entry.resize(rows, T::zero());
+    }
+}
+
+/// Coverage under the even-odd rule from the mean winding number of a pixel: the distance to the nearest even number.
+///
+/// Exact where the pixel holds two neighboring winding numbers only (every pixel of a simple outline); where an outline
+/// crosses itself inside the pixel, parts of other winding numbers are averaged first.
+#[inline(always)]
+fn even_odd<T: Real>(winding: T) -> T {
+    let half = T::of(0.5);
+    (winding - (winding * half + half).floor() * T::of(2.0)).abs()
+}
+
+/// Derivative of coverage by the winding number: +1 or -1. At its kinks, the whole numbers, it takes the side on
+/// which a simple outline of this `orientation` (+1 or -1, see [`orientation`]) lies: winding from 0 to +1 or -1.
+#[inline(always)]
+pub(super) fn even_odd_slope<T: Real>(winding: T, orientation: T) -> T {
+    let tie = T::of(1e-5);
+    let turned = winding * orientation;
+    let folded = turned - ((turned + T::one() - tie) * T::of(0.5)).floor() * T::of(2.0);
+    if folded > -tie { orientation } else { -orientation }
+}
+
+/// Sign of the winding number inside a simple outline: +1 or -1.
+#[inline(always)]
+pub(super) fn orientation<T: Real>(outline: &[[T; 2]]) -> T {
+    let Some(&[x, y]) = outline.first() else { return T::one() };
+    let doubled: T = outline
+        .windows(2)
+        .map(|pair| (pair[0][0] - x) * (pair[1][1] - y) - (pair[1][0] - x) * (pair[0][1] - y))
+        .sum();
+    if doubled > T::zero() { -T::one() } else { T::one() }
+}

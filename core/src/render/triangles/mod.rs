@@ -1,0 +1,110 @@
+//! Soft triangles: the reference's renderer, with the seams of its triangles.
+//!
+//! In: one closed outline in pixels. Out: coverage per pixel, and backward the gradient of the vertices. The outline is
+//! cut into triangles; with d2 the signed squared distance from a pixel center to a triangle (doubled frame, negative
+//! inside), the triangle covers the pixel by logistic((offset - d2) / sigma), 0 where d2 > cut, and the object by the
+//! largest of its triangles. Inside an object, on the edges that two triangles share, d2 is 0: coverage dips to 0.993
+//! there (reference profile). [`contour`](super::contour) has no such seams and is faster; this one is for comparison
+//! with the reference.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `triangulate.rs` | from an outline to triangles |
+//! | `profile.rs` | the edge profile in pixels |
+//! | `distance.rs` | forward: nearest triangle, coverage |
+//! | `distance_vjp.rs` | backward: coverage to vertices |
+//!
+//! Proved by `tests/golden/triangles.rs` (the reference's object coverages, images and gradients), `tests/gradient/triangles.rs`
+//! and `tests/property/triangles.rs`.
+//!
+//! *Source*: Liu et al., Soft Rasterizer (ICCV 2019), as PyTorch3D computes it. Differences: triangles come from a
+//! constrained Delaunay triangulation instead of cut ears, and no limit on triangles per pixel.
+
+mod distance;
+mod distance_vjp;
+mod profile;
+#[cfg(test)]
+mod tests;
+mod triangulate;
+
+pub use distance::TriangleRecord;
+pub use triangulate::{Delaunay, Face, Triangulate, TriangulationReport};
+
+use self::distance::Cover;
+use self::distance_vjp::CoverVjp;
+use self::profile::PixelProfile;
+use super::tile::{CoverageModel, Tile, TileRenderer, TileScratch};
+use super::{EdgeProfile, RenderError};
+use crate::dims::ImageSize;
+use crate::real::Real;
+use crate::simd::dispatch;
+
+/// Paints outlines as soft triangles.
+pub type TriangleRenderer<T> = TileRenderer<SoftTriangles<T>>;
+
+/// Memory of a [`TriangleRenderer`].
+pub type TriangleScratch<T> = TileScratch<T, TriangleRecord<T>>;
+
+/// Coverage by the soft distance to the triangles of the interior.
+///
+/// *Derivative*: to the two ends of the edge that is nearest in the winning triangle; not differentiable where two
+/// edges or triangles are equally near, at the cut, and where the triangulation changes (there the seams jump).
+///
+/// *Memory*: unlike the other renderers, triangulation allocates in every call.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SoftTriangles<T, F = Delaunay> {
+    /// How coverage falls off.
+    pub edge: EdgeProfile<T>,
+    /// Where the triangles come from.
+    pub faces: F,
+}
+
+impl<T: Real> Default for SoftTriangles<T> {
+    fn default() -> Self {
+        Self { edge: EdgeProfile::reference(), faces: Delaunay }
+    }
+}
+
+impl<T: Real, F: Triangulate> CoverageModel<T> for SoftTriangles<T, F> {
+    type Record = TriangleRecord<T>;
+
+    fn check(&self) -> Result<(), RenderError> {
+        self.edge.check()
+    }
+
+    fn reach_px(&self, unit_px: T) -> T {
+        PixelProfile::new(&self.edge, unit_px).reach
+    }
+
+    fn smallest_coverage(&self) -> T {
+        self.edge.smallest_coverage()
+    }
+
+    fn cover(
+        &self,
+        outline_px: &[[T; 2]],
+        size: ImageSize,
+        tile: &mut Tile<T>,
+        record: &mut TriangleRecord<T>,
+    ) -> Result<(), RenderError> {
+        self.faces.triangulate(outline_px, &mut record.faces);
+        if let Some(&vertex) = record.faces.as_flattened().iter().find(|&&vertex| vertex >= outline_px.len()) {
+            return Err(RenderError::Setting { what: "face", value: T::of_usize(vertex).as_f64(), must: "a vertex of its outline" });
+        }
+        let profile = PixelProfile::new(&self.edge, T::of_usize(size.unit_px()));
+        dispatch(Cover { profile, outline_px, size, tile, record });
+        Ok(())
+    }
+
+    fn cover_vjp(
+        &self,
+        _outline_px: &[[T; 2]],
+        size: ImageSize,
+        tile: &mut Tile<T>,
+        record: &mut TriangleRecord<T>,
+        grad_outline_px: &mut [[T; 2]],
+    ) {
+        let profile = PixelProfile::new(&self.edge, T::of_usize(size.unit_px()));
+        dispatch(CoverVjp { profile, tile, record, grad_outline: grad_outline_px });
+    }
+}
