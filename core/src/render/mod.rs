@@ -6,16 +6,25 @@
 //! | [`tile`] | coverage tiles per object, the trait of coverage models, and the renderer over any of them |
 //! | `composite` | one pass over the image: mixing, loss, gradients with respect to colors, confidences and coverage |
 //! | [`contour`] | coverage by the distance to the outline: the default renderer |
+//! | [`exact`] | coverage by the area of pixel and outline in common |
+//! | [`hard`] | coverage 0 or 1: masks |
+//! | `triangles` | coverage by the distance to triangles, the reference's; with the feature of that name |
 
 #[expect(clippy::needless_range_loop, reason = "loops over lanes walk several arrays")]
 mod composite;
 pub mod contour;
+pub mod exact;
+pub mod hard;
 pub mod tile;
+#[cfg(feature = "triangles")]
+pub mod triangles;
 
 pub use contour::{ContourDistance, ContourRenderer};
+pub use exact::{ExactArea, ExactRenderer};
+pub use hard::{HardMask, HardRenderer};
 pub use tile::{CoverageModel, TileRenderer};
-
-pub mod exact;
+#[cfg(feature = "triangles")]
+pub use triangles::{SoftTriangles, TriangleRenderer};
 
 use crate::dims::ImageSize;
 use crate::image::ImageView;

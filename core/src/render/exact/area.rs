@@ -127,9 +127,7 @@ pub(super) fn even_odd_slope<T: Real>(winding: T, orientation: T) -> T {
 #[inline(always)]
 pub(super) fn orientation<T: Real>(outline: &[[T; 2]]) -> T {
     let Some(&[x, y]) = outline.first() else { return T::one() };
-    let doubled: T = outline
-        .windows(2)
-        .map(|pair| (pair[0][0] - x) * (pair[1][1] - y) - (pair[1][0] - x) * (pair[0][1] - y))
-        .sum();
+    let doubled: T =
+        outline.windows(2).map(|pair| (pair[0][0] - x) * (pair[1][1] - y) - (pair[1][0] - x) * (pair[0][1] - y)).sum();
     if doubled > T::zero() { -T::one() } else { T::one() }
 }

@@ -60,11 +60,12 @@ impl<T: Real> Kernel for Cover<'_, T> {
                 y += T::one();
             }
         }
-        for row in 0..window.rows {
+        let rows = crossings.chunks_exact(chunks).zip(tile.states.chunks_exact_mut(chunks));
+        for ((crossings, states), coverage) in rows.zip(tile.coverage.chunks_exact_mut(chunks)) {
             let mut inside = false;
-            for chunk in row * chunks..(row + 1) * chunks {
+            for ((&crossings, state), coverage) in crossings.iter().zip(states).zip(coverage) {
                 // Bit k becomes the parity of bits 0 to k.
-                let mut bits = crossings[chunk];
+                let mut bits = crossings;
                 bits ^= bits << 1;
                 bits ^= bits << 2;
                 bits ^= bits << 4;
@@ -73,11 +74,11 @@ impl<T: Real> Kernel for Cover<'_, T> {
                     bits = !bits;
                 }
                 inside = bits >> (LANES - 1) == 1;
-                tile.states[chunk] = match bits {
+                *state = match bits {
                     0 => ChunkState::Empty,
                     u16::MAX => ChunkState::Full,
                     _ => {
-                        tile.coverage[chunk] = expand(bits);
+                        *coverage = expand(bits);
                         ChunkState::Mixed
                     }
                 };

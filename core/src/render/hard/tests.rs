@@ -31,7 +31,8 @@ fn triangle_takes_the_centers_it_holds() {
 fn wide_rectangle_crosses_chunks() {
     // Sides on pixel centers: the left and upper ones are inside, the right and lower ones outside.
     let rows = picture(&[[2.5, 0.5], [36.5, 0.5], [36.5, 2.5], [2.5, 2.5]], 40, 4);
-    let inside: alloc::string::String = (0..40).map(|column| if (2..36).contains(&column) { '#' } else { '.' }).collect();
+    let inside: alloc::string::String =
+        (0..40).map(|column| if (2..36).contains(&column) { '#' } else { '.' }).collect();
     assert_eq!(rows[..2], [inside.clone(), inside]);
     assert!(rows[2..].iter().all(|row| !row.contains('#')));
 }

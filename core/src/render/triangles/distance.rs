@@ -99,7 +99,6 @@ impl<T: Real> Edge<T> {
     }
 }
 
-
 /// A triangle, ready to be measured from.
 #[derive(Clone, Copy)]
 struct Triangle<T> {
@@ -136,11 +135,9 @@ impl<T: Real> Triangle<T> {
     #[inline(always)]
     fn draw(&self, code: u32, reach: T, window: Window, distance: &mut [Lanes<T>], winner: &mut [[u32; LANES]]) {
         let [a, b, c] = self.corners;
-        let Some((top, bottom)) = pixel_range(
-            a[1].min(b[1]).min(c[1]) - reach,
-            a[1].max(b[1]).max(c[1]) + reach,
-            window.rows,
-        ) else {
+        let Some((top, bottom)) =
+            pixel_range(a[1].min(b[1]).min(c[1]) - reach, a[1].max(b[1]).max(c[1]) + reach, window.rows)
+        else {
             return;
         };
         for row in top..=bottom {

@@ -34,7 +34,7 @@ use self::distance::Cover;
 use self::distance_vjp::CoverVjp;
 use self::profile::PixelProfile;
 use super::tile::{CoverageModel, Tile, TileRenderer, TileScratch};
-use super::{EdgeProfile, RenderError};
+use super::{ContourDistance, EdgeProfile, RenderError};
 use crate::dims::ImageSize;
 use crate::real::Real;
 use crate::simd::dispatch;
@@ -69,15 +69,15 @@ impl<T: Real, F: Triangulate> CoverageModel<T> for SoftTriangles<T, F> {
     type Record = TriangleRecord<T>;
 
     fn check(&self) -> Result<(), RenderError> {
-        self.edge.check()
+        ContourDistance { edge: self.edge }.check()
     }
 
     fn reach_px(&self, unit_px: T) -> T {
-        PixelProfile::new(&self.edge, unit_px).reach
+        ContourDistance { edge: self.edge }.reach_px(unit_px)
     }
 
     fn smallest_coverage(&self) -> T {
-        self.edge.smallest_coverage()
+        ContourDistance { edge: self.edge }.smallest_coverage()
     }
 
     fn cover(
@@ -89,7 +89,11 @@ impl<T: Real, F: Triangulate> CoverageModel<T> for SoftTriangles<T, F> {
     ) -> Result<(), RenderError> {
         self.faces.triangulate(outline_px, &mut record.faces);
         if let Some(&vertex) = record.faces.as_flattened().iter().find(|&&vertex| vertex >= outline_px.len()) {
-            return Err(RenderError::Setting { what: "face", value: T::of_usize(vertex).as_f64(), must: "a vertex of its outline" });
+            return Err(RenderError::Setting {
+                what: "face",
+                value: T::of_usize(vertex).as_f64(),
+                must: "a vertex of its outline",
+            });
         }
         let profile = PixelProfile::new(&self.edge, T::of_usize(size.unit_px()));
         dispatch(Cover { profile, outline_px, size, tile, record });

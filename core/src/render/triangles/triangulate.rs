@@ -39,42 +39,42 @@ pub struct Delaunay;
 
 impl Triangulate for Delaunay {
     fn triangulate<T: Real>(&self, outline: &[[T; 2]], faces: &mut Vec<Face>) -> TriangulationReport {
-    faces.clear();
-    let mut report = TriangulationReport::default();
-    let mut mesh = ConstrainedDelaunayTriangulation::<Point2<f64>>::new();
-    // Spade numbers its vertices in the order in which they appear; this maps them back to the outline.
-    let mut first_seen = Vec::with_capacity(outline.len());
-    let mut handles = Vec::with_capacity(outline.len());
-    for (k, &[x, y]) in outline.iter().enumerate() {
-        let point = spade::mitigate_underflow(Point2::new(x.as_f64(), y.as_f64()));
-        match mesh.insert(point) {
-            Ok(handle) => {
-                if handle.index() == first_seen.len() {
-                    first_seen.push(k);
+        faces.clear();
+        let mut report = TriangulationReport::default();
+        let mut mesh = ConstrainedDelaunayTriangulation::<Point2<f64>>::new();
+        // Spade numbers its vertices in the order in which they appear; this maps them back to the outline.
+        let mut first_seen = Vec::with_capacity(outline.len());
+        let mut handles = Vec::with_capacity(outline.len());
+        for (k, &[x, y]) in outline.iter().enumerate() {
+            let point = spade::mitigate_underflow(Point2::new(x.as_f64(), y.as_f64()));
+            match mesh.insert(point) {
+                Ok(handle) => {
+                    if handle.index() == first_seen.len() {
+                        first_seen.push(k);
+                    }
+                    handles.push(handle);
                 }
-                handles.push(handle);
+                Err(_) => report.refused_vertices += 1,
             }
-            Err(_) => report.refused_vertices += 1,
         }
-    }
-    let Some(&last) = handles.last() else { return report };
-    let mut from = last;
-    for &to in &handles {
-        if from != to && mesh.try_add_constraint(from, to).is_empty() && !mesh.exists_constraint(from, to) {
-            report.crossing_edges += 1;
+        let Some(&last) = handles.last() else { return report };
+        let mut from = last;
+        for &to in &handles {
+            if from != to && mesh.try_add_constraint(from, to).is_empty() && !mesh.exists_constraint(from, to) {
+                report.crossing_edges += 1;
+            }
+            from = to;
         }
-        from = to;
-    }
-    for face in mesh.inner_faces() {
-        let [a, b, c] = face.vertices().map(|vertex| first_seen[vertex.fix().index()]);
-        let third = T::of(1.0 / 3.0);
-        let centroid = [0, 1].map(|i| third * outline[a][i] + third * outline[b][i] + third * outline[c][i]);
-        if is_inside(outline, centroid) {
-            faces.push([a, b, c]);
+        for face in mesh.inner_faces() {
+            let [a, b, c] = face.vertices().map(|vertex| first_seen[vertex.fix().index()]);
+            let third = T::of(1.0 / 3.0);
+            let centroid = [0, 1].map(|i| third * outline[a][i] + third * outline[b][i] + third * outline[c][i]);
+            if is_inside(outline, centroid) {
+                faces.push([a, b, c]);
+            }
         }
+        report
     }
-    report
-}
 }
 
 /// Whether a point lies inside a closed outline under the even-odd rule.
