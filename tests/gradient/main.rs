@@ -1,4 +1,5 @@
 //! The gradient tests; a module per concern.
 
 mod efd;
+mod exact;
 mod scene;

@@ -1,4 +1,5 @@
 //! What the tests share: strategies, finite differences, golden numbers.
 
+pub mod coverage;
 pub mod finite_difference;
 pub mod strategy;

@@ -70,3 +70,35 @@ pub fn star_polygon(vertex_count: Range<usize>) -> impl Strategy<Value = Vec<[f6
             .collect()
     })
 }
+
+/// Outlines that nobody should draw: up to 12 vertices of any size, repeated, collinear, crossing, far outside; in
+/// pixels of an image of 24 x 24.
+pub fn wild_outline() -> impl Strategy<Value = Vec<[f64; 2]>> {
+    let coordinate = prop_oneof![
+        4 => -8.0..32.0,
+        2 => (-2_i8..26).prop_map(f64::from),
+        1 => (-2_i8..26).prop_map(|x| f64::from(x) + 0.5),
+        1 => -1e5..1e5,
+        1 => prop::sample::select(vec![0.0, -0.0, 24.0, 1e-30, 1e30, -1e30, 1e300, -1e300]),
+    ];
+    let vertex = (coordinate.clone(), coordinate).prop_map(|(x, y)| [x, y]);
+    // The second number picks an earlier vertex to repeat.
+    vec((vertex, prop::option::weighted(0.2, any::<prop::sample::Index>())), 1..13).prop_map(|picks| {
+        let mut outline: Vec<[f64; 2]> = Vec::with_capacity(picks.len());
+        for (vertex, repeat) in picks {
+            let vertex = match repeat {
+                Some(index) if !outline.is_empty() => outline[index.index(outline.len())],
+                _ => vertex,
+            };
+            outline.push(vertex);
+        }
+        outline
+    })
+}
+
+/// A star polygon of 3 to 24 vertices in pixels, wholly inside an image of 24 x 24.
+pub fn star_px() -> impl Strategy<Value = Vec<[f64; 2]>> {
+    (star_polygon(3..25), 2.0..8.0, prop::array::uniform2(9.0..15.0)).prop_map(|(star, radius, center)| {
+        star.into_iter().map(|[x, y]| [radius * x + center[0], radius * y + center[1]]).collect()
+    })
+}
