@@ -1,8 +1,10 @@
-//! Bench `efd`: 4 objects, 16 harmonics, 64 vertices, f32; an iteration is the whole scene of 4.
+//! Bench `efd`: 16 harmonics, 64 vertices, f32; an iteration of the inverse is a whole scene of 4 objects, one of the
+//! forward is one contour.
 
 use core::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
+use dvp_core::Efd;
 use dvp_core::shape::OutlineBasis;
 
 const OBJECTS: usize = 4;
@@ -20,6 +22,10 @@ fn efd(criterion: &mut Criterion) {
             }
             black_box(&mut outlines);
         });
+    });
+    let contour = outlines[0];
+    criterion.bench_function("efd/forward/64x16", |bencher| {
+        bencher.iter(|| Efd::from_contour(black_box(&contour), HARMONICS));
     });
     let mut grad_rows = [[[0.0; 4]; HARMONICS]; OBJECTS];
     criterion.bench_function("efd/inverse_vjp/64x16", |bencher| {

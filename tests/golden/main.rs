@@ -1,1 +1,6 @@
 //! The golden tests; a module per concern.
+
+extern crate alloc;
+
+mod efd;
+mod symmetry;

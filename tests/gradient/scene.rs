@@ -68,6 +68,8 @@ fn cotangent(drawing: &Drawing<f64>, numbers: &[f64]) -> DrawingGrad<f64> {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
     #[test]
     fn draw_vjp_matches_differences(
         scene in strategy::scene(0..4, 1..40),

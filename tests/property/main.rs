@@ -1,7 +1,9 @@
 //! The property tests; a module per concern.
 
+mod efd;
 mod exact;
 mod hard;
 mod matching;
 mod scene;
+mod symmetry;
 mod triangles;

@@ -2,4 +2,5 @@
 
 pub mod coverage;
 pub mod finite_difference;
+pub mod golden;
 pub mod strategy;

@@ -3,6 +3,7 @@
 use core::f64::consts::PI;
 use core::ops::Range;
 
+use dvp_core::shape::OutlineBasis;
 use dvp_core::{Efd, Object, Pose, Scene};
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -101,4 +102,13 @@ pub fn star_px() -> impl Strategy<Value = Vec<[f64; 2]>> {
     (star_polygon(3..25), 2.0..8.0, prop::array::uniform2(9.0..15.0)).prop_map(|(star, radius, center)| {
         star.into_iter().map(|[x, y]| [radius * x + center[0], radius * y + center[1]]).collect()
     })
+}
+
+/// The unit outline of `efd`; no vertices if `vertex_count` is too small for one.
+#[must_use]
+pub fn outline(efd: &Efd<f64>, vertex_count: usize) -> Vec<[f64; 2]> {
+    let mut outline = std::vec![[0.0; 2]; vertex_count];
+    let written = OutlineBasis::new(vertex_count, efd.harmonic_count().max(1))
+        .and_then(|basis| basis.outline(efd.rows(), &mut outline));
+    if written.is_ok() { outline } else { Vec::new() }
 }

@@ -7,21 +7,27 @@ use num_traits::Float;
 use super::ShapeError;
 use crate::real::Real;
 
-/// Vertices per block of the table: one AVX-512 register of f32, two of AVX2, two of f64.
+/// Numbers side by side in the tables: one AVX-512 register of f64, half of one of f32.
 pub(super) const LANES: usize = 8;
+
+/// Cosines, then sines, of [`LANES`] angles.
+type Entry<T> = [[T; LANES]; 2];
 
 /// Cosines and sines of the harmonics 1..=N at the parameters t_i = i / (K - 1), i = 0..K: both end points are there, so
 /// that the last vertex repeats the first.
 ///
-/// Since cos(2 pi n (1 - t)) = cos(2 pi n t) and sin(2 pi n (1 - t)) = -sin(2 pi n t), the table holds the first half of
+/// Since cos(2 pi n (1 - t)) = cos(2 pi n t) and sin(2 pi n (1 - t)) = -sin(2 pi n t), the tables hold the first half of
 /// the vertices; the second half is their mirror, which halves memory and arithmetic.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OutlineBasis<T> {
     vertex_count: usize,
     harmonic_count: usize,
-    /// Entry `block * harmonic_count + n - 1`: cosines, then sines, of harmonic n at the [`LANES`] vertices of the block;
-    /// zero past the middle of the outline.
-    pub(super) table: Vec<[[T; LANES]; 2]>,
+    /// The way forward, lanes of vertices: entry `block * harmonic_count + n - 1` holds harmonic n at the vertices
+    /// `block * LANES..`, zero past the middle of the outline.
+    by_vertex: Vec<Entry<T>>,
+    /// The way back, lanes of harmonics: entry `group * half + i` holds the harmonics `group * LANES + 1..` at vertex i,
+    /// zero past the last harmonic. A second table, so that neither way adds across lanes.
+    pub(super) by_harmonic: Vec<Entry<T>>,
 }
 
 impl<T: Real> OutlineBasis<T> {
@@ -38,24 +44,14 @@ impl<T: Real> OutlineBasis<T> {
         }
         let half = vertex_count.div_ceil(2);
         let edges = vertex_count - 1;
-        let mut table = Vec::with_capacity(half.div_ceil(LANES) * harmonic_count);
-        for first in (0..half).step_by(LANES) {
-            for n in 1..=harmonic_count {
-                let mut entry = [[T::zero(); LANES]; 2];
-                let [cosines, sines] = &mut entry;
-                let lanes = cosines.iter_mut().zip(sines).take(half - first);
-                for (lane, (cos, sin)) in lanes.enumerate() {
-                    // Reduced as integers: the angle of a high harmonic loses no digits.
-                    let turn = (n % edges) * (first + lane) % edges;
-                    let angle = core::f64::consts::TAU * T::of_usize(turn).as_f64() / T::of_usize(edges).as_f64();
-                    *cos = T::of(Float::cos(angle));
-                    // At half a turn the sine is 0, not the sine of the rounded pi: the middle vertex is its own mirror.
-                    *sin = if 2 * turn == edges { T::zero() } else { T::of(Float::sin(angle)) };
-                }
-                table.push(entry);
-            }
-        }
-        Ok(Self { vertex_count, harmonic_count, table })
+        let by_vertex = (0..half).step_by(LANES).flat_map(|first| {
+            (1..=harmonic_count).map(move |n| entry(|lane| (first + lane < half).then(|| wave(n, first + lane, edges))))
+        });
+        let by_harmonic = (1..=harmonic_count).step_by(LANES).flat_map(|first| {
+            (0..half).map(move |i| entry(|lane| (first + lane <= harmonic_count).then(|| wave(first + lane, i, edges))))
+        });
+        let (by_vertex, by_harmonic) = (by_vertex.collect(), by_harmonic.collect());
+        Ok(Self { vertex_count, harmonic_count, by_vertex, by_harmonic })
     }
 
     /// Vertices per outline, K, the repeated one counted.
@@ -79,9 +75,9 @@ impl<T: Real> OutlineBasis<T> {
     #[inline]
     pub fn outline(&self, rows: &[[T; 4]], vertices: &mut [[T; 2]]) -> Result<(), ShapeError> {
         self.check(rows.len(), vertices.len())?;
-        let half = self.vertex_count.div_ceil(2);
+        let half = self.half();
         let last = self.vertex_count - 1;
-        for (block, entries) in self.table.chunks_exact(self.harmonic_count).enumerate() {
+        for (block, entries) in self.by_vertex.chunks_exact(self.harmonic_count).enumerate() {
             let zero = [T::zero(); LANES];
             let (mut x_even, mut x_odd, mut y_even, mut y_odd) = (zero, zero, zero, zero);
             for ([cos, sin], &[a, b, c, d]) in entries.iter().zip(rows) {
@@ -110,4 +106,24 @@ impl<T: Real> OutlineBasis<T> {
         }
         Ok(())
     }
+
+    /// Vertices in the tables: half of them, the middle one included.
+    pub(super) fn half(&self) -> usize {
+        self.vertex_count.div_ceil(2)
+    }
+}
+
+/// An entry of the cosine and sine of each lane, zero where there is none.
+fn entry<T: Real>(lane: impl Fn(usize) -> Option<[f64; 2]>) -> Entry<T> {
+    let lanes: [[f64; 2]; LANES] = core::array::from_fn(|i| lane(i).unwrap_or_default());
+    [lanes.map(|[cos, _]| T::of(cos)), lanes.map(|[_, sin]| T::of(sin))]
+}
+
+/// Cosine and sine of harmonic `n` at vertex `i` of an outline of `edges` edges.
+fn wave(n: usize, i: usize, edges: usize) -> [f64; 2] {
+    // Reduced as integers: the angle of a high harmonic loses no digits.
+    let turn = (n % edges) * i % edges;
+    let (sin, cos) = Float::sin_cos(core::f64::consts::TAU * f64::of_usize(turn) / f64::of_usize(edges));
+    // At half a turn the sine is 0, not the sine of the rounded pi: the middle vertex is its own mirror.
+    [cos, if 2 * turn == edges { 0.0 } else { sin }]
 }

@@ -6,10 +6,19 @@
 //! |---|---|---|
 //! | `efd` | descriptors to outline, [`OutlineBasis::outline`] | `efd_vjp` |
 //! | `efd_model` | [`EfdModel`], descriptors as a [`ShapeModel`] | same file |
+//! | `fourier` | closed polygon to descriptors, [`Efd::from_contour`] | none: data, not parameters |
+//! | `normalize` | descriptors to their normal form, [`Efd::normalize`] | `normalize_vjp` |
+//! | `measure` | area, perimeter, truncation error | |
+//! | `symmetry` | which turns map an outline on itself, [`Efd::symmetry`] | |
 
 mod efd;
 mod efd_model;
 mod efd_vjp;
+mod fourier;
+mod measure;
+mod normalize;
+mod normalize_vjp;
+mod symmetry;
 #[cfg(test)]
 mod tests;
 
@@ -20,6 +29,8 @@ use crate::real::Real;
 
 pub use efd::OutlineBasis;
 pub use efd_model::EfdModel;
+pub use normalize::Normalized;
+pub use symmetry::{REFERENCE_SYMMETRY_HARMONICS, REFERENCE_SYMMETRY_THRESHOLD, SYMMETRY_TOLERANCE, Symmetry};
 
 /// Vertices of an outline in the reference system: 64 parameters t = i / 63, both end points included.
 pub const REFERENCE_VERTICES: usize = 64;

@@ -1,3 +1,5 @@
+#![expect(clippy::float_cmp, reason = "numbers exact by construction")]
+
 use super::*;
 
 #[test]
@@ -18,7 +20,7 @@ fn the_table_gives_the_defining_sum() {
     // Vertex counts around the block size, odd and even.
     for vertex_count in [4, 5, 15, 16, 17, 63, 64, 65, 130, 300] {
         let basis = OutlineBasis::<f64>::new(vertex_count, 7).unwrap();
-        let rows: Vec<[f64; 4]> = (1..=7).map(|n| f64::from(n)).map(|n| [1.0 / n, 0.3, -0.2 * n, 0.1]).collect();
+        let rows: Vec<[f64; 4]> = (1..=7).map(f64::from).map(|n| [1.0 / n, 0.3, -0.2 * n, 0.1]).collect();
         let mut outline = vec![[0.0; 2]; vertex_count];
         basis.outline(&rows, &mut outline).unwrap();
         for (i, vertex) in outline.iter().enumerate() {
@@ -46,4 +48,44 @@ fn wrong_lengths_are_refused() {
     assert_eq!(error, Err(ShapeError::Length { what: "outline", expected: 64, len: 63 }));
     let error = EfdModel::new(basis).outline(&[0.0; 7], &mut [[0.0; 2]; 64]);
     assert_eq!(error, Err(ShapeError::Length { what: "parameters", expected: 8, len: 7 }));
+}
+
+#[test]
+fn descriptors_of_a_square_by_hand() {
+    // Corners (1, 1), (-1, 1), (-1, -1), (1, -1): perimeter 8, so x falls along the first edge with dx/dt = -1 per unit
+    // length. a_1 = 8 / (2 pi^2) sum dx/dt (cos phi_end - cos phi_start), phi = 0, pi/2, pi, 3 pi/2:
+    // edge 1: -(0 - 1) = 1, edge 3: +(0 - -1) = 1, so a_1 = 8 / pi^2; b_1: edge 1: -(1 - 0), edge 3: -1 - 0: -8 / pi^2.
+    let square = [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]];
+    let (efd, center) = Efd::<f64>::from_contour(&square, 1).unwrap();
+    let k = 8.0 / (core::f64::consts::PI * core::f64::consts::PI);
+    for (value, expected) in efd.rows()[0].iter().zip([k, -k, k, k]) {
+        assert!((value - expected).abs() < 1e-15, "{efd:?}");
+    }
+    assert_eq!(center, [0.0, 0.0]);
+}
+
+#[test]
+fn contours_without_an_outline_are_refused() {
+    let line = [[0.0, 0.0], [1.0, 0.0], [1.0, 0.0], [0.0, 0.0]];
+    assert_eq!(Efd::<f32>::from_contour(&line, 4), Err(ShapeError::TooFewPoints { len: 2 }));
+    assert_eq!(Efd::<f32>::from_contour(&[], 4), Err(ShapeError::TooFewPoints { len: 0 }));
+    let broken = [[0.0, 0.0], [1.0, f32::NAN], [1.0, 1.0]];
+    assert_eq!(Efd::from_contour(&broken, 4), Err(ShapeError::NotFinite { index: 1 }));
+    assert_eq!(Efd::<f32>::zeros(3).normalize(), Err(ShapeError::Degenerate));
+    assert_eq!(Efd::<f32>::zeros(0).normalize(), Err(ShapeError::Degenerate));
+}
+
+#[test]
+fn a_shape_drawn_twice_is_the_shape() {
+    // e^(2it) + e^(6it) / 4 is e^(it) + e^(3it) / 4 run twice: two-fold, as its frequencies 1 and 3 say.
+    let twice = Efd::new(vec![[0.0; 4], [1.0, 0.0, 0.0, 1.0], [0.0; 4], [0.0; 4], [0.0; 4], [0.25, 0.0, 0.0, 0.25]]);
+    assert_eq!(twice.symmetry(0.01), Symmetry::Finite(2));
+    assert_eq!(Efd::<f64>::zeros(3).symmetry(0.01), Symmetry::Continuous);
+}
+
+#[test]
+fn the_square_of_the_data_runs_clockwise_and_has_four_turns() {
+    // Frequencies -1 and 3, whose difference is 4; differences from +1 would say 2.
+    let square = Efd::new(vec![[1.0, 0.0, 0.0, -1.0], [0.0; 4], [0.109, 0.0, 0.0, 0.109]]);
+    assert_eq!(square.symmetry(0.02), Symmetry::Finite(4));
 }

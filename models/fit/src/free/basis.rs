@@ -19,7 +19,8 @@ impl<T: Real> Basis<T> {
             rows.push(T::one());
             for n in 1..=harmonics {
                 let turn = (n * i) % (vertex_count - 1);
-                let angle = core::f64::consts::TAU * T::of_usize(turn).as_f64() / T::of_usize(vertex_count - 1).as_f64();
+                let angle =
+                    core::f64::consts::TAU * T::of_usize(turn).as_f64() / T::of_usize(vertex_count - 1).as_f64();
                 let (sin, cos) = num_traits::Float::sin_cos(angle);
                 rows.push(T::of(cos));
                 rows.push(T::of(sin));

@@ -176,16 +176,11 @@ fn assemble<T: Real>(
         let mut normal = [(b[1] - a[1]) * orientation, -(b[0] - a[0]) * orientation];
         if u <= T::zero() || u >= T::one() {
             // Beside a vertex both its edges tell the side.
-            let (c, d) = if u <= T::zero() {
-                (vertices[(at + edges - 1) % edges], a)
-            } else {
-                (b, vertices[(at + 2) % edges])
-            };
+            let (c, d) =
+                if u <= T::zero() { (vertices[(at + edges - 1) % edges], a) } else { (b, vertices[(at + 2) % edges]) };
             let (l1, l2) = (length(a, b), length(c, d));
-            normal = [
-                normal[0] / l1 + (d[1] - c[1]) * orientation / l2,
-                normal[1] / l1 - (d[0] - c[0]) * orientation / l2,
-            ];
+            normal =
+                [normal[0] / l1 + (d[1] - c[1]) * orientation / l2, normal[1] / l1 - (d[0] - c[0]) * orientation / l2];
         }
         let side = offset[0] * normal[0] + offset[1] * normal[1];
         let sign = if side < T::zero() { -T::one() } else { T::one() };

@@ -150,7 +150,8 @@ impl<T: Real> Edge<T> {
     #[inline(always)]
     fn closest(&self, point: [T; 2]) -> (T, T, [T; 2]) {
         let d = [point[0] - self.start[0], point[1] - self.start[1]];
-        let u = ((d[0] * self.step[0] + d[1] * self.step[1]) * self.inverse_length_squared).max(T::zero()).min(T::one());
+        let u =
+            ((d[0] * self.step[0] + d[1] * self.step[1]) * self.inverse_length_squared).max(T::zero()).min(T::one());
         let offset = [d[0] - u * self.step[0], d[1] - u * self.step[1]];
         (offset[0] * offset[0] + offset[1] * offset[1], u, offset)
     }
