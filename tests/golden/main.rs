@@ -3,4 +3,5 @@
 extern crate alloc;
 
 mod efd;
+mod render_contour;
 mod symmetry;

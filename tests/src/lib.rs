@@ -2,5 +2,6 @@
 
 pub mod coverage;
 pub mod finite_difference;
+pub mod fixture;
 pub mod golden;
 pub mod strategy;
