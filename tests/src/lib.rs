@@ -5,3 +5,4 @@ pub mod finite_difference;
 pub mod fixture;
 pub mod golden;
 pub mod strategy;
+pub mod draw_svg;

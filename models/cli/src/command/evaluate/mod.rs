@@ -1,0 +1,170 @@
+//! `dvp evaluate`: predictions against a data set, in the paper's columns.
+
+mod report;
+mod score;
+
+use std::path::PathBuf;
+
+use anyhow::{Context, Result, bail};
+use clap::{Args, ValueEnum};
+use dvp_core::{Image, Scene};
+use rayon::prelude::*;
+
+use self::report::{Row, Totals};
+use self::score::{Score, Scratch, score_images, score_masks};
+use super::options::{PaintArguments, with_threads};
+use super::{Console, Outcome, progress};
+use crate::format::{
+    DEFAULT_MAX_PIXELS, DataSet, Place, Sample, SceneJson, read_npy, read_picture, read_scene, write_atomic,
+};
+use crate::paint::Painter;
+
+/// Scores a folder of predictions (STEM.json, as `dvp fit` writes them) against a data set.
+///
+/// MAE, MSE and SSIM compare images; IoU (pooled over all images), ARI and the share of exact object counts need the
+/// true scenes (scenes.jsonl). Missing and bad predictions are listed and counted; they are in no mean.
+#[derive(Debug, Args)]
+#[command(before_help = "Example: dvp evaluate out data\n         \
+                         dvp evaluate out data --against float --json")]
+pub(super) struct Arguments {
+    /// Folder of predictions
+    predictions: PathBuf,
+    /// Folder of a data set: scenes.jsonl and pictures, or pictures alone
+    data: PathBuf,
+    /// What reconstructions are compared with
+    #[arg(long, value_enum, default_value_t)]
+    against: Against,
+    /// NumPy file of float pixels to compare with; as many images as it holds are scored
+    #[arg(long, value_name = "FILE", conflicts_with = "against")]
+    npy: Option<PathBuf>,
+    #[command(flatten)]
+    paint: PaintArguments,
+    /// Largest picture that is read
+    #[arg(long, default_value_t = DEFAULT_MAX_PIXELS, value_name = "N")]
+    max_pixels: usize,
+    /// Threads; 0 means one per core
+    #[arg(long, default_value_t = 0, value_name = "N")]
+    threads: usize,
+    /// Print the figures as JSON
+    #[arg(long)]
+    json: bool,
+    /// Write the figures of every image as CSV
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+}
+
+/// What reconstructions are compared with.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+enum Against {
+    /// The pictures of the data set
+    #[default]
+    Png,
+    /// The true scenes, rendered again without rounding to 8 bits
+    Float,
+}
+
+/// What every image is scored with.
+struct Judge<'a> {
+    arguments: &'a Arguments,
+    data: DataSet<f64>,
+    stack: Option<Vec<Image<f64>>>,
+    painter: Painter,
+}
+
+pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Outcome> {
+    if !arguments.predictions.is_dir() {
+        bail!("{}: no folder of predictions", arguments.predictions.display());
+    }
+    let mut data = DataSet::open(&arguments.data)?;
+    let stack = arguments.npy.as_ref().map(|path| read_npy(path, arguments.max_pixels)).transpose()?;
+    if let Some(stack) = &stack {
+        data.samples.truncate(stack.len());
+    }
+    let judge = Judge { arguments, data, stack, painter: arguments.paint.painter() };
+    let bar = progress::bar(judge.data.samples.len());
+    let one = |scratch: &mut Scratch, (index, sample): (usize, &Sample)| {
+        let result = judge.score(index, sample, scratch);
+        bar.inc(1);
+        Row { stem: sample.stem.clone(), result: result.map_err(|error| format!("{error:#}")) }
+    };
+    let samples = &judge.data.samples;
+    let work = || samples.par_iter().enumerate().map_init(Scratch::default, one).collect();
+    let rows: Vec<Row> = with_threads(arguments.threads, work)?;
+    bar.finish_and_clear();
+    for row in &rows {
+        if let Err(error) = &row.result {
+            writeln!(console.err, "error: {}: {error}", row.stem)?;
+        }
+    }
+    if let Some(path) = &arguments.csv {
+        write_atomic(path, report::csv(&rows).as_bytes())?;
+    }
+    let totals = Totals::of(&rows);
+    if arguments.json {
+        writeln!(console.out, "{}", serde_json::to_string_pretty(&totals)?)?;
+    } else {
+        writeln!(console.out, "{}", totals.table())?;
+    }
+    Ok(if totals.failed.is_empty() { Outcome::Done } else { Outcome::Partly })
+}
+
+impl Judge<'_> {
+    fn score(&self, index: usize, sample: &Sample, scratch: &mut Scratch) -> Result<Score> {
+        let (predicted, found) = self.prediction(sample)?;
+        let truth = match &sample.scene {
+            Some((json, place)) => Some(json.to_scene(Some(&self.data.bank), place)?),
+            None => None,
+        };
+        let image = self.true_image(index, sample, truth.as_ref(), &predicted)?;
+        let place = Place::file(&self.arguments.predictions.join(&sample.stem));
+        if let Some(size) = predicted.size(&place)?
+            && size != image.size()
+        {
+            let (own, other) = (size, image.size());
+            bail!("predicted {} x {} pixels for {} x {}", own.width(), own.height(), other.width(), other.height());
+        }
+        let painted = self.painter.paint(&found, image.size())?;
+        let mut score = score_images(painted.view(), image.view(), scratch)?;
+        if let Some(truth) = &truth {
+            score.masks = Some(score_masks(&self.painter, truth, &found, image.size(), scratch)?);
+        }
+        Ok(score)
+    }
+
+    fn prediction(&self, sample: &Sample) -> Result<(SceneJson, Scene<f64>)> {
+        let path = self.arguments.predictions.join(format!("{}.json", sample.stem));
+        if !path.exists() {
+            bail!("no prediction {}", path.display());
+        }
+        let json = read_scene(&path)?;
+        let scene = json.to_scene(Some(&self.data.bank), &Place::file(&path))?;
+        Ok((json, scene))
+    }
+
+    /// The image to compare with. A scene without a size of its own takes that of its picture, or the prediction's.
+    fn true_image(
+        &self,
+        index: usize,
+        sample: &Sample,
+        truth: Option<&Scene<f64>>,
+        predicted: &SceneJson,
+    ) -> Result<Image<f64>> {
+        if let Some(stack) = &self.stack {
+            return stack.get(index).cloned().context("the NumPy file holds no such image");
+        }
+        let picture = || read_picture(&sample.image, self.arguments.max_pixels);
+        if self.arguments.against == Against::Png {
+            return Ok(picture()?);
+        }
+        let scene = truth.context("--against float needs the true scenes (scenes.jsonl)")?;
+        let own = sample.scene.as_ref().and_then(|(json, place)| json.size(place).transpose()).transpose()?;
+        let size = match own {
+            Some(size) => size,
+            None if sample.image.exists() => picture()?.size(),
+            None => predicted
+                .size(&Place::file(&sample.image))?
+                .context("neither the true scene nor the prediction says its size")?,
+        };
+        Ok(self.painter.paint(scene, size)?)
+    }
+}

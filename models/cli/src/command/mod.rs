@@ -1,0 +1,77 @@
+//! The sub-commands: arguments, threads, tables.
+//!
+//! Results go to the first stream (standard output), complaints and progress to the second (standard error). Exit codes:
+//! 0 if all was done, 1 if something failed (everything else was done all the same), 2 for wrong usage.
+
+mod evaluate;
+mod generate;
+mod options;
+mod progress;
+mod render;
+
+use std::ffi::OsString;
+use std::io::Write;
+
+use anyhow::Result;
+use clap::{Parser, Subcommand};
+
+/// Where a command writes.
+struct Console<'a> {
+    out: &'a mut (dyn Write + Send),
+    err: &'a mut (dyn Write + Send),
+}
+
+/// What a command came to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Outcome {
+    /// All was done.
+    Done,
+    /// Some inputs failed; each was reported.
+    Partly,
+}
+
+/// Turns pictures into the flat objects they are made of, and back.
+#[derive(Debug, Parser)]
+#[command(name = "dvp", version, before_help = "Example: dvp fit picture.png --out out")]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Generate(generate::Arguments),
+    Render(render::Arguments),
+    Evaluate(evaluate::Arguments),
+}
+
+/// Runs the command with the arguments `args` (the program's name first) and returns its exit code.
+pub fn run(args: impl IntoIterator<Item = OsString>, out: &mut (dyn Write + Send), err: &mut (dyn Write + Send)) -> u8 {
+    let cli = match Cli::try_parse_from(args) {
+        Ok(cli) => cli,
+        Err(error) => {
+            // Help and version come as "errors" too, for standard output and with code 0.
+            let stream: &mut (dyn Write + Send) = if error.use_stderr() { err } else { out };
+            let _ = write!(stream, "{}", error.render());
+            return u8::from(error.use_stderr()) * 2;
+        }
+    };
+    let mut console = Console { out, err };
+    match dispatch(cli.command, &mut console) {
+        Ok(Outcome::Done) => 0,
+        Ok(Outcome::Partly) => 1,
+        Err(error) => {
+            // Nobody is left to tell if this fails.
+            let _ = writeln!(console.err, "error: {error:#}");
+            1
+        }
+    }
+}
+
+fn dispatch(command: Command, console: &mut Console<'_>) -> Result<Outcome> {
+    match command {
+        Command::Generate(arguments) => generate::run(&arguments, console),
+        Command::Render(arguments) => render::run(&arguments, console),
+        Command::Evaluate(arguments) => evaluate::run(&arguments, console),
+    }
+}
