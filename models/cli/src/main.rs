@@ -1,2 +1,8 @@
 //! The command `dvp`.
-fn main() {}
+
+use std::io::{stderr, stdout};
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    ExitCode::from(dvp::command::run(std::env::args_os(), &mut stdout(), &mut stderr()))
+}

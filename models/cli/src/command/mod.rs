@@ -4,6 +4,7 @@
 //! 0 if all was done, 1 if something failed (everything else was done all the same), 2 for wrong usage.
 
 mod evaluate;
+mod fit;
 mod generate;
 mod options;
 mod progress;
@@ -42,6 +43,7 @@ struct Cli {
 enum Command {
     Generate(generate::Arguments),
     Render(render::Arguments),
+    Fit(fit::Arguments),
     Evaluate(evaluate::Arguments),
 }
 
@@ -72,6 +74,7 @@ fn dispatch(command: Command, console: &mut Console<'_>) -> Result<Outcome> {
     match command {
         Command::Generate(arguments) => generate::run(&arguments, console),
         Command::Render(arguments) => render::run(&arguments, console),
+        Command::Fit(arguments) => fit::run(&arguments, console),
         Command::Evaluate(arguments) => evaluate::run(&arguments, console),
     }
 }

@@ -58,14 +58,20 @@ impl<T: Real> DataSet<T> {
 }
 
 /// The bank that scenes in `folder` refer to.
-pub(crate) fn bank_near<T: Real>(folder: &Path) -> Result<Bank<T>, FormatError> {
+///
+/// # Errors
+/// [`FormatError`] if there is a bank that cannot be read.
+pub fn bank_near<T: Real>(folder: &Path) -> Result<Bank<T>, FormatError> {
     let above = folder.join("..");
     let mut places = BANK_FILES.iter().flat_map(|name| [folder.join(name), above.join(name)]);
     places.find(|path| path.is_file()).map_or_else(mdshr_bank, |path| read_bank(&path))
 }
 
 /// The pictures of a folder, by name; not of its sub-folders.
-pub(crate) fn pictures_of(folder: &Path) -> Result<Vec<PathBuf>, FormatError> {
+///
+/// # Errors
+/// [`FormatError::Read`] if the folder cannot be listed.
+pub fn pictures_of(folder: &Path) -> Result<Vec<PathBuf>, FormatError> {
     let refused = |source| FormatError::Read { path: folder.to_path_buf(), source };
     let mut pictures = Vec::new();
     for entry in fs::read_dir(folder).map_err(refused)? {

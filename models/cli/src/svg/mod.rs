@@ -9,12 +9,11 @@
 //!
 //! Approximations: the softness of edges is left to the viewer's anti-aliasing; fully confident objects mix exactly
 //! except for the outermost pixel of the common part; objects with a confidence below 0.99 are drawn with that
-//! opacity, one over the other; outlines follow the smooth curve of the descriptors within 0.05 px, not the polygon of
-//! 64 vertices that renderers paint.
+//! opacity, one over the other; outlines pass the 64 vertices that renderers paint within 0.05 px, but as smooth curves.
 //!
 //! | file | holds |
 //! |---|---|
-//! | `path.rs` | descriptors to cubic Bezier curves within a tolerance |
+//! | `path.rs` | polygons to few lines and cubic Bezier curves |
 //! | `overlap.rs` | which sets of objects share pixels |
 //! | `write.rs` | the text |
 //!

@@ -1,22 +1,22 @@
 //! The text of an SVG file.
 
 use dvp_core::render::Compositing;
+use dvp_core::shape::{OutlineBasis, REFERENCE_VERTICES, ShapeError};
 use dvp_core::{ImageSize, Object, Real, Scene};
 
 use super::overlap::{Body, shared_regions};
-use super::path::{Curve, short};
+use super::path::{path_data, short};
 
 /// How far a path may stray from the outline, pixels.
 const TOLERANCE_PX: f64 = 0.05;
 /// Below it an object is drawn translucent instead of mixed; below its complement not at all.
 const SURE: f64 = 0.99;
-/// Points per outline when looking for overlaps.
-const OVERLAP_VERTICES: u32 = 64;
 
 /// What the text needs of an object.
 struct Shape {
     id: String,
-    rows: Vec<[f64; 4]>,
+    /// The unit outline, as renderers paint it.
+    outline: Vec<[f64; 2]>,
     center: [f64; 2],
     scale: f64,
     rotation: f64,
@@ -25,14 +25,21 @@ struct Shape {
 }
 
 /// The SVG text of a scene: a background and one path per object, pixels as user units.
-#[must_use]
-pub fn to_svg<T: Real>(scene: &Scene<T>, size: ImageSize) -> String {
+///
+/// # Errors
+/// None for scenes that came from files or fits; [`ShapeError`] is handed on.
+pub fn to_svg<T: Real>(scene: &Scene<T>, size: ImageSize) -> Result<String, ShapeError> {
     let unit = T::of_usize(size.unit_px()).as_f64();
     let [width, height] = [size.width(), size.height()].map(|n| T::of_usize(n).as_f64());
     // d2 = offset in the doubled frame is a distance of sqrt(offset)/2 scene units.
     let reach = scene.edge.offset.as_f64().max(0.0).sqrt() / 2.0 * unit;
-    let shapes: Vec<Shape> =
-        scene.objects.iter().enumerate().map(|(k, object)| Shape::of(k, object, unit)).filter(Shape::is_seen).collect();
+    let harmonics = scene.objects.iter().map(|object| object.efd.harmonic_count()).max().unwrap_or(1);
+    let basis = OutlineBasis::new(REFERENCE_VERTICES, harmonics.max(1))?;
+    let mut shapes = Vec::new();
+    for (k, object) in scene.objects.iter().enumerate() {
+        shapes.push(Shape::of(k, object, unit, &basis)?);
+    }
+    shapes.retain(Shape::is_seen);
     let mut text = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\">\n\
          <rect id=\"background\" width=\"{width}\" height=\"{height}\" fill=\"{}\"/>\n",
@@ -45,24 +52,26 @@ pub fn to_svg<T: Real>(scene: &Scene<T>, size: ImageSize) -> String {
         text.push_str(&mixtures(&shapes, reach, [width, height]));
     }
     text.push_str("</svg>\n");
-    text
+    Ok(text)
 }
 
 impl Shape {
-    fn of<T: Real>(k: usize, object: &Object<T>, unit: f64) -> Self {
-        Self {
+    fn of<T: Real>(k: usize, object: &Object<T>, unit: f64, basis: &OutlineBasis<T>) -> Result<Self, ShapeError> {
+        let mut outline = vec![[T::zero(); 2]; basis.vertex_count()];
+        basis.outline(object.efd.rows(), &mut outline)?;
+        Ok(Self {
             id: format!("object-{k}"),
-            rows: object.efd.rows().iter().map(|row| row.map(T::as_f64)).collect(),
+            outline: outline.into_iter().map(|vertex| vertex.map(T::as_f64)).collect(),
             center: object.pose.translation.map(|v| v.as_f64() * unit),
             scale: object.pose.scale.as_f64() * unit,
             rotation: object.pose.rotation.as_f64(),
             color: object.color.map(T::as_f64),
             confidence: object.confidence.as_f64(),
-        }
+        })
     }
 
     fn is_seen(&self) -> bool {
-        self.confidence > 1.0 - SURE && self.scale > 0.0 && !self.rows.is_empty()
+        self.confidence > 1.0 - SURE && self.scale > 0.0
     }
 
     /// The color stands on the group, so that `<use>` can draw the path in another one.
@@ -87,15 +96,14 @@ impl Shape {
             short(self.center[1], 3.0),
             short(self.rotation.to_degrees(), 3.0),
             short(self.scale, 3.0),
-            Curve { rows: &self.rows }.path_data(TOLERANCE_PX / self.scale),
+            path_data(&self.outline, TOLERANCE_PX / self.scale),
         )
     }
 
     fn body(&self, reach: f64) -> Body {
         let (sin, cos) = self.rotation.sin_cos();
-        let curve = Curve { rows: &self.rows };
-        let vertices = (0..OVERLAP_VERTICES).map(|i| {
-            let [x, y] = curve.point(f64::from(i) / f64::from(OVERLAP_VERTICES)).map(|v| v * self.scale);
+        let vertices = self.outline.iter().map(|vertex| {
+            let [x, y] = vertex.map(|v| v * self.scale);
             [self.center[0] + cos * x - sin * y, self.center[1] + sin * x + cos * y]
         });
         Body { vertices: vertices.collect(), reach }

@@ -1,0 +1,213 @@
+//! `dvp fit`: pictures to scenes.
+
+mod inputs;
+mod report;
+mod solver;
+
+use alloc::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail};
+use clap::Args;
+use dvp_core::render::Compositing;
+use dvp_core::{Image, ImageSize};
+use dvp_fit::{Fit, FitOptions};
+use rayon::prelude::*;
+
+use self::inputs::Input;
+use self::report::{FoundScene, Report};
+use self::solver::{Method, Scratch, Solver};
+use super::options::{BankChoice, CompositingName, with_threads};
+use super::{Console, Outcome, progress};
+use crate::format::{
+    DEFAULT_MAX_PIXELS, Place, SceneJson, encode_png, read_npy, read_picture, write_atomic,
+};
+use crate::paint::Painter;
+use crate::svg::to_svg;
+
+/// Finds the objects of pictures: shapes, poses and colors.
+///
+/// Writes for every picture STEM.json (the scene), STEM.svg (its outlines) and STEM.png (the reconstruction).
+#[derive(Debug, Args)]
+#[command(before_help = "Example: dvp fit picture.png --out out\n         \
+                         dvp fit photos/ 'more/*.jpg' --out out --json > fits.json")]
+pub(super) struct Arguments {
+    /// Pictures, folders of pictures, patterns, NumPy files (.npy) of float pixels
+    #[arg(required = true, value_name = "PICTURES")]
+    pictures: Vec<PathBuf>,
+    /// Folder to write to
+    #[arg(long, short, value_name = "DIR")]
+    out: PathBuf,
+    /// Known shapes: mdshr (heart, square, ellipse), a bank file, or none: shapes are found, too
+    #[arg(long, default_value = "none", value_name = "BANK")]
+    bank: BankChoice,
+    /// How scenes are found
+    #[arg(long, value_enum, default_value_t)]
+    method: Method,
+    /// Most objects per picture
+    #[arg(long, value_name = "N")]
+    max_objects: Option<usize>,
+    /// Objects per picture, for opt-iter and rand-opt-p, which cannot tell
+    #[arg(long, default_value_t = 4, value_name = "N")]
+    objects: usize,
+    /// Folder of STEM.json to start from, for opt-p
+    #[arg(long, value_name = "DIR")]
+    start: Option<PathBuf>,
+    /// Number that random starts are drawn from, for rand-opt-p
+    #[arg(long, default_value_t = 1234)]
+    seed: u64,
+    /// How overlapping objects mix in the pictures
+    #[arg(long, value_enum, default_value = "blend")]
+    compositing: CompositingName,
+    /// Largest picture that is read
+    #[arg(long, default_value_t = DEFAULT_MAX_PIXELS, value_name = "N")]
+    max_pixels: usize,
+    /// Threads; 0 means one per core
+    #[arg(long, default_value_t = 0, value_name = "N")]
+    threads: usize,
+    /// Print figures of every picture as JSON
+    #[arg(long)]
+    json: bool,
+    /// Write no SVG
+    #[arg(long)]
+    no_svg: bool,
+    /// Write no reconstruction
+    #[arg(long)]
+    no_png: bool,
+}
+
+impl Arguments {
+    fn solver(&self) -> Result<Solver> {
+        let defaults = FitOptions::default();
+        let options = FitOptions {
+            bank: self.bank.load()?,
+            max_objects: self.max_objects.unwrap_or(defaults.max_objects),
+            compositing: Compositing::from(self.compositing),
+            ..defaults
+        };
+        Solver::new(self.method, options, self.start.clone(), self.objects, self.seed)
+    }
+
+    fn target(&self, input: &Input, ending: &str) -> PathBuf {
+        self.out.join(format!("{}.{ending}", input.stem))
+    }
+}
+
+/// A NumPy file holds many pictures; it is read once.
+type Stack = (PathBuf, Vec<Image<f32>>);
+
+pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Outcome> {
+    let solver = arguments.solver()?;
+    let found = inputs::find(&arguments.pictures);
+    let mut failures = found.failures;
+    let mut stacks: Vec<Stack> = Vec::new();
+    let mut pictures = Vec::new();
+    for path in found.paths {
+        if path.extension().is_some_and(|ending| ending == "npy") {
+            match read_npy(&path, arguments.max_pixels) {
+                Ok(images) => {
+                    pictures.extend((0..images.len()).map(|frame| (path.clone(), Some(frame))));
+                    stacks.push((path, images));
+                }
+                Err(error) => failures.push(error.to_string()),
+            }
+        } else {
+            pictures.push((path, None));
+        }
+    }
+    let inputs = inputs::name(&pictures);
+    refuse_overwriting(arguments, &inputs)?;
+    let bar = progress::bar(inputs.len());
+    let one = |scratch: &mut Scratch, input: &Input| {
+        let report = fit_one(arguments, &solver, &stacks, input, scratch);
+        bar.inc(1);
+        report
+    };
+    let reports: Vec<Report> =
+        with_threads(arguments.threads, || inputs.par_iter().map_init(Scratch::default, one).collect())?;
+    bar.finish_and_clear();
+    let errors = reports.iter().filter_map(|report| report.error.clone());
+    failures.extend(errors);
+    for failure in &failures {
+        writeln!(console.err, "error: {failure}")?;
+    }
+    if arguments.json {
+        writeln!(console.out, "{}", report::json(&reports)?)?;
+    } else if !reports.is_empty() {
+        writeln!(console.out, "{}", report::table(&reports))?;
+    }
+    Ok(if failures.is_empty() { Outcome::Done } else { Outcome::Partly })
+}
+
+/// A reconstruction must not replace the picture it was made from.
+fn refuse_overwriting(arguments: &Arguments, inputs: &[Input]) -> Result<()> {
+    if arguments.no_png {
+        return Ok(());
+    }
+    let Ok(out) = arguments.out.canonicalize() else { return Ok(()) };
+    let pictures: BTreeSet<PathBuf> = inputs.iter().filter_map(|input| input.path.canonicalize().ok()).collect();
+    for input in inputs {
+        let target = out.join(format!("{}.png", input.stem));
+        if pictures.contains(&target) {
+            bail!("{} would be replaced by its reconstruction; choose another --out, or --no-png", target.display());
+        }
+    }
+    Ok(())
+}
+
+fn fit_one(arguments: &Arguments, solver: &Solver, stacks: &[Stack], input: &Input, scratch: &mut Scratch) -> Report {
+    let path = match input.frame {
+        Some(frame) => format!("{}[{frame}]", input.path.display()),
+        None => input.path.display().to_string(),
+    };
+    let result = try_fit(arguments, solver, stacks, input, scratch);
+    let (found, error) = match result {
+        Ok(found) => (Some(found), None),
+        Err(error) => {
+            let text = format!("{error:#}");
+            (None, Some(if text.starts_with(&path) { text } else { format!("{path}: {text}") }))
+        }
+    };
+    Report { path, stem: input.stem.clone(), error, found }
+}
+
+fn try_fit(
+    arguments: &Arguments,
+    solver: &Solver,
+    stacks: &[Stack],
+    input: &Input,
+    scratch: &mut Scratch,
+) -> Result<FoundScene> {
+    let read;
+    let image = match input.frame {
+        None => {
+            read = read_picture(&input.path, arguments.max_pixels)?;
+            &read
+        }
+        Some(frame) => stack_image(stacks, &input.path, frame).context("image of the stack is gone")?,
+    };
+    let (fit, time) = solver.solve(image.view(), &input.stem, scratch)?;
+    write_results(arguments, &fit, image.size(), input)?;
+    Ok(FoundScene::new(&fit, fit.loss, time.as_secs_f64() * 1e3))
+}
+
+fn stack_image<'a>(stacks: &'a [Stack], path: &Path, frame: usize) -> Option<&'a Image<f32>> {
+    stacks.iter().find(|(stack, _)| stack == path).and_then(|(_, images)| images.get(frame))
+}
+
+fn write_results(arguments: &Arguments, fit: &Fit<f32>, size: ImageSize, input: &Input) -> Result<()> {
+    let target = arguments.target(input, "json");
+    let mut json = SceneJson::from_scene(&fit.scene, size);
+    for (object, found) in json.objects.iter_mut().zip(&fit.scene.objects) {
+        object.symmetry = Some(found.efd.symmetry_order());
+    }
+    write_atomic(&target, (json.to_line(&Place::file(&target))? + "\n").as_bytes())?;
+    if !arguments.no_svg {
+        write_atomic(&arguments.target(input, "svg"), to_svg(&fit.scene, size)?.as_bytes())?;
+    }
+    if !arguments.no_png {
+        let image = Painter::default().paint(&fit.scene, size)?;
+        write_atomic(&arguments.target(input, "png"), &encode_png(image.view())?)?;
+    }
+    Ok(())
+}

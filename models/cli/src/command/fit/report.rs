@@ -1,0 +1,157 @@
+//! What a fit tells: JSON for programs, a table for people.
+
+use comfy_table::{Table, presets};
+use dvp_fit::{Ambiguity, Fit, StopReason};
+use serde::Serialize;
+
+/// Tables of more pictures than this show the summary only.
+const MOST_ROWS: usize = 25;
+
+/// What came of one picture.
+#[derive(Debug, Serialize)]
+pub(super) struct Report {
+    pub(super) path: String,
+    pub(super) stem: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) error: Option<String>,
+    #[serde(flatten)]
+    pub(super) found: Option<FoundScene>,
+}
+
+/// The figures of a fit.
+#[derive(Debug, Serialize)]
+pub(super) struct FoundScene {
+    objects: usize,
+    /// Mean absolute error of the reconstruction against the picture.
+    mae: f32,
+    /// Processor time of the fit alone.
+    cpu_ms: f64,
+    steps: usize,
+    stop: &'static str,
+    /// Description length; null for methods that do not count it.
+    bits: Option<f64>,
+    ambiguity: Vec<AmbiguityReport>,
+    /// Per object, row by row: covariance of (x, y, log scale, rotation).
+    covariance: Vec<[f32; 16]>,
+}
+
+/// An ambiguity under its name.
+#[derive(Debug, Serialize)]
+#[serde(rename_all = "lowercase", tag = "kind")]
+enum AmbiguityReport {
+    Symmetry { object: usize, order: usize },
+    Cropped { object: usize, visible: f64 },
+    Twin { object: usize, prototype: usize, ratio: f64 },
+    Other,
+}
+
+/// Figures over all pictures that were fitted.
+#[derive(Debug, Serialize)]
+pub(super) struct Summary {
+    images: usize,
+    failed: usize,
+    objects: usize,
+    mae: f64,
+    cpu_ms_median: f64,
+    cpu_ms_p95: f64,
+}
+
+impl FoundScene {
+    pub(super) fn new(fit: &Fit<f32>, mae: f32, cpu_ms: f64) -> Self {
+        Self {
+            objects: fit.scene.objects.len(),
+            mae,
+            cpu_ms,
+            steps: fit.steps,
+            stop: match fit.stop {
+                StopReason::Converged => "converged",
+                StopReason::StepLimit => "step limit",
+                StopReason::Stalled => "stalled",
+                StopReason::Empty => "empty",
+                _ => "other",
+            },
+            bits: fit.bits.is_finite().then_some(fit.bits),
+            ambiguity: fit.ambiguity.iter().map(AmbiguityReport::of).collect(),
+            covariance: fit.covariance.clone(),
+        }
+    }
+}
+
+impl AmbiguityReport {
+    fn of(ambiguity: &Ambiguity) -> Self {
+        match *ambiguity {
+            Ambiguity::Symmetry { object, order } => Self::Symmetry { object, order },
+            Ambiguity::Cropped { object, visible } => Self::Cropped { object, visible },
+            Ambiguity::Twin { object, prototype, ratio } => Self::Twin { object, prototype, ratio },
+            _ => Self::Other,
+        }
+    }
+}
+
+impl Summary {
+    pub(super) fn of(reports: &[Report]) -> Self {
+        let found = || reports.iter().filter_map(|report| report.found.as_ref());
+        let count = found().count();
+        let mut times: Vec<f64> = found().map(|found| found.cpu_ms).collect();
+        times.sort_by(f64::total_cmp);
+        let total: f64 = found().map(|found| f64::from(found.mae)).sum();
+        Self {
+            images: count,
+            failed: reports.len() - count,
+            objects: found().map(|found| found.objects).sum(),
+            #[expect(clippy::cast_precision_loss, reason = "counts of files are small")]
+            mae: if count > 0 { total / count as f64 } else { 0.0 },
+            cpu_ms_median: quantile(&times, 50),
+            cpu_ms_p95: quantile(&times, 95),
+        }
+    }
+}
+
+/// The smallest value that at least `percent` percent of the sorted values do not exceed; 0 if there are none.
+fn quantile(sorted: &[f64], percent: usize) -> f64 {
+    let rank = (sorted.len() * percent).div_ceil(100);
+    sorted.get(rank.saturating_sub(1)).copied().unwrap_or(0.0)
+}
+
+/// Pictures and summary as one JSON text.
+pub(super) fn json(reports: &[Report]) -> serde_json::Result<String> {
+    #[derive(Serialize)]
+    struct All<'a> {
+        images: &'a [Report],
+        summary: Summary,
+    }
+    serde_json::to_string_pretty(&All { images: reports, summary: Summary::of(reports) })
+}
+
+/// A table of the pictures, if they are few, and the summary.
+pub(super) fn table(reports: &[Report]) -> String {
+    let mut table = Table::new();
+    table.load_style(presets::UTF8_HORIZONTAL_ONLY);
+    table.set_header(["picture", "objects", "MAE", "CPU ms", "steps", "stop"]);
+    let summary = Summary::of(reports);
+    if reports.len() <= MOST_ROWS {
+        for report in reports {
+            match &report.found {
+                Some(found) => table.add_row([
+                    report.path.clone(),
+                    found.objects.to_string(),
+                    format!("{:.5}", found.mae),
+                    format!("{:.2}", found.cpu_ms),
+                    found.steps.to_string(),
+                    found.stop.to_owned(),
+                ]),
+                None => table.add_row([report.path.as_str(), "failed"]),
+            };
+        }
+    }
+    if reports.len() != 1 {
+        table.add_row([
+            format!("all {}", summary.images),
+            summary.objects.to_string(),
+            format!("{:.5}", summary.mae),
+            format!("{:.2} (p95 {:.2})", summary.cpu_ms_median, summary.cpu_ms_p95),
+        ]);
+    }
+    let failed = if summary.failed > 0 { format!("\n{} failed", summary.failed) } else { String::new() };
+    format!("{}{failed}", table.trim_fmt())
+}

@@ -1,0 +1,104 @@
+//! Options that several commands share.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+use clap::{Args, ValueEnum};
+use dvp_core::render::Compositing;
+use dvp_core::{ImageSize, Real};
+use dvp_fit::Bank;
+
+use crate::format::{mdshr_bank, read_bank};
+use crate::paint::{Painter, RendererName};
+
+/// How scenes are painted.
+#[derive(Clone, Copy, Debug, Args)]
+pub(super) struct PaintArguments {
+    /// Renderer
+    #[arg(long, value_enum, default_value_t)]
+    renderer: RendererName,
+    /// Vertices per outline, the repeated one counted
+    #[arg(long, default_value_t = 64, value_name = "K", value_parser = clap::value_parser!(u16).range(4..))]
+    vertices: u16,
+}
+
+impl PaintArguments {
+    pub(super) fn painter(self) -> Painter {
+        Painter { renderer: self.renderer, vertices: usize::from(self.vertices) }
+    }
+}
+
+/// `blend` or `over`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum CompositingName {
+    /// Overlaps show the mean of the colors
+    Blend,
+    /// Later objects hide earlier ones
+    Over,
+}
+
+impl From<CompositingName> for Compositing {
+    fn from(name: CompositingName) -> Self {
+        match name {
+            CompositingName::Blend => Self::Blend,
+            CompositingName::Over => Self::Over,
+        }
+    }
+}
+
+/// Known shapes: built in, from a file, or none.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum BankChoice {
+    None,
+    Mdshr,
+    File(PathBuf),
+}
+
+impl From<&str> for BankChoice {
+    fn from(text: &str) -> Self {
+        match text {
+            "none" => Self::None,
+            "mdshr" => Self::Mdshr,
+            _ => Self::File(PathBuf::from(text)),
+        }
+    }
+}
+
+impl BankChoice {
+    pub(super) fn load<T: Real>(&self) -> Result<Option<Bank<T>>> {
+        Ok(match self {
+            Self::None => None,
+            Self::Mdshr => Some(mdshr_bank()?),
+            Self::File(path) => Some(read_bank(path)?),
+        })
+    }
+}
+
+/// Runs `work` on `threads` threads; 0 means one per core.
+pub(super) fn with_threads<R: Send>(threads: usize, work: impl FnOnce() -> R + Send) -> Result<R> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().context("threads cannot be started")?;
+    Ok(pool.install(work))
+}
+
+/// The size that the options ask for, one side standing for both, or else `otherwise`.
+pub(super) fn size_or(width: Option<usize>, height: Option<usize>, otherwise: ImageSize) -> Result<ImageSize> {
+    let size = match (width, height) {
+        (None, None) => return Ok(otherwise),
+        (Some(width), Some(height)) => ImageSize::new(width, height),
+        (Some(side), None) | (None, Some(side)) => ImageSize::new(side, side),
+    };
+    size.context("--width and --height")
+}
+
+/// A square image of `side` pixels.
+pub(super) fn square(side: usize) -> Result<ImageSize> {
+    ImageSize::new(side, side).context("image size")
+}
+
+/// The folder that a file stands in.
+pub(super) fn folder_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(folder) if folder != Path::new("") => folder,
+        _ => Path::new("."),
+    }
+}
