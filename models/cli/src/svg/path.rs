@@ -197,7 +197,8 @@ fn farthest(cubic: &[Point; 4], run: &[Point], parameters: &[f64]) -> (f64, usiz
 fn nearer(cubic: &[Point; 4], point: Point, u: f64) -> f64 {
     let v = 1.0 - u;
     let steps: [Point; 3] = core::array::from_fn(|i| minus(cubic[i + 1], cubic[i]));
-    let slope: Point = core::array::from_fn(|a| 3.0 * (v * v * steps[0][a] + 2.0 * v * u * steps[1][a] + u * u * steps[2][a]));
+    let slope: Point =
+        core::array::from_fn(|a| 3.0 * (v * v * steps[0][a] + 2.0 * v * u * steps[1][a] + u * u * steps[2][a]));
     let bend: Point =
         core::array::from_fn(|a| 6.0 * (v * (steps[1][a] - steps[0][a]) + u * (steps[2][a] - steps[1][a])));
     let gap = minus(at(cubic, u), point);

@@ -26,7 +26,8 @@ fn numbers_are_short() {
 #[test]
 fn curves_are_few_and_close() {
     // Quarters of a circle as cubics are off by 2.7e-4 of the radius at best, halves by 0.018.
-    let circle: Vec<[f64; 2]> = (0..64).map(|i| (f64::from(i) / 63.0 * core::f64::consts::TAU).sin_cos().into()).collect();
+    let circle: Vec<[f64; 2]> =
+        (0..64).map(|i| (f64::from(i) / 63.0 * core::f64::consts::TAU).sin_cos().into()).collect();
     for (tolerance, most) in [(0.05, 2), (0.002, 4), (0.0002, 8)] {
         let path = path_data(&circle, tolerance);
         let pieces = path.matches('C').count();

@@ -60,7 +60,8 @@ impl Totals {
         let mut table = Table::new();
         table.load_style(presets::UTF8_HORIZONTAL_ONLY);
         table.set_header(["MAE", "MSE", "SSIM", "IoU", "ARI", "exact count", "n", "failed"]);
-        let figure = |value: Option<f64>, digits: usize| value.map_or_else(|| "-".to_owned(), |v| format!("{v:.digits$}"));
+        let figure =
+            |value: Option<f64>, digits: usize| value.map_or_else(|| "-".to_owned(), |v| format!("{v:.digits$}"));
         table.add_row([
             figure(self.mae, 6),
             self.mse.map_or_else(|| "-".to_owned(), |v| format!("{v:.2e}")),

@@ -19,9 +19,7 @@ use self::report::{FoundScene, Report};
 use self::solver::{Method, Scratch, Solver};
 use super::options::{BankChoice, CompositingName, with_threads};
 use super::{Console, Outcome, progress};
-use crate::format::{
-    DEFAULT_MAX_PIXELS, Place, SceneJson, encode_png, read_npy, read_picture, write_atomic,
-};
+use crate::format::{DEFAULT_MAX_PIXELS, Place, SceneJson, encode_png, read_npy, read_picture, write_atomic};
 use crate::paint::Painter;
 use crate::svg::to_svg;
 
@@ -197,10 +195,7 @@ fn stack_image<'a>(stacks: &'a [Stack], path: &Path, frame: usize) -> Option<&'a
 
 fn write_results(arguments: &Arguments, fit: &Fit<f32>, size: ImageSize, input: &Input) -> Result<()> {
     let target = arguments.target(input, "json");
-    let mut json = SceneJson::from_scene(&fit.scene, size);
-    for (object, found) in json.objects.iter_mut().zip(&fit.scene.objects) {
-        object.symmetry = Some(found.efd.symmetry_order());
-    }
+    let json = SceneJson::from_scene(&fit.scene, size);
     write_atomic(&target, (json.to_line(&Place::file(&target))? + "\n").as_bytes())?;
     if !arguments.no_svg {
         write_atomic(&arguments.target(input, "svg"), to_svg(&fit.scene, size)?.as_bytes())?;
