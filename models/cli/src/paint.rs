@@ -1,7 +1,10 @@
 //! Scenes to images with a renderer chosen by name.
 
 use clap::ValueEnum;
-use dvp_core::render::{ContourRenderer, RenderError, Renderer};
+use dvp_core::render::{
+    ContourRenderer, ExactArea, ExactRenderer, HardMask, HardRenderer, RenderError, Renderer, SoftTriangles,
+    TriangleRenderer,
+};
 use dvp_core::shape::{OutlineBasis, REFERENCE_VERTICES, ShapeError};
 use dvp_core::{Drawing, Image, ImageSize, Real, Scene};
 
@@ -11,6 +14,12 @@ pub enum RendererName {
     /// Coverage from the distance to the outline, by the scene's edge profile.
     #[default]
     Contour,
+    /// The reference's: coverage from the distance to the outline's triangles, with faint seams.
+    Triangles,
+    /// Share of each pixel inside the outline; no fattening, no softness.
+    Exact,
+    /// Pixel centers inside the outline; no anti-aliasing.
+    Hard,
 }
 
 /// How scenes are painted.
@@ -62,6 +71,12 @@ impl Painter {
         let compositing = scene.compositing;
         match self.renderer {
             RendererName::Contour => paint_with(&ContourRenderer::new(scene.edge, compositing), &drawing, size),
+            RendererName::Triangles => {
+                let coverage = SoftTriangles { edge: scene.edge, ..SoftTriangles::default() };
+                paint_with(&TriangleRenderer { coverage, compositing }, &drawing, size)
+            }
+            RendererName::Exact => paint_with(&ExactRenderer { coverage: ExactArea, compositing }, &drawing, size),
+            RendererName::Hard => paint_with(&HardRenderer { coverage: HardMask, compositing }, &drawing, size),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! From the text's structure to a scene with every number checked, and back.
 
 use dvp_core::render::{Compositing, EdgeProfile};
+use dvp_core::shape::{SYMMETRY_TOLERANCE, Symmetry};
 use dvp_core::{Efd, ImageSize, Object, Pose, Real, Scene};
 use dvp_fit::Bank;
 
@@ -215,7 +216,10 @@ impl ObjectJson {
             confidence: shortest(object.confidence).clamp(0.0, 1.0),
             prototype: object.prototype,
             shape: None,
-            symmetry: None,
+            symmetry: Some(match object.efd.symmetry(T::of(SYMMETRY_TOLERANCE)) {
+                Symmetry::Finite(order) => order,
+                Symmetry::Continuous => 0,
+            }),
             efd: Some(object.efd.rows().iter().map(|row| row.map(shortest)).collect()),
         }
     }

@@ -47,14 +47,14 @@ pub(super) fn path_data(polygon: &[Point], tolerance: f64) -> String {
     let corners: Vec<usize> = (0..count).filter(|&i| is_corner(&ring, i)).collect();
     let start = corners.first().copied().unwrap_or(0);
     pen.point(ring.get(start).copied().unwrap_or_default());
-    // The runs between corners; without a corner one run around, through a smooth start.
-    let stops = corners.iter().skip(1).map(|&corner| corner - start).chain((count > 1).then_some(count));
+    // The runs between corners; without a corner two, through smooth stops.
+    let halves = if corners.is_empty() && count > 2 { vec![count / 2] } else { Vec::new() };
+    let inner = corners.iter().skip(1).map(|&corner| corner - start).chain(halves);
     let mut from = 0;
-    for to in stops {
-        let run: Vec<Point> = (from..=to).map(|i| ring[(start + i) % count.max(1)]).collect();
+    for to in inner.chain((count > 1).then_some(count)) {
+        let run: Vec<Point> = (from..=to).map(|i| ring[(start + i) % count]).collect();
         let ends = if corners.is_empty() && count > 2 {
-            let tangent = unit(minus(ring[1], ring[count - 1]));
-            [tangent, [-tangent[0], -tangent[1]]]
+            [smooth_tangent(&ring, from), smooth_tangent(&ring, to).map(core::ops::Neg::neg)]
         } else {
             end_tangents(&run)
         };
@@ -63,6 +63,12 @@ pub(super) fn path_data(polygon: &[Point], tolerance: f64) -> String {
     }
     pen.data.push('Z');
     pen.data
+}
+
+/// The direction in which the outline passes a vertex.
+fn smooth_tangent(ring: &[Point], i: usize) -> Point {
+    let count = ring.len();
+    unit(minus(ring[(i + 1) % count], ring[(i + count - 1) % count]))
 }
 
 fn is_corner(ring: &[Point], i: usize) -> bool {

@@ -25,10 +25,11 @@ fn numbers_are_short() {
 
 #[test]
 fn curves_are_few_and_close() {
-    // Quarters of a circle as cubics are off by 2.7e-4 of the radius at best, halves by 0.018.
+    // Halves of a circle as cubics are off by 0.018 of the radius at best, quarters by 2.7e-4, eighths by 4e-6; splits at
+    // the worst point leave uneven pieces.
     let circle: Vec<[f64; 2]> =
         (0..64).map(|i| (f64::from(i) / 63.0 * core::f64::consts::TAU).sin_cos().into()).collect();
-    for (tolerance, most) in [(0.05, 2), (0.002, 4), (0.0002, 8)] {
+    for (tolerance, most) in [(0.05, 2), (0.002, 5), (1e-4, 10)] {
         let path = path_data(&circle, tolerance);
         let pieces = path.matches('C').count();
         assert!((1..=most).contains(&pieces), "{tolerance}: {path}");
