@@ -1,7 +1,7 @@
 //! Descriptors against pyefd (f64) and the reference system (f32).
 
 use dvp_core::Efd;
-use dvp_core::shape::OutlineBasis;
+use dvp_core::shape::{MDSHR_NAMES, OutlineBasis, mdshr_bank};
 use dvp_tests::golden::{committed, shared};
 use serde::Deserialize;
 
@@ -70,5 +70,24 @@ fn reference_shared() {
             OutlineBasis::new(expected.len(), 16).unwrap().outline(rows, &mut outline).unwrap();
             assert_close(&outline, expected, 1e-5, "outline, reference");
         }
+    }
+}
+
+#[derive(Deserialize)]
+struct Tables {
+    order: Vec<String>,
+    heart: Vec<[f64; 4]>,
+    square: Vec<[f64; 4]>,
+    ellipse: Vec<[f64; 4]>,
+}
+
+#[test]
+fn built_in_bank_shared() {
+    let Some(tables) = shared::<Tables>("mdshr/efd_tables.json").unwrap() else { return };
+    assert_eq!(tables.order, MDSHR_NAMES);
+    let bank = mdshr_bank::<f64>(64);
+    for (efd, expected) in bank.prototypes().iter().zip([tables.heart, tables.square, tables.ellipse]) {
+        // Nine digits are kept.
+        assert_close(efd.rows(), &expected, 1e-9, "prototype");
     }
 }

@@ -3,3 +3,4 @@
 mod efd;
 mod exact;
 mod scene;
+mod shape_model;

@@ -6,18 +6,26 @@
 //! |---|---|---|
 //! | `efd` | descriptors to outline, [`OutlineBasis::outline`] | `efd_vjp` |
 //! | `efd_model` | [`EfdModel`], descriptors as a [`ShapeModel`] | same file |
+//! | `bank` | weights to a mixture of prototypes, [`PrototypeBank`], [`PrototypeModel`] | same file |
+//! | `mdshr` | the built-in bank, [`mdshr_bank`] | |
+//! | `disk`, `polygon`, `bezier` | the other models: [`Disk`], [`Polygon`], [`CubicBezier`] | same files |
 //! | `fourier` | closed polygon to descriptors, [`Efd::from_contour`] | none: data, not parameters |
 //! | `normalize` | descriptors to their normal form, [`Efd::normalize`] | `normalize_vjp` |
 //! | `measure` | area, perimeter, truncation error | |
 //! | `symmetry` | which turns map an outline on itself, [`Efd::symmetry`] | |
 
+mod bank;
+mod bezier;
+mod disk;
 mod efd;
 mod efd_model;
 mod efd_vjp;
 mod fourier;
+mod mdshr;
 mod measure;
 mod normalize;
 mod normalize_vjp;
+mod polygon;
 mod symmetry;
 #[cfg(test)]
 mod tests;
@@ -27,9 +35,14 @@ use alloc::vec::Vec;
 
 use crate::real::Real;
 
+pub use bank::{PrototypeBank, PrototypeModel};
+pub use bezier::CubicBezier;
+pub use disk::Disk;
 pub use efd::OutlineBasis;
 pub use efd_model::EfdModel;
+pub use mdshr::{MDSHR_NAMES, mdshr_bank};
 pub use normalize::Normalized;
+pub use polygon::Polygon;
 pub use symmetry::{REFERENCE_SYMMETRY_HARMONICS, REFERENCE_SYMMETRY_THRESHOLD, SYMMETRY_TOLERANCE, Symmetry};
 
 /// Vertices of an outline in the reference system: 64 parameters t = i / 63, both end points included.

@@ -89,3 +89,50 @@ fn the_square_of_the_data_runs_clockwise_and_has_four_turns() {
     let square = Efd::new(vec![[1.0, 0.0, 0.0, -1.0], [0.0; 4], [0.109, 0.0, 0.0, 0.109]]);
     assert_eq!(square.symmetry(0.02), Symmetry::Finite(4));
 }
+
+#[test]
+fn the_built_in_bank() {
+    let bank = mdshr_bank::<f64>(16);
+    assert_eq!((bank.prototypes().len(), bank.harmonic_count()), (MDSHR_NAMES.len(), 16));
+    let orders = [1, 4, 2];
+    for ((efd, order), name) in bank.prototypes().iter().zip(orders).zip(MDSHR_NAMES) {
+        assert_eq!(efd.rows()[0][..3], [1.0, 0.0, 0.0], "{name} is not normalized");
+        assert_eq!(efd.symmetry(SYMMETRY_TOLERANCE), Symmetry::Finite(order), "{name}");
+        assert_eq!(efd.reference_symmetry_order(5, REFERENCE_SYMMETRY_THRESHOLD), order, "{name}");
+    }
+    // More harmonics than are known are zero. A square of side 2 has a first harmonic of radius 8 sqrt(2) / pi^2, so that the
+    // normalized one has the area 4 pi^4 / 128 = 3.044; the traced one differs in the third digit.
+    let bank = mdshr_bank::<f32>(70);
+    assert_eq!(bank.prototypes()[1].rows()[69], [0.0; 4]);
+    assert!((bank.prototypes()[1].signed_area() + 3.044).abs() < 0.01, "{}", bank.prototypes()[1].signed_area());
+}
+
+#[test]
+fn mixing_and_choosing() {
+    let bank = PrototypeBank::new(vec![Efd::new(vec![[1.0; 4]]), Efd::new(vec![[2.0; 4], [4.0; 4]])]);
+    let mut rows = [[9.0; 4]; 2];
+    bank.mix(&[0.5, 0.25], &mut rows).unwrap();
+    assert_eq!(rows, [[1.0; 4], [1.0; 4]]);
+    let refused = bank.mix(&[0.5], &mut rows);
+    assert_eq!(refused, Err(ShapeError::Length { what: "weights", expected: 2, len: 1 }));
+    assert_eq!(PrototypeBank::strongest(&[0.1, 0.6, 0.6]), Some(1));
+    assert_eq!(PrototypeBank::strongest(&[f64::NAN, 0.3]), Some(1));
+    assert_eq!(PrototypeBank::<f64>::strongest(&[]), None);
+}
+
+#[test]
+fn a_bezier_segment_by_hand() {
+    // Two segments of two samples; the middle of the first: (p + 3 q + 3 r + s) / 8 = (0 + 0 + 6 + 2, 0 + 6 + 6 + 0) / 8.
+    let model = CubicBezier::new(2, 2).unwrap();
+    let path = [0.0, 0.0, 0.0, 2.0, 2.0, 2.0, 2.0, 0.0, 2.0, -2.0, 0.0, -2.0];
+    let mut outline = [[0.0; 2]; 4];
+    model.outline(&path, &mut outline).unwrap();
+    assert_eq!(outline, [[0.0, 0.0], [1.0, 1.5], [2.0, 0.0], [1.0, -1.5]]);
+}
+
+#[test]
+fn models_refuse_fewer_than_three_vertices() {
+    assert_eq!(Disk::<f64>::new(2), Err(ShapeError::TooFewPoints { len: 2 }));
+    assert_eq!(Polygon::new(2), Err(ShapeError::TooFewPoints { len: 2 }));
+    assert_eq!(CubicBezier::<f64>::new(1, 2), Err(ShapeError::TooFewPoints { len: 2 }));
+}
