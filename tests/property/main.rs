@@ -1,5 +1,6 @@
 //! The property tests; a module per concern.
 
+mod contour;
 mod efd;
 mod exact;
 mod hard;

@@ -1,8 +1,8 @@
 //! What the tests share: strategies, finite differences, golden numbers.
 
 pub mod coverage;
+pub mod draw_svg;
 pub mod finite_difference;
 pub mod fixture;
 pub mod golden;
 pub mod strategy;
-pub mod draw_svg;
