@@ -1,7 +1,10 @@
 //! The golden tests; a module per concern.
-
 extern crate alloc;
 
 mod efd;
+mod loss;
+mod matching;
+mod metric;
 mod render_contour;
+mod scene_pairs;
 mod symmetry;

@@ -2,5 +2,6 @@
 
 mod efd;
 mod exact;
+mod loss;
 mod scene;
 mod shape_model;

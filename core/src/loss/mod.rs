@@ -1,6 +1,6 @@
 //! Losses: a number and its gradient from two images or two scenes.
 //!
-//! In: an [`ImagePair`] or outlines. Out: a scalar and, backward, its gradient with respect to the
+//! In: an [`ImagePair`], [`ScenePairs`] or outlines. Out: a scalar and, backward, its gradient with respect to the
 //! first image, the predicted scenes or the outlines. All stand behind one trait, [`Loss`].
 //!
 //! | file | loss | backward |
@@ -9,6 +9,8 @@
 //! | `ssim` | 1 - structural similarity, [`Ssim`] | `ssim_vjp` |
 //! | `pyramid` | an image loss over halved images, [`Pyramid`] | `pyramid_vjp` |
 //! | `length` | mean length of unit outlines, [`ContourLength`] | `length_vjp` |
+//! | `scene_loss` | the paper's L_p, [`SceneLoss`], a sum of `scene_terms` | `scene_loss_vjp` |
+//! | `scene_match`, `rotation_term` | which objects L_p compares, and how it prices a turn | |
 //!
 //! Shown by `tests/gradient/loss.rs` (central differences), `tests/golden/loss.rs` (the reference's terms, totals,
 //! matchings and gradients) and `tests/property/loss.rs` (0 at equality, unchanged by order and by symmetric turns).
@@ -20,6 +22,11 @@ mod pixel;
 mod pixel_vjp;
 mod pyramid;
 mod pyramid_vjp;
+mod rotation_term;
+mod scene_loss;
+mod scene_loss_vjp;
+mod scene_match;
+mod scene_terms;
 mod ssim;
 mod ssim_vjp;
 #[cfg(test)]
@@ -31,6 +38,10 @@ pub use image_pair::ImagePair;
 pub use length::{ContourLength, outline_length};
 pub use length_vjp::outline_length_vjp;
 pub use pyramid::{Pyramid, PyramidScratch};
+pub use rotation_term::RotationTerm;
+pub use scene_loss::{SceneLoss, ScenePairs};
+pub use scene_match::{Match, SceneLossScratch};
+pub use scene_terms::SceneTerms;
 pub use ssim::{SSIM_WINDOW, Ssim, SsimScratch};
 
 use crate::dims::ImageSize;
