@@ -42,7 +42,7 @@ impl SceneRecord {
     }
 }
 
-/// Gradients with respect to the reference's parameters; of the scale's two slots the first is used.
+/// Gradients with respect to the reference's parameters; its scale is stored twice, each half of the gradient.
 #[derive(Deserialize)]
 pub(crate) struct GradRecord {
     pub(crate) t: Vec<[f64; 2]>,

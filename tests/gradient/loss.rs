@@ -25,19 +25,22 @@ fn images(sides: core::ops::Range<usize>) -> impl Strategy<Value = (ImageSize, V
     })
 }
 
+fn pair<'a>(size: ImageSize, image: &'a [f64], target: &'a [f64]) -> ImagePair<'a, f64> {
+    ImagePair::new(ImageView::new(size, image).unwrap(), ImageView::new(size, target).unwrap()).unwrap()
+}
+
 /// The gradient against central differences, and its accumulation: `vjp` adds to what is there.
 fn check_image_loss<L>(loss: &L, (size, image, target): &(ImageSize, Vec<f64>, Vec<f64>)) -> Result<(), TestCaseError>
 where
     L: for<'a> Loss<f64, Input<'a> = ImagePair<'a, f64>, Grad = [f64]>,
 {
     let mut scratch = L::Scratch::default();
-    let pair =
-        |image| ImagePair::new(ImageView::new(*size, image).unwrap(), ImageView::new(*size, target).unwrap()).unwrap();
     let mut grad = vec![0.25; image.len()];
-    let value = loss.vjp(pair(image), 3.0, &mut scratch, &mut grad).unwrap();
-    prop_assert!((value - loss.value(pair(image), &mut scratch).unwrap()).abs() < 1e-14);
+    let value = loss.vjp(pair(*size, image, target), 3.0, &mut scratch, &mut grad).unwrap();
+    prop_assert!((value - loss.value(pair(*size, image, target), &mut scratch).unwrap()).abs() < 1e-14);
     grad.iter_mut().for_each(|g| *g -= 0.25);
-    compare(image, &grad, 1e-7, |x| 3.0 * loss.value(pair(x), &mut scratch).unwrap()).map_err(TestCaseError::fail)
+    compare(image, &grad, 1e-7, |x| 3.0 * loss.value(pair(*size, x, target), &mut scratch).unwrap())
+        .map_err(TestCaseError::fail)
 }
 
 proptest! {
@@ -83,7 +86,8 @@ proptest! {
     #[test]
     fn scene_loss((truths, predictions) in scene_pairs()) {
         for rotation in [RotationTerm::Modulo, RotationTerm::EveryOrder, RotationTerm::Printed] {
-            let loss = SceneLoss { rotation, ..SceneLoss::reference(16, 6).unwrap() };
+            let mut loss = SceneLoss::reference(16, 6).unwrap();
+            loss.rotation = rotation;
             let mut scratch = Default::default();
             let mut grads = vec![SceneGrad::default(); predictions.len()];
             grads.iter_mut().zip(&predictions).for_each(|(grad, scene)| grad.reset(scene));
@@ -104,16 +108,11 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(4))]
+    #![proptest_config(ProptestConfig::with_cases(3))]
 
     #[test]
-    fn ssim(images in images(11..16)) {
+    fn ssim(images in images(11..15)) {
         check_image_loss(&Ssim::default(), &images)?;
-    }
-
-    #[test]
-    fn pyramid_of_ssim(images in images(21..23)) {
-        check_image_loss(&Pyramid::new(Ssim::default(), 2).unwrap(), &images)?;
     }
 }
 
