@@ -7,5 +7,6 @@ mod loss;
 mod matching;
 mod metric;
 mod render_contour;
+mod scene;
 mod scene_pairs;
 mod symmetry;

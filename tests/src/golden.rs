@@ -18,8 +18,7 @@ pub fn committed<T: DeserializeOwned>(name: &str) -> Result<T, Box<dyn Error>> {
 /// # Errors
 /// The folder is there, but the file is not or has other fields than `T`.
 pub fn shared<T: DeserializeOwned>(path: &str) -> Result<Option<T>, Box<dyn Error>> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared");
-    if folder.is_dir() { read(&folder.join(path)).map(Some) } else { Ok(None) }
+    crate::fixture::shared().map(|folder| read(&folder.join(path))).transpose()
 }
 
 fn read<T: DeserializeOwned>(path: &Path) -> Result<T, Box<dyn Error>> {
