@@ -9,7 +9,7 @@
 use core::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use dvp_core::render::{ContourRenderer, PixelLoss, Renderer};
+use dvp_core::render::{ContourRenderer, ExactRenderer, HardRenderer, PixelLoss, Renderer, TriangleRenderer};
 use dvp_core::shape::OutlineBasis;
 use dvp_core::{Drawing, DrawingGrad, Efd, Image, ImageSize, Object, Pose, Real, Scene, SceneGrad};
 
@@ -79,6 +79,9 @@ fn bench<T: Real, R: Renderer<T>>(criterion: &mut Criterion, name: &str, rendere
 fn renderers(criterion: &mut Criterion) {
     bench::<f32, _>(criterion, "contour", &ContourRenderer::default());
     bench::<f64, _>(criterion, "contour_f64", &ContourRenderer::default());
+    bench::<f32, _>(criterion, "triangles", &TriangleRenderer::default());
+    bench::<f32, _>(criterion, "exact", &ExactRenderer::default());
+    bench::<f32, _>(criterion, "hard", &HardRenderer::default());
 }
 
 criterion_group!(benches, renderers);

@@ -10,3 +10,4 @@ mod render_contour;
 mod scene;
 mod scene_pairs;
 mod symmetry;
+mod triangles;

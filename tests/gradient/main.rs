@@ -3,5 +3,7 @@
 mod efd;
 mod exact;
 mod loss;
+mod hard;
 mod scene;
 mod shape_model;
+mod triangles;

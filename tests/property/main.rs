@@ -1,6 +1,7 @@
 //! The property tests; a module per concern.
 
 mod contour;
+mod cross_render;
 mod efd;
 mod exact;
 mod hard;
