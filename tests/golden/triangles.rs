@@ -154,8 +154,8 @@ fn images_agree_with_own_faces() {
             let drawing = draw(&scene.to_scene(&[]), &basis);
             renderer.render(&drawing, size(), &mut scratch, image.data_mut()).unwrap();
             let (mean, worst) = errors(image.to_interleaved(), expected);
-            // What is left are seams: at most a dip to 0.993 of a full contrast, on other diagonals than the reference's.
-            assert!(mean < 2e-4 && worst < 0.0068, "{set} {i}: mean {mean:e}, worst {worst:e}");
+            // What is left are seams: dips to 0.993 of a full contrast, on diagonals other than the ear-cut ones.
+            assert!(mean < 5e-4 && worst < 0.0068, "{set} {i}: mean {mean:e}, worst {worst:e}");
         }
         assert!(dims[0] >= 8);
     }
@@ -225,7 +225,7 @@ fn gradients_agree_with_own_faces() {
     for (loss, files) in [(PixelLoss::Mse, "a_gradmse"), (PixelLoss::Mae, "a_grad")] {
         for group in gradients(&shared, loss, files) {
             let error = group.relative_error();
-            eprintln!("{files} {}: {error:e}", group.name);
+            // Seams, as above, on other diagonals: 0.03 % (background) to 0.9 % (descriptors).
             assert!(error < 0.01, "{files} {}: relative error {error:e}", group.name);
         }
     }
