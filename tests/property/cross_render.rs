@@ -1,5 +1,7 @@
 //! One scene against all renderers, and what every renderer must do with bad input.
 
+#![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
+
 use dvp_core::render::{
     ContourDistance, CoverageModel, EdgeProfile, ExactArea, HardMask, RenderError, Renderer, SoftTriangles,
     TileRenderer,

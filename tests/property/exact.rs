@@ -1,7 +1,9 @@
 //! Invariants of exact coverage.
 
-use dvp_core::ImageSize;
+#![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
+
 use dvp_core::render::{ExactArea, HardMask};
+use dvp_core::{ImageSize, Real};
 use dvp_tests::coverage::coverage;
 use dvp_tests::strategy;
 use proptest::prelude::*;
@@ -83,14 +85,14 @@ proptest! {
     #[test]
     fn stays_in_range(outline in strategy::wild_outline()) {
         prop_assert!(exact(&outline).iter().all(|p| (0.0..=1.0).contains(p)));
-        let single: Vec<_> = outline.iter().map(|v| v.map(|x| x.clamp(-1e30, 1e30) as f32)).collect();
+        let single: Vec<_> = outline.iter().map(|v| v.map(|x| f32::of(x.clamp(-1e30, 1e30)))).collect();
         let single = coverage(ExactArea, &single, size()).unwrap();
         prop_assert!(single.iter().all(|p| (0.0..=1.0).contains(p)));
     }
 
     #[test]
     fn single_precision_agrees(star in strategy::star_px()) {
-        let rounded: Vec<_> = star.iter().map(|v| v.map(|x| x as f32)).collect();
+        let rounded: Vec<_> = star.iter().map(|v| v.map(f32::of)).collect();
         let exactly: Vec<_> = rounded.iter().map(|v| v.map(f64::from)).collect();
         let single = coverage(ExactArea, &rounded, size()).unwrap();
         let widened: Vec<_> = single.iter().map(|&p| f64::from(p)).collect();
