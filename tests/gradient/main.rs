@@ -2,8 +2,8 @@
 
 mod efd;
 mod exact;
-mod loss;
 mod hard;
+mod loss;
 mod scene;
 mod shape_model;
 mod triangles;
