@@ -123,4 +123,14 @@ proptest! {
         let turn = (b.rotation - a.rotation - pose.rotation) / PI;
         prop_assert!((turn - turn.round()).abs() < 1e-9, "angle off by {turn} half turns");
     }
+
+    #[test]
+    fn any_contour_gives_numbers_or_an_error(contour in strategy::wild_outline()) {
+        if let Ok((efd, center)) = Efd::from_contour(&contour, 9) {
+            prop_assert!(efd.rows().as_flattened().iter().chain(&center).all(|value| value.is_finite()));
+            if let Ok(normalized) = efd.normalize() {
+                prop_assert!(normalized.efd.rows().as_flattened().iter().all(|value| value.is_finite()));
+            }
+        }
+    }
 }

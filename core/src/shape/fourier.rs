@@ -1,6 +1,7 @@
 //! Descriptors of a closed polygon, by the exact integrals of Kuhl and Giardina (1982).
 
 use alloc::vec;
+use alloc::vec::Vec;
 
 use num_traits::Float;
 
@@ -27,7 +28,8 @@ impl<T: Real> Efd<T> {
     /// which is the same sum in another order.
     ///
     /// # Errors
-    /// [`ShapeError::NotFinite`], [`ShapeError::TooFewPoints`] below three distinct neighbors.
+    /// [`ShapeError::NotFinite`], [`ShapeError::TooFewPoints`] below three distinct neighbors, [`ShapeError::TooLarge`] if lengths
+    /// overflow.
     ///
     /// # Examples
     /// ```
@@ -67,8 +69,12 @@ impl<T: Real> Efd<T> {
             let n = f64::of_usize(n) * core::f64::consts::PI;
             row.iter_mut().for_each(|value| *value *= perimeter / (2.0 * n * n));
         }
-        let rows = rows.into_iter().map(|row| row.map(T::of)).collect();
-        Ok((Self { rows }, moment.map(|sum| T::of(sum / perimeter))))
+        let rows: Vec<[T; 4]> = rows.into_iter().map(|row| row.map(T::of)).collect();
+        let center = moment.map(|sum| T::of(sum / perimeter));
+        if !rows.as_flattened().iter().chain(&center).all(|value| value.is_finite()) {
+            return Err(ShapeError::TooLarge);
+        }
+        Ok((Self { rows }, center))
     }
 }
 

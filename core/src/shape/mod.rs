@@ -171,6 +171,8 @@ pub enum ShapeError {
         /// Harmonics of the table.
         limit: usize,
     },
+    /// Coordinates so large that lengths overflow.
+    TooLarge,
     /// The first harmonic vanishes, so that there is no size to normalize by.
     Degenerate,
 }
@@ -188,6 +190,7 @@ impl core::fmt::Display for ShapeError {
                     "{harmonic_count} harmonics, but the outline basis has {limit}: make a larger basis or resize the EFD"
                 )
             }
+            Self::TooLarge => write!(f, "the contour's lengths overflow: scale its coordinates down"),
             Self::Degenerate => write!(f, "the first harmonic is zero: the shape has no size to normalize by"),
         }
     }

@@ -36,15 +36,18 @@ impl<T: Real> Efd<T> {
         if let Some(index) = self.rows.iter().position(|row| !row.iter().all(|value| value.is_finite())) {
             return Err(ShapeError::NotFinite { index });
         }
-        let &[a, b, c, d] = self.rows.first().ok_or(ShapeError::Degenerate)?;
+        let &first = self.rows.first().ok_or(ShapeError::Degenerate)?;
+        // In units of the largest number, so that no square under- or overflows.
+        let unit = largest(first);
+        if !unit.is_normal() {
+            return Err(ShapeError::Degenerate);
+        }
+        let [a, b, c, d] = first.map(|value| value / unit);
         let two = T::of(2.0);
         let phase = (two * (a * b + c * d)).atan2(a * a - b * b + c * c - d * d) / two;
         let (sin, cos) = phase.sin_cos();
         let (x, y) = (a * cos + b * sin, c * cos + d * sin);
-        let scale = x.hypot(y);
-        if !scale.is_normal() {
-            return Err(ShapeError::Degenerate);
-        }
+        let scale = unit * x.hypot(y);
         let rotation = y.atan2(x);
         let mut efd = self.clone();
         efd.shift(phase);
@@ -90,4 +93,9 @@ impl<T: Real> Normalized<T> {
         efd.shift(-self.phase);
         efd
     }
+}
+
+/// The largest absolute value of a row.
+pub(super) fn largest<T: Real>(row: [T; 4]) -> T {
+    row.into_iter().fold(T::zero(), |largest, value| largest.max(value.abs()))
 }

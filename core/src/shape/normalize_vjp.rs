@@ -1,5 +1,6 @@
 //! The way back of [`Efd::normalize`].
 
+use super::normalize::largest;
 use super::{Efd, ShapeError};
 use crate::real::Real;
 
@@ -68,7 +69,10 @@ impl<T: Real> Efd<T> {
 }
 
 /// Adds grad_phase x the derivative of phase = atan2(p, q) / 2, p = 2 (a b + c d), q = a^2 - b^2 + c^2 - d^2.
-fn add_phase_gradient<T: Real>([a, b, c, d]: [T; 4], grad_phase: T, grad_row: &mut [T; 4]) {
+fn add_phase_gradient<T: Real>(row: [T; 4], grad_phase: T, grad_row: &mut [T; 4]) {
+    // The phase is the same in any unit; see the way forward.
+    let unit = largest(row);
+    let ([a, b, c, d], grad_phase) = (row.map(|value| value / unit), grad_phase / unit);
     let two = T::of(2.0);
     let (p, q) = (two * (a * b + c * d), a * a - b * b + c * c - d * d);
     let squared = p * p + q * q;

@@ -71,6 +71,8 @@ fn contours_without_an_outline_are_refused() {
     assert_eq!(Efd::<f32>::from_contour(&[], 4), Err(ShapeError::TooFewPoints { len: 0 }));
     let broken = [[0.0, 0.0], [1.0, f32::NAN], [1.0, 1.0]];
     assert_eq!(Efd::from_contour(&broken, 4), Err(ShapeError::NotFinite { index: 1 }));
+    let huge = [[0.0, 0.0], [1e308, 0.0], [0.0, 1e308]];
+    assert_eq!(Efd::<f64>::from_contour(&huge, 4), Err(ShapeError::TooLarge));
     assert_eq!(Efd::<f32>::zeros(3).normalize(), Err(ShapeError::Degenerate));
     assert_eq!(Efd::<f32>::zeros(0).normalize(), Err(ShapeError::Degenerate));
 }
@@ -135,4 +137,14 @@ fn models_refuse_fewer_than_three_vertices() {
     assert_eq!(Disk::<f64>::new(2), Err(ShapeError::TooFewPoints { len: 2 }));
     assert_eq!(Polygon::new(2), Err(ShapeError::TooFewPoints { len: 2 }));
     assert_eq!(CubicBezier::<f64>::new(1, 2), Err(ShapeError::TooFewPoints { len: 2 }));
+}
+
+#[test]
+fn normal_forms_of_tiny_and_huge_shapes() {
+    // Squares of these numbers leave the range of f32.
+    for scale in [1e-30_f32, 1.0, 1e30] {
+        let normalized = Efd::new(vec![[0.0, 2.0 * scale, scale, 0.0]]).normalize().unwrap();
+        assert!((normalized.efd.rows()[0][3] + 0.5).abs() < 1e-6, "{normalized:?}");
+        assert!((normalized.scale / scale - 2.0).abs() < 1e-6, "{normalized:?}");
+    }
 }
