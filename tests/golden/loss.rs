@@ -2,7 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test with a line number")]
 
-use std::collections::BTreeMap;
+use alloc::collections::BTreeMap;
 
 use dvp_core::loss::{Loss, RotationTerm, SceneLoss, ScenePairs, SceneTerms};
 use dvp_core::scene::rotation_from_pair_vjp;

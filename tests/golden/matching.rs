@@ -1,7 +1,5 @@
 //! The reference's matchings (scipy) of predicted objects to true ones.
 
-#![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test with a line number")]
-
 use dvp_core::matching::{CostMatrix, Hungarian, MatchingCost};
 
 use crate::scene_pairs;

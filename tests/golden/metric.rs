@@ -1,4 +1,4 @@
-//! Image scores against scikit-image, labelings against scikit-learn, and, if they are there, the reference's masks,
+//! Image scores against scipy, labelings against scikit-learn, and, if they are there, the reference's masks,
 //! indices and scores of 16 scenes.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test with a line number")]
@@ -85,6 +85,8 @@ fn assert_scores(name: &str, ours: &Scores, theirs: &ScoreRecord) {
         ("IoU", ours.iou, theirs.iou),
         ("ARI", ours.ari, theirs.ari),
     ];
+    // In single precision, flat areas leave noise in variances that SSIM divides by 9e-4: up to 4e-4 on these images.
+    assert!((ours.ssim - theirs.ssim).abs() < 5e-4, "{name}, SSIM: {}, reference {}", ours.ssim, theirs.ssim);
     for (metric, ours, theirs) in table {
         // The reference works in single precision.
         assert!((ours - theirs).abs() < 2e-6, "{name}, {metric}: {ours}, reference {theirs}");

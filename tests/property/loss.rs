@@ -28,17 +28,23 @@ where
     loss.value(pair, &mut L::Scratch::default()).unwrap()
 }
 
+/// Position `at + step` of a line continued by reflection.
+fn mirrored(at: usize, step: i32, len: usize) -> usize {
+    let at = (i32::try_from(at).unwrap() + step).unsigned_abs() as usize;
+    if at < len { at } else { 2 * (len - 1) - at }
+}
+
 /// SSIM by its definition: a two-dimensional window, weighted means, variances around those means.
 fn direct_ssim(size: ImageSize, a: &[f64], b: &[f64]) -> f64 {
     let weight = |i: i32| (-f64::from(i * i) / (2.0 * 1.5 * 1.5)).exp();
     let total: f64 = (-5..=5).map(weight).sum();
     let (mut sum, mut count) = (0.0, 0.0);
     for plane in 0..3 {
-        for row in 5..size.height() - 5 {
-            for column in 5..size.width() - 5 {
+        for row in 0..size.height() {
+            for column in 0..size.width() {
                 let at = |dy: i32, dx: i32| {
-                    let row = row.checked_add_signed(dy as isize).unwrap();
-                    let column = column.checked_add_signed(dx as isize).unwrap();
+                    let row = mirrored(row, dy, size.height());
+                    let column = mirrored(column, dx, size.width());
                     let index = plane * size.pixels() + row * size.width() + column;
                     (weight(dy) * weight(dx) / (total * total), a[index], b[index])
                 };

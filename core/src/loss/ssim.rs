@@ -1,13 +1,13 @@
 //! Structural similarity of two images under a Gaussian window.
 //!
 //! With E the windowed mean, m_a = E(a), v = E(a^2) + E(b^2) - m_a^2 - m_b^2 and c = E(ab) - m_a m_b:
-//! SSIM = (2 m_a m_b + C1)(2 c + C2) / ((m_a^2 + m_b^2 + C1)(v + C2)), averaged over channels and over the pixels whose
-//! whole window lies in the image. (Padding by reflection and then cropping the padding, as torchmetrics does, leaves
-//! the same pixels.) Only the sum of the two variances is needed, so four planes are filtered, not five.
+//! SSIM = (2 m_a m_b + C1)(2 c + C2) / ((m_a^2 + m_b^2 + C1)(v + C2)), averaged over channels and over all
+//! pixels; the image is continued beyond its border by reflection (the border pixel itself is not repeated). That is what
+//! the reference's scores agree with; leaving border pixels out differs by up to 0.03. Only the sum of the two variances is needed, so four planes are filtered, not five.
 
 use alloc::vec::Vec;
 
-use super::ssim_vjp::SsimVjp;
+use super::ssim_vjp::{SsimVjp, fold};
 use super::{ImagePair, Loss, LossError, check_length};
 use crate::dims::ImageSize;
 use crate::image::CHANNELS;
@@ -36,6 +36,10 @@ pub struct Ssim<T> {
 /// Memory of [`Ssim`].
 #[derive(Clone, Debug, Default)]
 pub struct SsimScratch<T> {
+    /// One channel of the image and of the target, continued by half a window on each side.
+    pub(super) padded: [Vec<T>; 2],
+    /// Gradient of the continued channel of the image.
+    pub(super) grad: Vec<T>,
     /// A row of a, b, a^2 + b^2, ab, each in turn.
     pub(super) row: Vec<T>,
     /// The four planes of one channel, filtered along rows.
@@ -64,10 +68,16 @@ impl<T: Real> Ssim<T> {
     /// [`LossError::SmallerThanWindow`] if a side is below [`SSIM_WINDOW`].
     pub fn similarity(&self, pair: ImagePair<'_, T>, scratch: &mut SsimScratch<T>) -> Result<T, LossError> {
         check_window(pair.size())?;
-        let window = &self.window;
-        let sum: f64 = (0..CHANNELS)
-            .map(|channel| dispatch(SsimChannel { window, pair, channel, slopes: false, scratch: &mut *scratch }))
-            .sum();
+        let mut sum = 0.0;
+        for channel in 0..CHANNELS {
+            scratch.pad(pair, channel);
+            sum += dispatch(SsimChannel {
+                window: &self.window,
+                size: pair.size(),
+                slopes: false,
+                scratch: &mut *scratch,
+            });
+        }
         Ok(T::of(sum / CHANNELS as f64))
     }
 }
@@ -91,12 +101,14 @@ impl<T: Real> Loss<T> for Ssim<T> {
     ) -> Result<T, LossError> {
         check_length("image gradient", grad, pair.image().data().len())?;
         check_window(pair.size())?;
-        let window = &self.window;
-        let cotangent = -cotangent / T::of_usize(CHANNELS * valid(pair.size()).0 * valid(pair.size()).1);
+        let (window, size) = (&self.window, pair.size());
+        let cotangent = -cotangent / T::of_usize(CHANNELS * size.pixels());
         let mut sum = 0.0;
-        for (channel, grad) in grad.chunks_exact_mut(pair.size().pixels()).enumerate() {
-            sum += dispatch(SsimChannel { window, pair, channel, slopes: true, scratch: &mut *scratch });
-            dispatch(SsimVjp { window, pair, channel, cotangent, scratch: &mut *scratch, grad });
+        for (channel, grad) in grad.chunks_exact_mut(size.pixels()).enumerate() {
+            scratch.pad(pair, channel);
+            sum += dispatch(SsimChannel { window, size, slopes: true, scratch: &mut *scratch });
+            dispatch(SsimVjp { window, size, cotangent, scratch: &mut *scratch });
+            fold(size, &scratch.grad, grad);
         }
         Ok(T::of(1.0 - sum / CHANNELS as f64))
     }
@@ -109,17 +121,43 @@ fn check_window(size: ImageSize) -> Result<(), LossError> {
     Ok(())
 }
 
-/// Columns and rows of windows that lie in the image.
+/// Pixels that a window reaches beyond its center.
+const REACH: usize = SSIM_WINDOW / 2;
+
+/// Columns and rows of the continued image.
 #[inline(always)]
-pub(super) fn valid(size: ImageSize) -> (usize, usize) {
-    (size.width() + 1 - SSIM_WINDOW, size.height() + 1 - SSIM_WINDOW)
+pub(super) fn padded(size: ImageSize) -> (usize, usize) {
+    (size.width() + 2 * REACH, size.height() + 2 * REACH)
+}
+
+/// The column (or row) that is seen at position `i` of a line continued by reflection.
+pub(super) fn reflected(i: usize, len: usize) -> usize {
+    let at = i.abs_diff(REACH);
+    if at < len { at } else { 2 * (len - 1) - at }
+}
+
+impl<T: Real> SsimScratch<T> {
+    /// Continues one channel of both images beyond their borders.
+    fn pad(&mut self, pair: ImagePair<'_, T>, channel: usize) {
+        let size = pair.size();
+        let (columns, rows) = padded(size);
+        for (plane, image) in self.padded.iter_mut().zip([pair.image(), pair.target()]) {
+            plane.resize(columns * rows, T::zero());
+            for (r, line) in plane.chunks_exact_mut(columns).enumerate() {
+                let source = &image.channel(channel)[reflected(r, size.height()) * size.width()..][..size.width()];
+                line[REACH..][..size.width()].copy_from_slice(source);
+                for c in (0..REACH).chain(REACH + size.width()..columns) {
+                    line[c] = source[reflected(c, size.width())];
+                }
+            }
+        }
+    }
 }
 
 /// The mean SSIM of one channel and, if asked for, its slopes (not divided by the number of pixels).
 struct SsimChannel<'a, T> {
     window: &'a [T; SSIM_WINDOW],
-    pair: ImagePair<'a, T>,
-    channel: usize,
+    size: ImageSize,
     slopes: bool,
     scratch: &'a mut SsimScratch<T>,
 }
@@ -129,13 +167,13 @@ impl<T: Real> Kernel for SsimChannel<'_, T> {
 
     #[inline(always)]
     fn run(self) -> f64 {
-        let Self { window, pair, channel, slopes, scratch: SsimScratch { row, filtered, slopes: slope_planes } } = self;
-        let width = pair.size().width();
-        let (columns, rows) = valid(pair.size());
+        let Self { window, size, slopes, scratch } = self;
+        let SsimScratch { row, filtered, slopes: slope_planes, padded: planes, .. } = scratch;
+        let (width, height) = padded(size);
+        let (columns, rows) = (size.width(), size.height());
         row.resize(width, T::zero());
-        filtered.iter_mut().for_each(|plane| plane.resize(columns * pair.size().height(), T::zero()));
-        let lines =
-            pair.image().channel(channel).chunks_exact(width).zip(pair.target().channel(channel).chunks_exact(width));
+        filtered.iter_mut().for_each(|plane| plane.resize(columns * height, T::zero()));
+        let lines = planes[0].chunks_exact(width).zip(planes[1].chunks_exact(width));
         for (r, (a, b)) in lines.enumerate() {
             let [mean_a, mean_b, squares, products] = filtered.each_mut().map(|p| &mut p[r * columns..][..columns]);
             filter_row(window, a, mean_a);
