@@ -40,3 +40,16 @@ pub fn dispatch<K: Kernel>(kernel: K) -> K::Output {
 pub fn dispatch<K: Kernel>(kernel: K) -> K::Output {
     kernel.run()
 }
+
+/// One number per lane, each made by `f` of the lane's index.
+///
+/// Kernels string such steps together, one operation each: that vectorizes reliably, where a loop over lanes with several
+/// operations and choices in it may become branches. (`core::array::from_fn` does the same, but may stay a call.)
+#[inline(always)]
+pub fn lanes<T: Copy + Default, const N: usize>(f: impl Fn(usize) -> T) -> [T; N] {
+    let mut lanes = [T::default(); N];
+    for (i, lane) in lanes.iter_mut().enumerate() {
+        *lane = f(i);
+    }
+    lanes
+}

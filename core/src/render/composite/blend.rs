@@ -5,7 +5,8 @@ use super::sink::PixelSink;
 use super::{Pass, Place, SHARPNESS, SMALLEST_WEIGHT};
 use crate::image::CHANNELS;
 use crate::real::Real;
-use crate::render::tile::LANES;
+use crate::render::tile::{LANES, Lanes};
+use crate::simd::lanes;
 
 impl<T: Real, S: PixelSink<T>> Pass<'_, '_, T, S> {
     /// Paints the chunk of `scratch.layers`.
@@ -21,47 +22,40 @@ impl<T: Real, S: PixelSink<T>> Pass<'_, '_, T, S> {
             let (f, w, color) = (drawing.confidences[k], self.scratch.objects[k].weight, drawing.colors[k]);
             kept.coverage = layer.chunk.map_or([one; LANES], |chunk| self.composition.tiles[k].coverage[chunk]);
             kept.below[0] = clear;
-            for i in 0..LANES {
-                let p = kept.coverage[i];
-                weights[i] += w * p;
-                clear[i] *= one - p * f;
-                for channel in 0..CHANNELS {
-                    mean[channel][i] += w * p * color[channel];
-                }
+            let p = kept.coverage;
+            let pull: Lanes<T> = lanes(|i| w * p[i]);
+            weights = lanes(|i| weights[i] + pull[i]);
+            clear = lanes(|i| clear[i] * (one - p[i] * f));
+            for channel in 0..CHANNELS {
+                let c = color[channel];
+                mean[channel] = lanes(|i| mean[channel][i] + pull[i] * c);
             }
         }
         // 1 where the guard sleeps, 0 where it acts.
-        let (mut live, mut share) = ([zero; LANES], [zero; LANES]);
         let guard = T::of(SMALLEST_WEIGHT);
-        for i in 0..LANES {
-            live[i] = if weights[i] > guard { one } else { zero };
-            share[i] = one / weights[i].max(guard);
-        }
+        let live: Lanes<T> = lanes(|i| if weights[i] > guard { one } else { zero });
+        let guarded: Lanes<T> = lanes(|i| if weights[i] > guard { weights[i] } else { guard });
+        let share: Lanes<T> = lanes(|i| one / guarded[i]);
         // Sums over the channels of g (m - b) and g m.
         let (mut lift, mut pull) = ([zero; LANES], [zero; LANES]);
         let mut g = [[zero; LANES]; CHANNELS];
         for channel in 0..CHANNELS {
             let b = drawing.background[channel];
-            let mut values = [zero; LANES];
-            for i in 0..LANES {
-                mean[channel][i] *= share[i];
-                values[i] = b + (one - clear[i]) * (mean[channel][i] - b);
-            }
+            let m: Lanes<T> = lanes(|i| mean[channel][i] * share[i]);
+            let values = lanes(|i| b + (one - clear[i]) * (m[i] - b));
             g[channel] = self.sink.chunk(channel, place, &values);
             if S::BACKWARD {
-                for i in 0..LANES {
-                    self.scratch.background[channel][i] += g[channel][i] * clear[i];
-                    lift[i] += g[channel][i] * (mean[channel][i] - b);
-                    pull[i] += g[channel][i] * mean[channel][i] * live[i];
-                }
+                let g = &g[channel];
+                let background = &mut self.scratch.background[channel];
+                *background = lanes(|i| background[i] + g[i] * clear[i]);
+                lift = lanes(|i| lift[i] + g[i] * (m[i] - b));
+                pull = lanes(|i| pull[i] + g[i] * m[i] * live[i]);
             }
         }
         if !S::BACKWARD {
             return;
         }
-        for i in 0..LANES {
-            share[i] *= one - clear[i];
-        }
+        let share: Lanes<T> = lanes(|i| share[i] * (one - clear[i]));
         // Products without one factor are formed of the others: dividing by 1 - p f would be 0 / 0 inside an object.
         let mut above = [one; LANES];
         for (layer, kept) in self.scratch.layers.iter().zip(&self.scratch.kept).rev() {
@@ -69,22 +63,21 @@ impl<T: Real, S: PixelSink<T>> Pass<'_, '_, T, S> {
             let (f, color) = (drawing.confidences[k], drawing.colors[k]);
             let sums = &mut self.scratch.objects[k];
             let w = sums.weight;
-            let mut grad = [zero; LANES];
-            for i in 0..LANES {
-                let p = kept.coverage[i];
-                let others = lift[i] * kept.below[0][i] * above[i];
-                let mut tint = -pull[i];
-                for channel in 0..CHANNELS {
-                    tint += g[channel][i] * color[channel];
-                    sums.color[channel][i] += g[channel][i] * share[i] * (w * p);
-                }
-                let tint = tint * share[i] * w;
-                grad[i] = f * others + tint;
-                sums.confidence[i] += p * (others + T::of(SHARPNESS) * tint);
-                above[i] *= one - p * f;
+            let p = kept.coverage;
+            let own: Lanes<T> = lanes(|i| share[i] * (w * p[i]));
+            let mut tint: Lanes<T> = lanes(|i| -pull[i]);
+            for channel in 0..CHANNELS {
+                let c = color[channel];
+                tint = lanes(|i| tint[i] + g[channel][i] * c);
+                sums.color[channel] = lanes(|i| sums.color[channel][i] + g[channel][i] * own[i]);
             }
+            let tint: Lanes<T> = lanes(|i| tint[i] * share[i] * w);
+            let others: Lanes<T> = lanes(|i| lift[i] * kept.below[0][i] * above[i]);
+            let both: Lanes<T> = lanes(|i| p[i] * (others[i] + T::of(SHARPNESS) * tint[i]));
+            sums.confidence = lanes(|i| sums.confidence[i] + both[i]);
+            above = lanes(|i| above[i] * (one - p[i] * f));
             if let Some(chunk) = layer.chunk {
-                self.composition.tiles[k].grad[chunk] = grad;
+                self.composition.tiles[k].grad[chunk] = lanes(|i| f * others[i] + tint[i]);
             }
         }
     }

@@ -4,7 +4,8 @@ use super::sink::PixelSink;
 use super::{Pass, Place};
 use crate::image::CHANNELS;
 use crate::real::Real;
-use crate::render::tile::LANES;
+use crate::render::tile::{LANES, Lanes};
+use crate::simd::lanes;
 
 impl<T: Real, S: PixelSink<T>> Pass<'_, '_, T, S> {
     /// Paints the chunk of `scratch.layers`.
@@ -19,10 +20,8 @@ impl<T: Real, S: PixelSink<T>> Pass<'_, '_, T, S> {
             kept.coverage = layer.chunk.map_or([one; LANES], |chunk| self.composition.tiles[k].coverage[chunk]);
             kept.below = values;
             for channel in 0..CHANNELS {
-                for i in 0..LANES {
-                    let below = values[channel][i];
-                    values[channel][i] = below + kept.coverage[i] * f * (color[channel] - below);
-                }
+                let (below, c) = (values[channel], color[channel]);
+                values[channel] = lanes(|i| below[i] + kept.coverage[i] * f * (c - below[i]));
             }
         }
         let mut g = [[zero; LANES]; CHANNELS];
@@ -37,27 +36,23 @@ impl<T: Real, S: PixelSink<T>> Pass<'_, '_, T, S> {
             let k = layer.object;
             let (f, color) = (drawing.confidences[k], drawing.colors[k]);
             let sums = &mut self.scratch.objects[k];
+            let p = kept.coverage;
+            let painted: Lanes<T> = lanes(|i| p[i] * f);
             let mut grad = [zero; LANES];
             for channel in 0..CHANNELS {
-                for i in 0..LANES {
-                    let painted = kept.coverage[i] * f;
-                    grad[i] += g[channel][i] * (color[channel] - kept.below[channel][i]);
-                    sums.color[channel][i] += g[channel][i] * painted;
-                    g[channel][i] *= one - painted;
-                }
+                let (above, below, c) = (g[channel], kept.below[channel], color[channel]);
+                grad = lanes(|i| grad[i] + above[i] * (c - below[i]));
+                sums.color[channel] = lanes(|i| sums.color[channel][i] + above[i] * painted[i]);
+                g[channel] = lanes(|i| above[i] * (one - painted[i]));
             }
-            for i in 0..LANES {
-                sums.confidence[i] += kept.coverage[i] * grad[i];
-                grad[i] *= f;
-            }
+            sums.confidence = lanes(|i| sums.confidence[i] + p[i] * grad[i]);
             if let Some(chunk) = layer.chunk {
-                self.composition.tiles[k].grad[chunk] = grad;
+                self.composition.tiles[k].grad[chunk] = lanes(|i| grad[i] * f);
             }
         }
         for channel in 0..CHANNELS {
-            for i in 0..LANES {
-                self.scratch.background[channel][i] += g[channel][i];
-            }
+            let background = &mut self.scratch.background[channel];
+            *background = lanes(|i| background[i] + g[channel][i]);
         }
     }
 }

@@ -5,6 +5,7 @@ use super::{Pass, Place};
 use crate::image::CHANNELS;
 use crate::real::Real;
 use crate::render::tile::LANES;
+use crate::simd::lanes;
 
 impl<T: Real, S: PixelSink<T>> Pass<'_, '_, T, S> {
     /// Paints chunk `chunk` of the tile of `object`.
@@ -19,18 +20,12 @@ impl<T: Real, S: PixelSink<T>> Pass<'_, '_, T, S> {
         for channel in 0..CHANNELS {
             let b = drawing.background[channel];
             let contrast = f * (drawing.colors[object][channel] - b);
-            let mut values = [T::zero(); LANES];
-            for i in 0..LANES {
-                values[i] = b + p[i] * contrast;
-            }
-            let g = self.sink.chunk(channel, place, &values);
+            let g = self.sink.chunk(channel, place, &lanes(|i| b + p[i] * contrast));
             if S::BACKWARD {
                 let background = &mut self.scratch.background[channel];
-                for i in 0..LANES {
-                    background[i] += g[i];
-                    sums[channel][i] += p[i] * g[i];
-                    grad[i] += g[i] * contrast;
-                }
+                *background = lanes(|i| background[i] + g[i]);
+                sums[channel] = lanes(|i| sums[channel][i] + p[i] * g[i]);
+                grad = lanes(|i| grad[i] + g[i] * contrast);
             }
         }
         if S::BACKWARD {

@@ -6,6 +6,7 @@ use super::Place;
 use crate::image::CHANNELS;
 use crate::real::Real;
 use crate::render::tile::{LANES, Lanes};
+use crate::simd::lanes;
 
 /// Takes pixels, and gives back the gradient of the scalar with respect to them.
 pub(in crate::render) trait PixelSink<T: Real> {
@@ -74,9 +75,7 @@ impl<T: Real> PixelSink<T> for Pull<'_, T> {
         let mut sums = [T::zero(); LANES];
         let (blocks, rest) = self.grad_image[start..start + len].as_chunks::<LANES>();
         for block in blocks {
-            for i in 0..LANES {
-                sums[i] += block[i];
-            }
+            sums = lanes(|i| sums[i] + block[i]);
         }
         for (sum, &g) in sums.iter_mut().zip(rest) {
             *sum += g;
@@ -92,8 +91,10 @@ impl<T: Real> PixelSink<T> for Pull<'_, T> {
 
 /// A loss per value.
 pub(in crate::render) trait ValueLoss<T: Real> {
-    /// Value and derivative at a difference.
-    fn at(difference: T) -> (T, T);
+    /// The loss at a difference.
+    fn value(difference: T) -> T;
+    /// Its derivative.
+    fn slope(difference: T) -> T;
 }
 
 /// |d|.
@@ -101,10 +102,14 @@ pub(in crate::render) struct Mae;
 
 impl<T: Real> ValueLoss<T> for Mae {
     #[inline(always)]
-    fn at(difference: T) -> (T, T) {
+    fn value(difference: T) -> T {
+        difference.abs()
+    }
+    #[inline(always)]
+    fn slope(difference: T) -> T {
         let up = if difference > T::zero() { T::one() } else { T::zero() };
         let down = if difference < T::zero() { T::one() } else { T::zero() };
-        (difference.abs(), up - down)
+        up - down
     }
 }
 
@@ -113,8 +118,12 @@ pub(in crate::render) struct Mse;
 
 impl<T: Real> ValueLoss<T> for Mse {
     #[inline(always)]
-    fn at(difference: T) -> (T, T) {
-        (difference * difference, difference + difference)
+    fn value(difference: T) -> T {
+        difference * difference
+    }
+    #[inline(always)]
+    fn slope(difference: T) -> T {
+        difference + difference
     }
 }
 
@@ -142,13 +151,9 @@ impl<T: Real, L: ValueLoss<T>> PixelSink<T> for Loss<'_, T, L> {
     #[inline(always)]
     fn chunk(&mut self, channel: usize, place: Place, values: &Lanes<T>) -> Lanes<T> {
         let target = load(self.target, channel, place, values);
-        let mut grad = [T::zero(); LANES];
-        for i in 0..LANES {
-            let (value, slope) = L::at(values[i] - target[i]);
-            self.lanes[i] += value;
-            grad[i] = slope * self.share;
-        }
-        grad
+        let difference: Lanes<T> = lanes(|i| values[i] - target[i]);
+        self.lanes = lanes(|i| self.lanes[i] + L::value(difference[i]));
+        lanes(|i| L::slope(difference[i]) * self.share)
     }
 
     #[inline(always)]
@@ -157,16 +162,13 @@ impl<T: Real, L: ValueLoss<T>> PixelSink<T> for Loss<'_, T, L> {
         let (blocks, rest) = self.target[start..start + len].as_chunks::<LANES>();
         let (mut losses, mut slopes) = ([T::zero(); LANES], [T::zero(); LANES]);
         for block in blocks {
-            for i in 0..LANES {
-                let (loss, slope) = L::at(value - block[i]);
-                losses[i] += loss;
-                slopes[i] += slope;
-            }
+            let difference: Lanes<T> = lanes(|i| value - block[i]);
+            losses = lanes(|i| losses[i] + L::value(difference[i]));
+            slopes = lanes(|i| slopes[i] + L::slope(difference[i]));
         }
         for (i, &t) in rest.iter().enumerate() {
-            let (loss, slope) = L::at(value - t);
-            losses[i] += loss;
-            slopes[i] += slope;
+            losses[i] += L::value(value - t);
+            slopes[i] += L::slope(value - t);
         }
         self.sum += total(losses).as_f64();
         total(slopes) * self.share

@@ -1,16 +1,18 @@
 //! Forward: squared distance to the closest edge in the band, inside by parity, coverage.
 
-use alloc::vec::Vec;
-
 use super::Band;
 use super::edge::{BLOCK, Edge, SHORTEST_SQUARED};
 use crate::dims::ImageSize;
 use crate::real::Real;
 use crate::render::tile::{ChunkState, LANES, Lanes, Tile, grow, reserved_chunks};
-use crate::simd::Kernel;
+use crate::simd::{Kernel, lanes};
+use alloc::vec::Vec;
 
 /// Squared distance of pixels that no edge looked at, px^2.
 const UNSEEN: f64 = 1e30;
+
+/// Beyond this many sigma coverage falls no further; e^-80 still has a reciprocal in f32.
+const FARTHEST: f64 = 80.0;
 
 /// All pixels of a chunk.
 const ALL: u32 = (1 << LANES) - 1;
@@ -23,6 +25,8 @@ pub struct ContourRecord<T> {
     pub(super) closest: Vec<T>,
     /// Which pixels of a chunk are inside, the leftmost in the lowest bit.
     pub(super) inside: Vec<u32>,
+    /// Chunks that the band may reach.
+    pub(super) mixed: Vec<usize>,
     /// Squared distance per pixel, px^2; `UNSEEN` everywhere between calls.
     squared: Vec<T>,
 }
@@ -54,6 +58,7 @@ impl<T: Real> Kernel for Cover<'_, T> {
         for index in 0..self.record.edges.len() {
             self.near_edge(index);
         }
+        self.find_sides();
         self.finish();
     }
 }
@@ -96,68 +101,76 @@ impl<T: Real> Cover<'_, T> {
     fn near_edge(&mut self, index: usize) {
         let record = &mut *self.record;
         let edge = record.edges[index];
-        let [dx, dy] = edge.along;
         let name = T::of_usize(index);
         let window = self.tile.window();
-        edge.for_each_block(self.band.reach, window, |blocks| {
-            let (x, share) = edge.columns(blocks.column);
-            for row in blocks.top..=blocks.bottom {
-                let (y, row_share) = edge.row(row);
-                let start = row * window.width() + blocks.column;
+        let Some(near) = edge.near(self.band.reach, window) else { return };
+        for block in 0..near.blocks {
+            let column = near.column + block * BLOCK;
+            let columns = edge.columns(column);
+            for row in near.top..=near.bottom {
+                let start = row * window.width() + column;
                 let Some(squared) = record.squared[start..].first_chunk_mut::<BLOCK>() else { return };
                 let Some(closest) = record.closest[start..].first_chunk_mut::<BLOCK>() else { return };
-                for i in 0..BLOCK {
-                    let u = (share[i] + row_share).max(T::zero()).min(T::one());
-                    let (ex, ey) = (x[i] - u * dx, y - u * dy);
-                    let d2 = ex * ex + ey * ey;
-                    let closer = d2 < squared[i];
-                    squared[i] = if closer { d2 } else { squared[i] };
-                    closest[i] = if closer { name } else { closest[i] };
-                }
+                let (ex, ey, _) = edge.offsets(&columns, row);
+                let d2: [T; BLOCK] = lanes(|i| ex[i] * ex[i] + ey[i] * ey[i]);
+                let (old, names) = (*squared, *closest);
+                let least: [T; BLOCK] = lanes(|i| if d2[i] < old[i] { d2[i] } else { old[i] });
+                let change: [T; BLOCK] = lanes(|i| if d2[i] < old[i] { name - names[i] } else { T::zero() });
+                // Stored as they are, choices would become masked stores, which are slow on some processors.
+                *squared = lanes(|i| if least[i] > T::zero() { least[i] } else { T::zero() });
+                *closest = lanes(|i| names[i] + change[i]);
                 let first = row * window.chunks;
-                self.tile.states[first + blocks.column / LANES] = ChunkState::Mixed;
-                self.tile.states[first + (blocks.column + BLOCK - 1) / LANES] = ChunkState::Mixed;
+                self.tile.states[first + column / LANES] = ChunkState::Mixed;
+                self.tile.states[first + (column + BLOCK - 1) / LANES] = ChunkState::Mixed;
             }
-        });
+        }
     }
 
-    /// Turns flips into sides and distances into coverage.
+    /// Turns flips into sides, and lists the chunks whose coverage is to be worked out.
     #[inline(always)]
-    fn finish(&mut self) {
+    fn find_sides(&mut self) {
         let window = self.tile.window();
+        let record = &mut *self.record;
+        record.mixed.clear();
+        record.mixed.reserve(window.rows * window.chunks);
         for row in 0..window.rows {
             let mut side = 0;
             for chunk in row * window.chunks..(row + 1) * window.chunks {
-                let mut inside = self.record.inside[chunk];
+                let mut inside = record.inside[chunk];
                 for shift in [1, 2, 4, 8] {
                     inside ^= inside << shift;
                 }
                 inside = (inside ^ side) & ALL;
                 side = if inside >> (LANES - 1) == 1 { ALL } else { 0 };
-                self.record.inside[chunk] = inside;
-                if self.tile.states[chunk] == ChunkState::Mixed || (inside != 0 && inside != ALL) {
-                    self.finish_chunk(chunk, inside);
+                record.inside[chunk] = inside;
+                let state = &mut self.tile.states[chunk];
+                if *state == ChunkState::Mixed || (inside != 0 && inside != ALL) {
+                    *state = ChunkState::Mixed;
+                    record.mixed.push(chunk);
                 } else if inside == ALL {
-                    self.tile.states[chunk] = ChunkState::Full;
+                    *state = ChunkState::Full;
                 }
             }
         }
     }
 
-    /// Coverage of a chunk that the band may reach; forgets its distances.
+    /// Turns distances into coverage, and forgets them.
     #[inline(always)]
-    fn finish_chunk(&mut self, chunk: usize, inside: u32) {
+    fn finish(&mut self) {
         let Band { offset, sharpness, cut, full, .. } = self.band;
-        let Some(squared) = self.record.squared[chunk * LANES..].first_chunk_mut::<LANES>() else { return };
-        let mut coverage: Lanes<T> = [T::zero(); LANES];
-        for i in 0..LANES {
-            let d2 = if (inside >> i) & 1 == 1 { -squared[i] } else { squared[i] };
-            let p = (((d2 - offset) * sharpness).exp_lanes() + T::one()).recip();
-            let p = if d2 < full { T::one() } else { p };
-            coverage[i] = if d2 > cut { T::zero() } else { p };
+        let (one, zero, farthest) = (T::one(), T::zero(), T::of(FARTHEST));
+        for &chunk in &self.record.mixed {
+            let inside = self.record.inside[chunk];
+            let Some(squared) = self.record.squared[chunk * LANES..].first_chunk_mut::<LANES>() else { return };
+            let d2: Lanes<T> = lanes(|i| if (inside >> i) & 1 == 1 { -squared[i] } else { squared[i] });
+            // Far outside the quotient would be subnormal, which is slow.
+            let steps: Lanes<T> = lanes(|i| (d2[i] - offset) * sharpness);
+            let steps: Lanes<T> = lanes(|i| if steps[i] < farthest { steps[i] } else { farthest });
+            let powers: Lanes<T> = lanes(|i| steps[i].exp_lanes());
+            let p: Lanes<T> = lanes(|i| one / (powers[i] + one));
+            let p: Lanes<T> = lanes(|i| if d2[i] < full { one } else { p[i] });
+            self.tile.coverage[chunk] = lanes(|i| if d2[i] > cut { zero } else { p[i] });
+            *squared = [T::of(UNSEEN); LANES];
         }
-        *squared = [T::of(UNSEEN); LANES];
-        self.tile.coverage[chunk] = coverage;
-        self.tile.states[chunk] = ChunkState::Mixed;
     }
 }

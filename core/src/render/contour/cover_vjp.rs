@@ -7,8 +7,8 @@ use super::Band;
 use super::cover::ContourRecord;
 use super::edge::BLOCK;
 use crate::real::Real;
-use crate::render::tile::{ChunkState, LANES, Tile};
-use crate::simd::Kernel;
+use crate::render::tile::{Lanes, Tile};
+use crate::simd::{Kernel, lanes};
 
 /// The backward kernel.
 pub(super) struct CoverVjp<'a, T> {
@@ -34,18 +34,13 @@ impl<T: Real> CoverVjp<'_, T> {
     /// Replaces the gradient of coverage by that of the unsigned squared distance, times -2 for [`Self::sum_to_vertices`].
     #[inline(always)]
     fn scale_to_squared(&mut self) {
-        let window = self.tile.window();
         let scale = T::of(2.0) * self.band.sharpness;
-        for chunk in 0..window.chunks * window.rows {
-            if self.tile.states[chunk] != ChunkState::Mixed {
-                continue;
-            }
+        for &chunk in &self.record.mixed {
             let (p, grad) = (&self.tile.coverage[chunk], &mut self.tile.grad[chunk]);
             let inside = self.record.inside[chunk];
-            for i in 0..LANES {
-                let side = if (inside >> i) & 1 == 1 { -scale } else { scale };
-                grad[i] *= (p[i] * (T::one() - p[i])) * side;
-            }
+            let slope: Lanes<T> = lanes(|i| p[i] * (T::one() - p[i]));
+            let side: Lanes<T> = lanes(|i| if (inside >> i) & 1 == 1 { -scale } else { scale });
+            *grad = lanes(|i| grad[i] * (slope[i] * side[i]));
         }
     }
 
@@ -53,32 +48,33 @@ impl<T: Real> CoverVjp<'_, T> {
     #[inline(always)]
     fn sum_to_vertices(&mut self, index: usize) {
         let edge = self.record.edges[index];
-        let [dx, dy] = edge.along;
         let name = T::of_usize(index);
         let window = self.tile.window();
         let (grad, closest) = (self.tile.grad.as_flattened(), &self.record.closest);
-        let zeros = [T::zero(); BLOCK];
-        // Sums of g e and g u e.
-        let (mut sx, mut sy, mut ux, mut uy) = (zeros, zeros, zeros, zeros);
-        edge.for_each_block(self.band.reach, window, |blocks| {
-            let (x, share) = edge.columns(blocks.column);
-            for row in blocks.top..=blocks.bottom {
-                let (y, row_share) = edge.row(row);
-                let start = row * window.width() + blocks.column;
+        // Sums of g e and g u e. Even and odd rows have their own, which keeps them in memory: the loop vectorizes then.
+        let mut sums = [[[T::zero(); BLOCK]; 4]; 2];
+        let Some(near) = edge.near(self.band.reach, window) else { return };
+        for block in 0..near.blocks {
+            let column = near.column + block * BLOCK;
+            let columns = edge.columns(column);
+            for row in near.top..=near.bottom {
+                let start = row * window.width() + column;
                 let Some(grad) = grad[start..].first_chunk::<BLOCK>() else { return };
                 let Some(closest) = closest[start..].first_chunk::<BLOCK>() else { return };
-                for i in 0..BLOCK {
-                    let u = (share[i] + row_share).max(T::zero()).min(T::one());
-                    let g = if closest[i] == name { grad[i] } else { T::zero() };
-                    let (gx, gy) = (g * (x[i] - u * dx), g * (y - u * dy));
-                    sx[i] += gx;
-                    sy[i] += gy;
-                    ux[i] += u * gx;
-                    uy[i] += u * gy;
-                }
+                let (grad, closest) = (*grad, *closest);
+                let (ex, ey, position) = edge.offsets(&columns, row);
+                let g: [T; BLOCK] = lanes(|i| if closest[i] == name { grad[i] } else { T::zero() });
+                let gx: [T; BLOCK] = lanes(|i| g[i] * ex[i]);
+                let gy: [T; BLOCK] = lanes(|i| g[i] * ey[i]);
+                let [sx, sy, ux, uy] = &mut sums[row % 2];
+                *sx = lanes(|i| sx[i] + gx[i]);
+                *sy = lanes(|i| sy[i] + gy[i]);
+                *ux = lanes(|i| ux[i] + position[i] * gx[i]);
+                *uy = lanes(|i| uy[i] + position[i] * gy[i]);
             }
-        });
-        let [sx, sy, ux, uy] = [sx, sy, ux, uy].map(|lanes| lanes.iter().copied().sum::<T>());
+        }
+        let [even, odd] = sums;
+        let [sx, sy, ux, uy] = lanes(|i| (0..BLOCK).map(|lane| even[i][lane] + odd[i][lane]).sum::<T>());
         self.grad_outline_px[edge.from][0] += sx - ux;
         self.grad_outline_px[edge.from][1] += sy - uy;
         self.grad_outline_px[edge.to][0] += ux;

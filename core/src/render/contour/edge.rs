@@ -1,9 +1,8 @@
 //! Edges of an outline, and the blocks of pixels near them.
 
-use core::array;
-
 use crate::real::Real;
 use crate::render::tile::{Window, pixel_range};
+use crate::simd::lanes;
 
 /// Pixels of a row that are worked on together; they may start at any column.
 pub(super) const BLOCK: usize = 8;
@@ -24,45 +23,64 @@ pub(super) struct Edge<T> {
     pub(super) inverse_squared: T,
 }
 
-/// [`BLOCK`] columns from `column` on, rows `top..=bottom`, counted from the window's top left pixel.
+/// The pixels near an edge: `blocks` times [`BLOCK`] columns from `column` on, rows `top..=bottom`, all counted from the
+/// window's top left pixel.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Blocks {
+pub(super) struct Near {
     pub(super) column: usize,
+    pub(super) blocks: usize,
     pub(super) top: usize,
     pub(super) bottom: usize,
 }
 
+/// A block of pixels, seen from an edge.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Columns<T> {
+    /// Horizontal offsets to the start of the edge.
+    x: [T; BLOCK],
+    /// The part that x has in the position along the edge.
+    share: [T; BLOCK],
+}
+
 impl<T: Real> Edge<T> {
-    /// Calls `visit` with blocks that together hold all pixels of the window within `reach` of the edge.
+    /// A rectangle inside the window that holds all its pixels within `reach` of the edge; `None` if there are none.
     #[inline(always)]
-    pub(super) fn for_each_block(&self, reach: T, window: Window, mut visit: impl FnMut(Blocks)) {
+    pub(super) fn near(&self, reach: T, window: Window) -> Option<Near> {
         let zero = T::zero();
         let [x, y] = self.start;
         let [dx, dy] = self.along;
         let (left, right) = (x + dx.min(zero) - reach, x + dx.max(zero) + reach);
         let (top, bottom) = (y + dy.min(zero) - reach, y + dy.max(zero) + reach);
-        let Some((first, last)) = pixel_range(left, right, window.width()) else { return };
-        let Some((top, bottom)) = pixel_range(top, bottom, window.rows) else { return };
-        // Blocks never overlap, or the backward pass would count pixels twice; they move left rather than leave the window.
-        let count = (last - first) / BLOCK + 1;
-        let column = first.min(window.width() - count * BLOCK);
-        for i in 0..count {
-            visit(Blocks { column: column + i * BLOCK, top, bottom });
-        }
+        let (first, last) = pixel_range(left, right, window.width())?;
+        let (top, bottom) = pixel_range(top, bottom, window.rows)?;
+        let blocks = (last - first) / BLOCK + 1;
+        // Blocks move left rather than leave the window.
+        Some(Near { column: first.min(window.width() - blocks * BLOCK), blocks, top, bottom })
     }
 
-    /// For the block of pixels at `column`: offsets to the start, and the share of the position along the edge that x decides.
+    /// What the pixels of a block share in all rows.
     #[inline(always)]
-    pub(super) fn columns(&self, column: usize) -> ([T; BLOCK], [T; BLOCK]) {
+    pub(super) fn columns(&self, column: usize) -> Columns<T> {
         let left = T::of_usize(column) - self.start[0];
-        let x: [T; BLOCK] = array::from_fn(|i| left + T::of_usize(i));
-        (x, x.map(|x| x * (self.along[0] * self.inverse_squared)))
+        let x: [T; BLOCK] = lanes(|i| left + T::of_usize(i));
+        let slope = self.along[0] * self.inverse_squared;
+        Columns { x, share: lanes(|i| x[i] * slope) }
     }
 
-    /// The share of the position along the edge that the row decides, and the row's offset to the start.
+    /// Offsets from the closest points of the edge to a block of pixels, and the closest points' positions along the edge,
+    /// in \[0, 1\].
     #[inline(always)]
-    pub(super) fn row(&self, row: usize) -> (T, T) {
+    pub(super) fn offsets(&self, columns: &Columns<T>, row: usize) -> ([T; BLOCK], [T; BLOCK], [T; BLOCK]) {
+        let (zero, one) = (T::zero(), T::one());
+        let [dx, dy] = self.along;
         let y = T::of_usize(row) - self.start[1];
-        (y, y * (self.along[1] * self.inverse_squared))
+        let row_share = y * (dy * self.inverse_squared);
+        // One operation for all lanes after the other: loops that do several become branches.
+        let position: [T; BLOCK] = lanes(|i| columns.share[i] + row_share);
+        let position: [T; BLOCK] = lanes(|i| if position[i] > zero { position[i] } else { zero });
+        let position: [T; BLOCK] = lanes(|i| if position[i] < one { position[i] } else { one });
+        let ex = lanes(|i| columns.x[i] - position[i] * dx);
+        let ey = lanes(|i| y - position[i] * dy);
+        (ex, ey, position)
     }
 }
