@@ -1,1 +1,10 @@
-//! The command tests; a module per concern.
+//! The command tests: `dvp` from its arguments to its files, streams and exit code; a module per concern.
+
+mod bad_input;
+mod evaluate;
+mod fit;
+mod generate;
+mod interrupted;
+mod pictures;
+mod runner;
+mod svg;

@@ -183,13 +183,13 @@ fn least_squares(run: &[Point], parameters: &[f64], ends: [Point; 2]) -> [Point;
         (right[0] * normal[1][1] - right[1] * normal[0][1]) / determinant,
         (right[1] * normal[0][0] - right[0] * normal[1][0]) / determinant,
     ];
-    // Backward or endless tangents would make loops; a third of the chord is always sane.
-    let sane = |length: f64| length > 1e-3 * chord && length < 1e3 * norm_of_run(run);
-    let lengths = if sane(solved[0]) && sane(solved[1]) { solved } else { [chord / 3.0; 2] };
+    // Backward tangents, or longer ones than the run, would make loops; a third of the chord is always sane.
+    let is_sane = solved.iter().all(|&length| length > 1e-3 * chord) && solved[0] + solved[1] < run_length(run);
+    let lengths = if is_sane { solved } else { [chord / 3.0; 2] };
     [first, along(first, ends[0], lengths[0]), along(last, ends[1], lengths[1]), last]
 }
 
-fn norm_of_run(run: &[Point]) -> f64 {
+fn run_length(run: &[Point]) -> f64 {
     run.windows(2).map(|pair| norm(minus(pair[1], pair[0]))).sum()
 }
 

@@ -1,0 +1,111 @@
+//! Scores: exact where prediction and truth are the same, failures counted.
+
+use std::fs;
+use std::path::Path;
+
+use dvp::format::{DataSet, read_picture};
+use serde_json::Value;
+
+use crate::runner::{Run, dvp, dvp_done, names, text};
+
+/// A data set, and its true scenes as predictions.
+fn truth_as_prediction(folder: &Path, preset: &str) -> (String, String) {
+    let [data, predictions] = ["data", "predictions"].map(|name| folder.join(name));
+    dvp_done(["generate", "--count", "6", "--preset", preset, "--out", text(&data)]);
+    fs::create_dir(&predictions).unwrap();
+    for (sample, line) in
+        DataSet::<f64>::open(&data).unwrap().samples.iter().zip(fs::read_to_string(data.join("scenes.jsonl")).unwrap().lines())
+    {
+        fs::write(predictions.join(format!("{}.json", sample.stem)), line).unwrap();
+    }
+    (text(&data).to_owned(), text(&predictions).to_owned())
+}
+
+fn figures(run: &Run) -> Value {
+    serde_json::from_str(&run.out).unwrap_or_else(|error| panic!("{error}: {} {}", run.out, run.err))
+}
+
+#[test]
+fn the_truth_scores_exactly() {
+    for preset in ["mds-hr", "multi-dsprites"] {
+        let folder = tempfile::tempdir().unwrap();
+        let (data, predictions) = truth_as_prediction(folder.path(), preset);
+        let run = dvp(["evaluate", &predictions, &data, "--against", "float", "--json"]);
+        let expected = serde_json::json!({
+            "n": 6, "mae": 0.0, "mse": 0.0, "ssim": 1.0, "iou": 1.0, "ari": 1.0, "exact_count": 1.0, "failed": []
+        });
+        let mut figures = figures(&run);
+        // A window of equal pixels gives 1 up to rounding.
+        assert!((figures["ssim"].as_f64().unwrap() - 1.0).abs() < 1e-12);
+        figures["ssim"] = 1.0.into();
+        assert_eq!((run.code, figures), (0, expected));
+    }
+}
+
+#[test]
+fn eight_bits_cost_a_quarter_step() {
+    let folder = tempfile::tempdir().unwrap();
+    let (data, predictions) = truth_as_prediction(folder.path(), "mds-hr");
+    let mae = figures(&dvp(["evaluate", &predictions, &data, "--json"]))["mae"].as_f64().unwrap();
+    // Rounding errors are at most half a step of 1/255, a quarter on average; flat areas share theirs.
+    assert!((0.02 / 255.0..0.5 / 255.0).contains(&mae), "{mae}");
+}
+
+#[test]
+fn failures_are_listed_and_in_no_mean() {
+    let folder = tempfile::tempdir().unwrap();
+    let (data, predictions) = truth_as_prediction(folder.path(), "mds-hr");
+    let predicted = |stem: &str| Path::new(&predictions).join(format!("{stem}.json"));
+    fs::remove_file(predicted("00001")).unwrap();
+    fs::write(predicted("00002"), "{\"what\": NaN}").unwrap();
+    let wide = fs::read_to_string(predicted("00003")).unwrap().replace("\"width\":128", "\"width\":64");
+    fs::write(predicted("00003"), wide).unwrap();
+    let csv = folder.path().join("figures.csv");
+    let run = dvp(["evaluate", &predictions, &data, "--against", "float", "--json", "--csv", text(&csv)]);
+    let figures = figures(&run);
+    assert_eq!((run.code, &figures["n"], &figures["mae"]), (1, &3.into(), &0.0.into()));
+    let stems: Vec<&Value> = figures["failed"].as_array().unwrap().iter().map(|failure| &failure["stem"]).collect();
+    assert_eq!(stems, ["00001", "00002", "00003"]);
+    for part in ["00001: no prediction", "00002: ", "not a scene", "predicted 64 x 128 pixels for 128 x 128"] {
+        assert!(run.err.contains(part), "'{}' lacks '{part}'", run.err);
+    }
+    let csv = fs::read_to_string(csv).unwrap();
+    assert_eq!(csv.lines().count(), 7, "{csv}");
+    assert!(csv.lines().nth(1).unwrap().starts_with("00000,0,0,1"), "{csv}");
+}
+
+#[test]
+fn pictures_without_scenes_get_image_metrics() {
+    let folder = tempfile::tempdir().unwrap();
+    let (data, predictions) = truth_as_prediction(folder.path(), "mds-hr");
+    fs::remove_file(Path::new(&data).join("scenes.jsonl")).unwrap();
+    let run = dvp(["evaluate", &predictions, &data, "--json"]);
+    let figures = figures(&run);
+    assert_eq!((&figures["n"], &figures["iou"], run.code), (&6.into(), &Value::Null, 0));
+    let table = dvp_done(["evaluate", &predictions, &data]);
+    assert!(table.contains("exact count") && table.contains(" - "), "{table}");
+}
+
+#[test]
+fn float_pixels_come_from_a_numpy_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let (data, predictions) = truth_as_prediction(folder.path(), "mds-hr");
+    // Two of the six pictures as (2, 128, 128, 3) bytes: only these are scored, and equal to their PNGs.
+    let mut array = b"\x93NUMPY\x01\x00".to_vec();
+    let header = format!("{:<117}\n", "{'descr': '|u1', 'fortran_order': False, 'shape': (2, 128, 128, 3), }");
+    array.extend(u16::try_from(header.len()).unwrap().to_le_bytes());
+    array.extend(header.as_bytes());
+    for name in ["00000.png", "00001.png"] {
+        let image = read_picture::<f64>(&Path::new(&data).join(name), 1 << 20).unwrap().to_interleaved();
+        array.extend(image.iter().map(|value| u8::try_from((0..=255).find(|&b| f64::from(b) / 255.0 >= *value).unwrap()).unwrap()));
+    }
+    let npy = folder.path().join("float.npy");
+    fs::write(&npy, array).unwrap();
+    let from_npy = figures(&dvp(["evaluate", &predictions, &data, "--npy", text(&npy), "--json"]));
+    for extra in 2..6 {
+        fs::remove_file(Path::new(&predictions).join(format!("0000{extra}.json"))).unwrap();
+    }
+    let from_png = figures(&dvp(["evaluate", &predictions, &data, "--json"]));
+    assert_eq!((&from_npy["n"], &from_npy["mae"]), (&2.into(), &from_png["mae"]));
+    assert!(names(folder.path()).contains(&"float.npy".to_owned()));
+}

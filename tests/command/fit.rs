@@ -1,0 +1,92 @@
+//! `dvp fit`: what it writes, says and refuses.
+
+use std::fs;
+
+use dvp::format::{DataSet, Place, read_scene};
+use dvp_core::Scene;
+use serde_json::Value;
+
+use crate::runner::{dvp, dvp_done, names, text};
+
+#[test]
+fn known_shapes_are_found_where_they_are() {
+    let folder = tempfile::tempdir().unwrap();
+    let [data, out] = ["data", "out"].map(|name| folder.path().join(name));
+    // Spread out, so that no object hides another.
+    dvp_done(["generate", "--count", "6", "--visible", "2", "--scale", "0.1..0.15", "--margin", "0.2", "--out", text(&data)]);
+    let run = dvp(["fit", text(&data), "--bank", "mdshr", "--out", text(&out), "--json"]);
+    assert_eq!((run.code, run.err.as_str()), (0, ""));
+    let said: Value = serde_json::from_str(&run.out).unwrap();
+    assert_eq!((&said["summary"]["images"], &said["summary"]["objects"]), (&6.into(), &12.into()));
+    assert!(said["images"][0]["cpu_ms"].as_f64().unwrap() > 0.0 && said["images"][0]["stop"].is_string());
+    let set = DataSet::<f64>::open(&data).unwrap();
+    for sample in &set.samples {
+        let (json, place) = sample.scene.as_ref().unwrap();
+        let truth: Scene<f64> = json.to_scene(Some(&set.bank), place).unwrap();
+        let path = out.join(format!("{}.json", sample.stem));
+        let json = read_scene(&path).unwrap();
+        let found: Scene<f64> = json.to_scene(None, &Place::file(&path)).unwrap();
+        for object in &truth.objects {
+            let apart = |other: &dvp_core::Object<f64>| {
+                let [dx, dy] = [0, 1].map(|i| other.pose.translation[i] - object.pose.translation[i]);
+                // A hundredth of the image is 1.3 px.
+                dx.hypot(dy) < 0.01 && other.prototype == object.prototype
+            };
+            assert!(found.objects.iter().any(apart), "{}: {object:?} is not in {found:?}", sample.stem);
+        }
+        let symmetries = json.objects.iter().map(|object| object.symmetry.unwrap());
+        assert!(symmetries.zip(&found.objects).all(|(k, object)| [1, 4, 2][object.prototype.unwrap()] == k));
+    }
+}
+
+#[test]
+fn files_with_one_stem_do_not_replace_each_other() {
+    let folder = tempfile::tempdir().unwrap();
+    let [data, out] = ["data", "out"].map(|name| folder.path().join(name));
+    dvp_done(["generate", "--count", "1", "--width", "48", "--out", text(&data)]);
+    let png = data.join("00000.png");
+    let bmp = data.join("00000.bmp");
+    image::open(&png).unwrap().save(&bmp).unwrap();
+    let other = folder.path().join("other");
+    fs::create_dir(&other).unwrap();
+    fs::copy(&png, other.join("00000.png")).unwrap();
+    let pattern = format!("{}/*.png", text(&other));
+    dvp_done(["fit", text(&png), text(&bmp), text(&data), &pattern, "--out", text(&out), "--no-svg", "--no-png"]);
+    assert_eq!(names(&out), ["00000.bmp.json", "00000.png-2.json", "00000.png.json"]);
+}
+
+#[test]
+fn inputs_are_not_replaced() {
+    let folder = tempfile::tempdir().unwrap();
+    dvp_done(["generate", "--count", "1", "--width", "48", "--out", text(folder.path())]);
+    let before = fs::read(folder.path().join("00000.png")).unwrap();
+    let run = dvp(["fit", text(folder.path()), "--out", text(folder.path())]);
+    assert!(run.code == 1 && run.err.contains("--no-png"), "{}", run.err);
+    assert!(before == fs::read(folder.path().join("00000.png")).unwrap());
+    dvp_done(["fit", text(folder.path()), "--out", text(folder.path()), "--no-png"]);
+    assert!(names(folder.path()).contains(&"00000.svg".to_owned()));
+}
+
+#[test]
+fn every_method_runs_and_the_number_of_threads_changes_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let [data, start] = ["data", "start"].map(|name| folder.path().join(name));
+    dvp_done(["generate", "--count", "2", "--width", "32", "--visible", "1", "--out", text(&data)]);
+    dvp_done(["fit", text(&data), "--bank", "mdshr", "--out", text(&start), "--no-png", "--no-svg"]);
+    for method in ["segment", "opt-iter", "opt-p", "rand-opt-p"] {
+        let mut texts = Vec::new();
+        for threads in ["1", "2"] {
+            let out = folder.path().join(format!("{method}-{threads}"));
+            let mut arguments = vec!["fit", text(&data), "--method", method, "--objects", "1", "--threads", threads];
+            arguments.extend(["--out", text(&out), "--no-svg", "--no-png"]);
+            if method == "opt-p" {
+                arguments.extend(["--start", text(&start)]);
+            }
+            dvp_done(arguments);
+            texts.push(["00000.json", "00001.json"].map(|name| fs::read(out.join(name)).unwrap()));
+        }
+        assert!(texts[0] == texts[1], "{method}");
+    }
+    let run = dvp(["fit", text(&data), "--method", "opt-p", "--out", text(&start)]);
+    assert!(run.code == 1 && run.err.contains("--start"), "{}", run.err);
+}
