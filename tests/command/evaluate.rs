@@ -13,8 +13,11 @@ fn truth_as_prediction(folder: &Path, preset: &str) -> (String, String) {
     let [data, predictions] = ["data", "predictions"].map(|name| folder.join(name));
     dvp_done(["generate", "--count", "6", "--preset", preset, "--out", text(&data)]);
     fs::create_dir(&predictions).unwrap();
-    for (sample, line) in
-        DataSet::<f64>::open(&data).unwrap().samples.iter().zip(fs::read_to_string(data.join("scenes.jsonl")).unwrap().lines())
+    for (sample, line) in DataSet::<f64>::open(&data)
+        .unwrap()
+        .samples
+        .iter()
+        .zip(fs::read_to_string(data.join("scenes.jsonl")).unwrap().lines())
     {
         fs::write(predictions.join(format!("{}.json", sample.stem)), line).unwrap();
     }
@@ -97,7 +100,11 @@ fn float_pixels_come_from_a_numpy_file() {
     array.extend(header.as_bytes());
     for name in ["00000.png", "00001.png"] {
         let image = read_picture::<f64>(&Path::new(&data).join(name), 1 << 20).unwrap().to_interleaved();
-        array.extend(image.iter().map(|value| u8::try_from((0..=255).find(|&b| f64::from(b) / 255.0 >= *value).unwrap()).unwrap()));
+        array.extend(
+            image
+                .iter()
+                .map(|value| u8::try_from((0..=255).find(|&b| f64::from(b) / 255.0 >= *value).unwrap()).unwrap()),
+        );
     }
     let npy = folder.path().join("float.npy");
     fs::write(&npy, array).unwrap();

@@ -13,7 +13,19 @@ fn known_shapes_are_found_where_they_are() {
     let folder = tempfile::tempdir().unwrap();
     let [data, out] = ["data", "out"].map(|name| folder.path().join(name));
     // Spread out, so that no object hides another.
-    dvp_done(["generate", "--count", "6", "--visible", "2", "--scale", "0.1..0.15", "--margin", "0.2", "--out", text(&data)]);
+    dvp_done([
+        "generate",
+        "--count",
+        "6",
+        "--visible",
+        "2",
+        "--scale",
+        "0.1..0.15",
+        "--margin",
+        "0.2",
+        "--out",
+        text(&data),
+    ]);
     let run = dvp(["fit", text(&data), "--bank", "mdshr", "--out", text(&out), "--json"]);
     assert_eq!((run.code, run.err.as_str()), (0, ""));
     let said: Value = serde_json::from_str(&run.out).unwrap();

@@ -68,7 +68,7 @@ impl BankChoice {
     pub(super) fn load<T: Real>(&self) -> Result<Option<Bank<T>>> {
         Ok(match self {
             Self::None => None,
-            Self::Mdshr => Some(mdshr_bank()?),
+            Self::Mdshr => Some(mdshr_bank()),
             Self::File(path) => Some(read_bank(path)?),
         })
     }

@@ -6,6 +6,7 @@
 use std::path::Path;
 
 use dvp_core::Real;
+use dvp_core::shape::{self, MDSHR_NAMES};
 use dvp_fit::Bank;
 use serde::{Deserialize, Serialize};
 
@@ -13,9 +14,8 @@ use super::error::{FormatError, Place};
 use super::scene_checks::checked_efd;
 use super::scene_json::read_text;
 
-/// The three shapes of MDS-HR, 64 harmonics each. The square and the ellipse are exact; the heart is traced from the
-/// drawing that the benchmark uses.
-const MDSHR: &str = include_str!("../../data/mdshr_bank.json");
+/// Harmonics that the data of MDS-HR were drawn with.
+const MDSHR_HARMONICS: usize = 64;
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -32,11 +32,11 @@ struct PrototypeJson {
 }
 
 /// The built-in bank of MDS-HR: heart, square, ellipse.
-///
-/// # Errors
-/// None in practice: a unit test reads the built-in text.
-pub fn mdshr_bank<T: Real>() -> Result<Bank<T>, FormatError> {
-    parse(MDSHR.as_bytes(), Path::new("mdshr (built in)"))
+#[must_use]
+pub fn mdshr_bank<T: Real>() -> Bank<T> {
+    let shapes = shape::mdshr_bank(MDSHR_HARMONICS);
+    let names = MDSHR_NAMES.into_iter().map(str::to_owned);
+    Bank { prototypes: names.zip(shapes.prototypes().iter().cloned()).collect() }
 }
 
 /// Reads a bank file in either layout.

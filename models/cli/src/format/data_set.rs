@@ -64,7 +64,7 @@ impl<T: Real> DataSet<T> {
 pub fn bank_near<T: Real>(folder: &Path) -> Result<Bank<T>, FormatError> {
     let above = folder.join("..");
     let mut places = BANK_FILES.iter().flat_map(|name| [folder.join(name), above.join(name)]);
-    places.find(|path| path.is_file()).map_or_else(mdshr_bank, |path| read_bank(&path))
+    places.find(|path| path.is_file()).map_or_else(|| Ok(mdshr_bank()), |path| read_bank(&path))
 }
 
 /// The pictures of a folder, by name; not of its sub-folders.

@@ -22,7 +22,7 @@ fn scene() -> Scene<f32> {
 
 fn parse(text: &str) -> Result<Scene<f64>, FormatError> {
     let place = Place::line(Path::new("scenes.jsonl"), 3);
-    SceneJson::parse(text.as_bytes(), &place)?.to_scene(Some(&mdshr_bank()?), &place)
+    SceneJson::parse(text.as_bytes(), &place)?.to_scene(Some(&mdshr_bank()), &place)
 }
 
 fn object_with(fields: &str) -> String {
@@ -83,7 +83,7 @@ fn errors_name_line_field_and_remedy() {
 
 #[test]
 fn the_built_in_bank_survives_its_own_text() {
-    let bank = mdshr_bank::<f64>().unwrap();
+    let bank = mdshr_bank::<f64>();
     let names: Vec<&str> = bank.prototypes.iter().map(|(name, _)| name.as_str()).collect();
     assert_eq!(names, ["heart", "square", "ellipse"]);
     let folder = tempfile::tempdir().unwrap();

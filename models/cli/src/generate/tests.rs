@@ -15,7 +15,7 @@ fn ranges_are_read() {
 
 #[test]
 fn scenes_follow_the_settings_and_their_number_only() {
-    let bank = mdshr_bank().unwrap();
+    let bank = mdshr_bank();
     let size = ImageSize::new(128, 128).unwrap();
     let settings = SceneSettings::mds_hr();
     let mut counts = [0; 5];
