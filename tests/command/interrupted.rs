@@ -4,6 +4,7 @@
 //! process, so the test runs itself again as a child.
 
 use std::fs;
+use std::io::Write;
 use std::process::Command;
 
 use crate::runner::{dvp, dvp_done, names, text};
@@ -30,7 +31,7 @@ fn limited(arguments: &[&str], blocks: u32) -> String {
 fn child() {
     if let Ok(arguments) = std::env::var(VARIABLE) {
         let run = dvp(arguments.split(SEPARATOR));
-        println!("code {} {}", run.code, run.err);
+        write!(std::io::stdout(), "code {} {}", run.code, run.err).unwrap();
     }
 }
 

@@ -1,6 +1,6 @@
 //! Draws `pictures/*.svg` as PNG with resvg: `cargo run -p dvp-tests --example draw_pictures`.
 
-use std::error::Error;
+use core::error::Error;
 use std::fs;
 use std::path::Path;
 

@@ -11,7 +11,7 @@
 //! | `picture.rs` | PNG, JPEG, BMP, GIF, WebP, PNM, TIFF | an [`Image`](dvp_core::Image); and PNG the other way |
 //! | `atomic.rs` | bytes | a file that is there whole or not at all |
 //!
-//! `tests/command/formats.rs` proves the errors, `tests/command/interrupted.rs` that nothing is left half-written.
+//! `tests/command/bad_input.rs` proves the errors, `tests/command/interrupted.rs` that nothing is left half-written.
 
 mod atomic;
 mod bank;

@@ -1,7 +1,8 @@
 //! One picture to one fit, by the chosen method.
 
+use core::panic::AssertUnwindSafe;
 use core::time::Duration;
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::panic::catch_unwind;
 use std::path::PathBuf;
 
 use anyhow::{Context, Result, bail};
