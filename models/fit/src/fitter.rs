@@ -2,13 +2,16 @@
 
 use alloc::vec::Vec;
 
-use dvp_core::render::EdgeProfile;
+use dvp_core::render::contour::ContourRenderer;
+use dvp_core::render::{EdgeProfile, Renderer};
 use dvp_core::scene::Pose;
 use dvp_core::shape::{OutlineBasis, REFERENCE_VERTICES};
-use dvp_core::{ImageView, Object, Real, Scene};
+use dvp_core::{Drawing, ImageView, Object, Real, Scene};
 
+use crate::joint::{JointObject, JointProblem, JointScene, JointScratch, refine};
 use crate::pose::field::OutlineField;
-use crate::pose::search::{Candidate, Prototype, search};
+use crate::pose::search::{Candidate, Effort, Prototype, search};
+use crate::residual::Residual;
 use crate::segment::{SegmentOptions, Segmentation};
 use crate::{Ambiguity, Fit, FitError, FitOptions, StopReason};
 
@@ -17,14 +20,34 @@ use crate::{Ambiguity, Fit, FitError, FitOptions, StopReason};
 pub struct Fitter<T> {
     options: FitOptions<T>,
     prototypes: Vec<Prototype<T>>,
-    basis: OutlineBasis<T>,
 }
 
 /// Memory of a [`Fitter`], one per thread, kept between images.
-#[derive(Clone, Debug, Default)]
-pub struct FitScratch<T> {
+#[derive(Debug)]
+pub struct FitScratch<T: Real> {
     segmentation: Segmentation<T>,
     candidates: Vec<Candidate<T>>,
+    joint: JointScratch<T>,
+    drawing: Drawing<T>,
+    outline: Vec<[T; 2]>,
+    render: <ContourRenderer<T> as Renderer<T>>::Scratch,
+    pixels: Vec<T>,
+    residual: Residual<T>,
+}
+
+impl<T: Real> Default for FitScratch<T> {
+    fn default() -> Self {
+        Self {
+            segmentation: Segmentation::default(),
+            candidates: Vec::new(),
+            joint: JointScratch::default(),
+            drawing: Drawing::default(),
+            outline: Vec::new(),
+            render: Default::default(),
+            pixels: Vec::new(),
+            residual: Residual::default(),
+        }
+    }
 }
 
 /// Fits one image; for many, keep a [`Fitter`] and a [`FitScratch`].
@@ -35,6 +58,13 @@ pub fn fit_image<T: Real>(image: ImageView<'_, T>, options: &FitOptions<T>) -> R
     Fitter::new(options.clone())?.fit(image, &mut FitScratch::default())
 }
 
+/// An object whose rendering misses the image by this much in some channel ...
+const VISIBLE_ERROR: f64 = 0.03;
+/// ... in more than this many pixels is searched for again, with more starts.
+const VISIBLE_PIXELS: usize = 4;
+/// Candidates of the wide search that are rendered.
+const RENDERED_CANDIDATES: usize = 8;
+
 impl<T: Real> Fitter<T> {
     /// Prepares the shapes of the bank.
     ///
@@ -42,7 +72,7 @@ impl<T: Real> Fitter<T> {
     /// [`FitError`] if a prototype is no closed shape or a setting is out of range.
     pub fn new(options: FitOptions<T>) -> Result<Self, FitError> {
         let bank = options.bank.as_ref().map_or(&[][..], |bank| &bank.prototypes);
-        let harmonics = bank.iter().map(|(_, efd)| efd.harmonic_count()).max().unwrap_or(1).max(options.max_harmonics);
+        let harmonics = bank.iter().map(|(_, efd)| efd.harmonic_count()).max().unwrap_or(1).max(1);
         let basis = OutlineBasis::new(REFERENCE_VERTICES, harmonics)?;
         let mut prototypes = Vec::with_capacity(bank.len());
         for (index, (_, efd)) in bank.iter().enumerate() {
@@ -51,7 +81,7 @@ impl<T: Real> Fitter<T> {
             let field = OutlineField::new(&outline).ok_or(FitError::FlatPrototype { index })?;
             prototypes.push(Prototype { outline, field, symmetry: [1, 4, 2][index.min(2)] });
         }
-        Ok(Self { options, prototypes, basis })
+        Ok(Self { options, prototypes })
     }
 
     /// From pixels to a scene.
@@ -60,41 +90,142 @@ impl<T: Real> Fitter<T> {
     /// [`FitError::NotFinite`] for an image with NaN or infinity.
     pub fn fit(&self, image: ImageView<'_, T>, scratch: &mut FitScratch<T>) -> Result<Fit<T>, FitError> {
         let edge = self.options.edge.unwrap_or_else(EdgeProfile::reference);
-        let unit = T::of_usize(image.size().unit_px());
         scratch.segmentation.run(&image, &edge, &SegmentOptions::default());
-        let background = scratch.segmentation.background();
-        let mut scene = Scene { background, objects: Vec::new(), edge, compositing: self.options.compositing };
-        let bank = self.options.bank.as_ref().map_or(&[][..], |bank| &bank.prototypes);
+        let mut found = JointScene { background: scratch.segmentation.background(), objects: Vec::new() };
         let mut steps = 0;
-        let mut ambiguity = Vec::new();
-        for segment in scratch.segmentation.segments() {
-            search(segment, &self.prototypes, image.size(), &scratch.segmentation, &mut scratch.candidates);
+        let mut sources = Vec::new();
+        for (index, segment) in scratch.segmentation.segments().iter().enumerate() {
+            let effort = Effort::Usual;
+            search(segment, &self.prototypes, image.size(), &scratch.segmentation, effort, &mut scratch.candidates);
             let Some(best) = scratch.candidates.first() else { continue };
             steps += best.steps;
-            let pose = Pose {
-                translation: best.pose.translation.map(|v| v / unit),
-                scale: best.pose.log_scale.exp() / unit,
-                rotation: best.pose.rotation,
-            };
-            let object = scene.objects.len();
-            ambiguity.push(Ambiguity::Symmetry { object, order: self.prototypes[best.prototype].symmetry });
-            scene.objects.push(Object {
-                pose,
-                color: segment.color,
-                confidence: T::one(),
-                efd: bank[best.prototype].1.clone(),
-                prototype: Some(best.prototype),
-            });
+            sources.push(index);
+            found.objects.push(joint_object(best, segment.color));
         }
-        let _ = &self.basis;
-        Ok(Fit {
-            scene,
-            loss: T::zero(),
-            steps,
-            stop: StopReason::Converged,
-            covariance: Vec::new(),
-            ambiguity,
-            bits: 0.0,
-        })
+        let mut loss = self.compare(&image, edge, &found, scratch)?;
+        for at in 0..found.objects.len() {
+            if self.misses(&image, &found, at, scratch) {
+                loss = self.search_again(&image, edge, &mut found, at, sources[at], loss, scratch)?;
+            }
+        }
+        let mut stop = StopReason::Converged;
+        let refined = found.objects.len() <= 64 && self.options.max_steps > 0 && loss > T::of(4e-4);
+        if refined {
+            let problem = JointProblem {
+                image,
+                shapes: &self.prototypes,
+                edge,
+                compositing: self.options.compositing,
+                colors: false,
+                width: T::of(0.05),
+            };
+            let mut moved = found.clone();
+            let result = refine(&problem, &mut moved, self.options.max_steps, &mut scratch.joint);
+            steps += result.steps;
+            stop = result.stop;
+            let after = self.compare(&image, edge, &moved, scratch)?;
+            if after < loss {
+                (found, loss) = (moved, after);
+            }
+        }
+        Ok(self.report(&image, edge, &found, loss, steps, stop))
     }
+
+    /// Renders `found` and keeps its residual; returns the mean absolute error.
+    fn compare(
+        &self,
+        image: &ImageView<'_, T>,
+        edge: EdgeProfile<T>,
+        found: &JointScene<T>,
+        scratch: &mut FitScratch<T>,
+    ) -> Result<T, FitError> {
+        let unit = T::of_usize(image.size().unit_px());
+        scratch.drawing.clear();
+        scratch.drawing.background = found.background;
+        for object in &found.objects {
+            let frame = crate::pose::gauss_newton::Frame::new(&object.pose);
+            scratch.outline.clear();
+            let unit_outline = &self.prototypes[object.shape].outline;
+            scratch.outline.extend(unit_outline.iter().map(|&v| frame.to_pixels(v).map(|x| x / unit)));
+            scratch.drawing.push(&scratch.outline, object.color, object.confidence);
+        }
+        scratch.pixels.resize(image.data().len(), T::zero());
+        let renderer = ContourRenderer::new(edge, self.options.compositing);
+        renderer.render(&scratch.drawing, image.size(), &mut scratch.render, &mut scratch.pixels)?;
+        Ok(scratch.residual.measure(image, &scratch.pixels))
+    }
+
+    fn misses(&self, image: &ImageView<'_, T>, found: &JointScene<T>, at: usize, scratch: &FitScratch<T>) -> bool {
+        let object = &found.objects[at];
+        let reach = object.pose.log_scale.exp() * self.prototypes[object.shape].field.radius + T::of(2.0);
+        let missed = scratch.residual.count_above(image.size(), object.pose.translation, reach, T::of(VISIBLE_ERROR));
+        missed > VISIBLE_PIXELS
+    }
+
+    #[expect(clippy::too_many_arguments, reason = "one step of the pipeline, its state is named piece by piece")]
+    fn search_again(
+        &self,
+        image: &ImageView<'_, T>,
+        edge: EdgeProfile<T>,
+        found: &mut JointScene<T>,
+        at: usize,
+        source: usize,
+        loss: T,
+        scratch: &mut FitScratch<T>,
+    ) -> Result<T, FitError> {
+        let mut candidates = core::mem::take(&mut scratch.candidates);
+        let segment = &scratch.segmentation.segments()[source];
+        search(segment, &self.prototypes, image.size(), &scratch.segmentation, Effort::Wide, &mut candidates);
+        let color = segment.color;
+        let mut best = (loss, found.objects[at]);
+        for candidate in candidates.iter().take(RENDERED_CANDIDATES) {
+            found.objects[at] = joint_object(candidate, color);
+            let loss = self.compare(image, edge, found, scratch)?;
+            if loss < best.0 {
+                best = (loss, found.objects[at]);
+            }
+        }
+        scratch.candidates = candidates;
+        found.objects[at] = best.1;
+        self.compare(image, edge, found, scratch)
+    }
+
+    fn report(
+        &self,
+        image: &ImageView<'_, T>,
+        edge: EdgeProfile<T>,
+        found: &JointScene<T>,
+        loss: T,
+        steps: usize,
+        stop: StopReason,
+    ) -> Fit<T> {
+        let unit = T::of_usize(image.size().unit_px());
+        let bank = self.options.bank.as_ref().map_or(&[][..], |bank| &bank.prototypes);
+        let mut ambiguity = Vec::new();
+        let objects = found.objects.iter().enumerate().map(|(object, part)| {
+            ambiguity.push(Ambiguity::Symmetry { object, order: self.prototypes[part.shape].symmetry });
+            Object {
+                pose: Pose {
+                    translation: part.pose.translation.map(|v| v / unit),
+                    scale: part.pose.log_scale.exp() / unit,
+                    rotation: part.pose.rotation,
+                },
+                color: part.color,
+                confidence: part.confidence,
+                efd: bank[part.shape].1.clone(),
+                prototype: Some(part.shape),
+            }
+        });
+        let scene = Scene {
+            background: found.background,
+            objects: objects.collect(),
+            edge,
+            compositing: self.options.compositing,
+        };
+        Fit { scene, loss, steps, stop, covariance: Vec::new(), ambiguity, bits: 0.0 }
+    }
+}
+
+fn joint_object<T: Real>(candidate: &Candidate<T>, color: [T; 3]) -> JointObject<T> {
+    JointObject { shape: candidate.prototype, pose: candidate.pose, color, confidence: T::one() }
 }

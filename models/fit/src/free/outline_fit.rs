@@ -9,7 +9,7 @@ use alloc::vec::Vec;
 use dvp_core::Real;
 
 use super::basis::Basis;
-use super::solve::{factor, packed, solve};
+use crate::cholesky::{factor, packed, solve};
 use crate::segment::EdgeSample;
 
 /// Center (px) and rows (a, b, c, d) in px: x = cx + sum a cos + b sin, y = cy + sum c cos + d sin.
