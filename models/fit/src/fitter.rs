@@ -5,14 +5,19 @@ use alloc::vec::Vec;
 use dvp_core::render::contour::ContourRenderer;
 use dvp_core::render::{EdgeProfile, Renderer};
 use dvp_core::scene::Pose;
-use dvp_core::shape::{OutlineBasis, REFERENCE_VERTICES};
-use dvp_core::{Drawing, ImageView, Object, Real, Scene};
+
+use dvp_core::shape::{OutlineBasis, REFERENCE_VERTICES, SYMMETRY_TOLERANCE, Symmetry};
+use dvp_core::{Drawing, Efd, ImageView, Object, Real, Scene};
 
 use crate::joint::{JointObject, JointProblem, JointScene, JointScratch, refine};
 use crate::pose::field::OutlineField;
 use crate::pose::search::{Candidate, Effort, Prototype, search};
 use crate::residual::Residual;
-use crate::segment::{SegmentOptions, Segmentation};
+use crate::segment::{EdgeSample, SegmentOptions, Segmentation};
+use crate::free::basis::Basis;
+use crate::free::grow::{grow, hold_outside};
+use crate::free::outline_fit::OutlineScratch;
+use crate::free::start::{StartScratch, shrink, trace};
 use crate::{Ambiguity, Fit, FitError, FitOptions, StopReason};
 
 /// Fits images; prepared once from the options, shared between threads.
@@ -20,6 +25,8 @@ use crate::{Ambiguity, Fit, FitError, FitOptions, StopReason};
 pub struct Fitter<T> {
     options: FitOptions<T>,
     prototypes: Vec<Prototype<T>>,
+    outlines: OutlineBasis<T>,
+    basis: Basis<T>,
 }
 
 /// Memory of a [`Fitter`], one per thread, kept between images.
@@ -33,6 +40,9 @@ pub struct FitScratch<T: Real> {
     render: <ContourRenderer<T> as Renderer<T>>::Scratch,
     pixels: Vec<T>,
     residual: Residual<T>,
+    start: StartScratch<T>,
+    free: OutlineScratch<T>,
+    samples: Vec<EdgeSample<T>>,
 }
 
 impl<T: Real> Default for FitScratch<T> {
@@ -46,6 +56,9 @@ impl<T: Real> Default for FitScratch<T> {
             render: Default::default(),
             pixels: Vec::new(),
             residual: Residual::default(),
+            start: StartScratch::default(),
+            free: OutlineScratch::default(),
+            samples: Vec::new(),
         }
     }
 }
@@ -72,16 +85,18 @@ impl<T: Real> Fitter<T> {
     /// [`FitError`] if a prototype is no closed shape or a setting is out of range.
     pub fn new(options: FitOptions<T>) -> Result<Self, FitError> {
         let bank = options.bank.as_ref().map_or(&[][..], |bank| &bank.prototypes);
-        let harmonics = bank.iter().map(|(_, efd)| efd.harmonic_count()).max().unwrap_or(1).max(1);
-        let basis = OutlineBasis::new(REFERENCE_VERTICES, harmonics)?;
+        let harmonics = bank.iter().map(|(_, efd)| efd.harmonic_count()).max().unwrap_or(1);
+        let outlines = OutlineBasis::new(REFERENCE_VERTICES, harmonics.max(options.max_harmonics).max(1))?;
         let mut prototypes = Vec::with_capacity(bank.len());
         for (index, (_, efd)) in bank.iter().enumerate() {
             let mut outline = alloc::vec![[T::zero(); 2]; REFERENCE_VERTICES];
-            basis.outline(efd.rows(), &mut outline).map_err(|source| FitError::Prototype { index, source })?;
+            outlines.outline(efd.rows(), &mut outline).map_err(|source| FitError::Prototype { index, source })?;
             let field = OutlineField::new(&outline).ok_or(FitError::FlatPrototype { index })?;
-            prototypes.push(Prototype { outline, field, symmetry: [1, 4, 2][index.min(2)] });
+            let symmetry = symmetry_order(efd);
+            prototypes.push(Prototype { outline, field, symmetry });
         }
-        Ok(Self { options, prototypes })
+        let basis = Basis::new(REFERENCE_VERTICES, options.max_harmonics);
+        Ok(Self { options, prototypes, outlines, basis })
     }
 
     /// From pixels to a scene.
@@ -91,6 +106,9 @@ impl<T: Real> Fitter<T> {
     pub fn fit(&self, image: ImageView<'_, T>, scratch: &mut FitScratch<T>) -> Result<Fit<T>, FitError> {
         let edge = self.options.edge.unwrap_or_else(EdgeProfile::reference);
         scratch.segmentation.run(&image, &edge, &SegmentOptions::default());
+        if self.options.bank.is_none() {
+            return self.fit_free(&image, edge, scratch);
+        }
         let mut found = JointScene { background: scratch.segmentation.background(), objects: Vec::new() };
         let mut steps = 0;
         let mut sources = Vec::new();
@@ -131,6 +149,55 @@ impl<T: Real> Fitter<T> {
         Ok(self.report(&image, edge, &found, loss, steps, stop))
     }
 
+    fn fit_free(
+        &self,
+        image: &ImageView<'_, T>,
+        edge: EdgeProfile<T>,
+        scratch: &mut FitScratch<T>,
+    ) -> Result<Fit<T>, FitError> {
+        let unit = T::of_usize(image.size().unit_px());
+        let (width, height) = (T::of_usize(image.size().width()), T::of_usize(image.size().height()));
+        let mut scene = Scene {
+            background: scratch.segmentation.background(),
+            objects: Vec::new(),
+            edge,
+            compositing: self.options.compositing,
+        };
+        let mut steps = 0;
+        for (index, segment) in (0..).zip(scratch.segmentation.segments()) {
+            let Some(contour) = trace(segment, index, &scratch.segmentation, image.size(), &mut scratch.start) else {
+                continue;
+            };
+            scratch.samples.clear();
+            scratch.samples.extend_from_slice(&segment.samples);
+            if segment.border > 0 {
+                hold_outside(&contour, width, height, &mut scratch.samples);
+            }
+            let (most, vertices) = (self.options.max_harmonics, REFERENCE_VERTICES);
+            let half_coverage = edge.offset.max(T::zero()).sqrt() * unit * T::of(0.5);
+            let contour = shrink(&contour, half_coverage);
+            let grown = grow(&contour, &scratch.samples, &self.basis, vertices, most, &mut scratch.free);
+            let Some(grown) = grown else { continue };
+            steps += grown.steps;
+            let Ok(normal) = Efd::new(grown.outline.rows).normalize() else { continue };
+            scene.objects.push(Object {
+                pose: Pose {
+                    translation: grown.outline.center.map(|v| v / unit),
+                    scale: normal.scale / unit,
+                    rotation: normal.rotation,
+                },
+                color: segment.color,
+                confidence: T::one(),
+                efd: normal.efd,
+                prototype: None,
+            });
+        }
+        scene.draw(&self.outlines, &mut scratch.drawing)?;
+        let loss = self.compare_drawing(image, edge, scratch)?;
+        let stop = StopReason::Converged;
+        Ok(Fit { scene, loss, steps, stop, covariance: Vec::new(), ambiguity: Vec::new(), bits: 0.0 })
+    }
+
     /// Renders `found` and keeps its residual; returns the mean absolute error.
     fn compare(
         &self,
@@ -149,6 +216,16 @@ impl<T: Real> Fitter<T> {
             scratch.outline.extend(unit_outline.iter().map(|&v| frame.to_pixels(v).map(|x| x / unit)));
             scratch.drawing.push(&scratch.outline, object.color, object.confidence);
         }
+        self.compare_drawing(image, edge, scratch)
+    }
+
+    /// Renders the drawing of the scratch and keeps its residual; returns the mean absolute error.
+    fn compare_drawing(
+        &self,
+        image: &ImageView<'_, T>,
+        edge: EdgeProfile<T>,
+        scratch: &mut FitScratch<T>,
+    ) -> Result<T, FitError> {
         scratch.pixels.resize(image.data().len(), T::zero());
         let renderer = ContourRenderer::new(edge, self.options.compositing);
         renderer.render(&scratch.drawing, image.size(), &mut scratch.render, &mut scratch.pixels)?;
@@ -228,4 +305,12 @@ impl<T: Real> Fitter<T> {
 
 fn joint_object<T: Real>(candidate: &Candidate<T>, color: [T; 3]) -> JointObject<T> {
     JointObject { shape: candidate.prototype, pose: candidate.pose, color, confidence: T::one() }
+}
+
+/// Symmetry order of a shape, 0 for a disk.
+fn symmetry_order<T: Real>(efd: &Efd<T>) -> usize {
+    match efd.symmetry(T::of(SYMMETRY_TOLERANCE)) {
+        Symmetry::Finite(order) => order,
+        Symmetry::Continuous => 0,
+    }
 }

@@ -32,20 +32,26 @@ pub(crate) struct EdgeSample<T> {
 pub(crate) struct Segment<T> {
     pub(crate) color: [T; 3],
     pub(crate) samples: Vec<EdgeSample<T>>,
+    /// Coverage of each soft pixel at its rim: column, row, share.
+    pub(crate) rim: Vec<([u32; 2], T)>,
     /// Flat pixels it covers.
     pub(crate) pixels: usize,
     /// Sums over those: x, y, xx, xy, yy (px).
     pub(crate) sums: [T; 5],
     /// Border pixels of the image among them.
     pub(crate) border: usize,
+    /// Box of those pixels: first column, first row, last column + 1, last row + 1.
+    pub(crate) bounds: [u32; 4],
 }
 
 impl<T: Real> Segment<T> {
     fn clear(&mut self) {
         self.samples.clear();
+        self.rim.clear();
         self.pixels = 0;
         self.sums = [T::zero(); 5];
         self.border = 0;
+        self.bounds = [u32::MAX, u32::MAX, 0, 0];
     }
 }
 
@@ -115,12 +121,22 @@ impl<T: Real> Segmentation<T> {
         self.map.labels.get(index).is_some_and(|&label| label != 0)
     }
 
+    /// Whether the object covers a flat pixel; none for soft pixels and regions that were not understood.
+    pub(crate) fn covers(&self, index: usize, object: u32) -> Option<bool> {
+        let label = self.map.labels.get(index).copied().filter(|&label| label != 0)?;
+        let cover = self.reading.covers.get(label as usize - 1)?;
+        cover.known.then(|| cover.members().contains(&object))
+    }
+
     fn gather_moments(&mut self) {
         for (region, cover) in self.regions.iter().zip(&self.reading.covers) {
             for &object in cover.members() {
                 let segment = &mut self.segments[object as usize];
                 segment.pixels += region.pixels;
                 segment.border += region.border;
+                let [left, top, right, bottom] = region.bounds;
+                let [l, t, r, b] = segment.bounds;
+                segment.bounds = [l.min(left), t.min(top), r.max(right), b.max(bottom)];
                 for (sum, &part) in segment.sums.iter_mut().zip(&region.sums) {
                     *sum += part;
                 }
@@ -144,6 +160,7 @@ impl<T: Real> Segmentation<T> {
             // Along the line from the mean of n objects to the mean of n + 1, coverage p shows as p (n + 1) / (n + p).
             let n = T::of_usize(others);
             let coverage = if others == 0 { along } else { along * n / (n + one - along) };
+            self.segments[object as usize].rim.push((transition.pixel, coverage));
             let Some((distance, slope)) = distance_of_coverage(coverage, edge, unit) else { continue };
             let share = if others == 0 { one } else { n * (n + one) / ((n + coverage) * (n + coverage)) };
             let (inner, outer) = (self.regions[inside].color, self.regions[outside].color);
