@@ -13,7 +13,7 @@ use crate::joint::{JointObject, JointProblem, JointScene, JointScratch, refine};
 use crate::pose::field::OutlineField;
 use crate::pose::search::{Candidate, Effort, Prototype, search};
 use crate::residual::Residual;
-use crate::segment::{EdgeSample, SegmentOptions, Segmentation};
+use crate::segment::{EdgeKind, EdgeSample, SegmentOptions, Segmentation};
 use crate::free::basis::Basis;
 use crate::free::grow::{grow, hold_outside};
 use crate::free::outline_fit::OutlineScratch;
@@ -104,8 +104,10 @@ impl<T: Real> Fitter<T> {
     /// # Errors
     /// [`FitError::NotFinite`] for an image with NaN or infinity.
     pub fn fit(&self, image: ImageView<'_, T>, scratch: &mut FitScratch<T>) -> Result<Fit<T>, FitError> {
-        let edge = self.options.edge.unwrap_or_else(EdgeProfile::reference);
-        scratch.segmentation.run(&image, &edge, &SegmentOptions::default());
+        scratch.segmentation.read(&image, &SegmentOptions::default());
+        let kind = self.options.edge.map_or_else(|| scratch.segmentation.edge_kind(), EdgeKind::Profile);
+        scratch.segmentation.gather(image.size(), &kind);
+        let edge = kind.profile(T::of_usize(image.size().unit_px()));
         if self.options.bank.is_none() {
             return self.fit_free(&image, edge, scratch);
         }
