@@ -6,6 +6,7 @@ mod efd;
 mod loss;
 mod matching;
 mod metric;
+mod optim;
 mod render_contour;
 mod scene;
 mod scene_pairs;

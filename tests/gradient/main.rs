@@ -4,6 +4,7 @@ mod efd;
 mod exact;
 mod hard;
 mod loss;
+mod optim;
 mod render_contour;
 mod scene;
 mod shape_model;

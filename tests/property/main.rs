@@ -8,6 +8,7 @@ mod hard;
 mod loss;
 mod matching;
 mod metric;
+mod optim;
 mod render_contour;
 mod scene;
 mod symmetry;

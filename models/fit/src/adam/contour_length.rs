@@ -1,5 +1,7 @@
-//! The mean contour length of the unit-scale outlines, which keeps free shapes from growing spikes.
+//! The mean contour length of the unit-scale outlines, which keeps free shapes from growing spikes: the value and
+//! gradient of [`dvp_core::loss::ContourLength`], taken from a drawing that is there already.
 
+use dvp_core::loss::outline_length_vjp;
 use dvp_core::{Drawing, DrawingGrad, Real, Scene, SceneGrad};
 
 /// `weight` times the mean over the objects of the length of their outlines at scale 1; adds its gradient to that of the
@@ -25,26 +27,9 @@ pub fn mean_length_and_grad<T: Real>(
     for ((object, grad), vertices) in scene.objects.iter().zip(&mut grad_scene.objects).zip(outlines) {
         let factor = share / object.pose.scale;
         let grads = &mut grad_drawing.vertices[vertices.clone()];
-        let length = factor * length_and_grad(&drawing.vertices[vertices], factor, grads);
+        let length = factor * outline_length_vjp(&drawing.vertices[vertices], factor, grads);
         grad.scale -= length / object.pose.scale;
         sum += length;
     }
     sum
-}
-
-/// The length of a closed polygon; adds `factor` times its gradient.
-fn length_and_grad<T: Real>(outline: &[[T; 2]], factor: T, grads: &mut [[T; 2]]) -> T {
-    let mut length = T::zero();
-    for i in 0..outline.len() {
-        let j = if i + 1 == outline.len() { 0 } else { i + 1 };
-        let (dx, dy) = (outline[j][0] - outline[i][0], outline[j][1] - outline[i][1]);
-        let edge = (dx * dx + dy * dy).sqrt();
-        if edge > T::zero() {
-            let (gx, gy) = (factor * dx / edge, factor * dy / edge);
-            grads[i] = [grads[i][0] - gx, grads[i][1] - gy];
-            grads[j] = [grads[j][0] + gx, grads[j][1] + gy];
-            length += edge;
-        }
-    }
-    length
 }

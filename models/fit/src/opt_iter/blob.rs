@@ -31,14 +31,18 @@ pub struct Blob<T> {
 #[derive(Clone, Debug, Default)]
 pub struct BlobFinder<T> {
     error: Vec<T>,
+    /// Per pixel, the seed of its blob plus 1; 0 for explained pixels.
+    labels: Vec<usize>,
     stack: Vec<usize>,
+    /// Label of the largest blob; 0 if there was none.
+    largest: usize,
 }
 
 impl<T: Real> BlobFinder<T> {
     /// A finder without memory yet.
     #[must_use]
     pub fn new() -> Self {
-        Self { error: Vec::new(), stack: Vec::new() }
+        Self { error: Vec::new(), labels: Vec::new(), stack: Vec::new(), largest: 0 }
     }
 
     /// The blob with the largest summed error of `image` against planar `painted`; none if they are equal.
@@ -57,47 +61,65 @@ impl<T: Real> BlobFinder<T> {
         }
         let largest = self.error.iter().copied().fold(T::zero(), T::max);
         let threshold = T::of(EXPLAINED).min(largest / T::of(2.0));
+        self.labels.clear();
+        self.labels.resize(pixels, 0);
+        self.largest = 0;
         let mut best = None;
         for seed in 0..pixels {
-            if self.error[seed] > threshold {
+            if self.error[seed] > threshold && self.labels[seed] == 0 {
                 let sums = self.flood(image, seed, threshold);
                 if best.as_ref().is_none_or(|best: &Sums<T>| sums.error > best.error) {
                     best = Some(sums);
+                    self.largest = seed + 1;
                 }
             }
         }
         best.map(|sums| sums.blob(image))
     }
 
-    /// Sums over the blob of `seed`; its pixels are marked as explained.
+    /// Replaces every unexplained pixel of planar `pixels` that is not in the blob last found by that of `painted`.
+    pub fn hide_others(&self, painted: &[T], pixels: &mut [T]) {
+        let planes =
+            pixels.chunks_exact_mut(self.labels.len().max(1)).zip(painted.chunks_exact(self.labels.len().max(1)));
+        for (plane, painted) in planes {
+            for ((pixel, &painted), &label) in plane.iter_mut().zip(painted).zip(&self.labels) {
+                if label != 0 && label != self.largest {
+                    *pixel = painted;
+                }
+            }
+        }
+    }
+
+    /// Sums over the blob of `seed`; its pixels get its label.
     fn flood(&mut self, image: ImageView<'_, T>, seed: usize, threshold: T) -> Sums<T> {
         let (width, height) = (image.size().width(), image.size().height());
         let tolerance = T::of(SAME_COLOR);
         let mut sums = Sums::default();
-        let mut enter = |error: &mut [T], stack: &mut Vec<usize>, index: usize, from: [T; CHANNELS]| {
+        let (error, labels, stack) = (&self.error, &mut self.labels, &mut self.stack);
+        let mut enter = |stack: &mut Vec<usize>, index: usize, from: [T; CHANNELS]| {
             let color = image.pixel(index);
             let same = color.iter().zip(from).all(|(&a, b)| (a - b).abs() <= tolerance);
-            if error[index] > threshold && same {
+            if labels[index] == 0 && error[index] > threshold && same {
                 sums.add(index % width, index / width, color, error[index]);
-                error[index] = T::zero();
+                labels[index] = seed + 1;
                 stack.push(index);
             }
         };
-        enter(&mut self.error, &mut self.stack, seed, image.pixel(seed));
-        while let Some(index) = self.stack.pop() {
+        enter(stack, seed, image.pixel(seed));
+        while let Some(index) = stack.pop() {
             let color = image.pixel(index);
             let (x, y) = (index % width, index / width);
             if x > 0 {
-                enter(&mut self.error, &mut self.stack, index - 1, color);
+                enter(stack, index - 1, color);
             }
             if x + 1 < width {
-                enter(&mut self.error, &mut self.stack, index + 1, color);
+                enter(stack, index + 1, color);
             }
             if y > 0 {
-                enter(&mut self.error, &mut self.stack, index - width, color);
+                enter(stack, index - width, color);
             }
             if y + 1 < height {
-                enter(&mut self.error, &mut self.stack, index + width, color);
+                enter(stack, index + width, color);
             }
         }
         sums

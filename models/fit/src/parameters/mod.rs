@@ -6,7 +6,7 @@
 //!
 //! | file | |
 //! |---|---|
-//! | `renormalize` | descriptors back to A_1 = 1, B_1 = C_1 = 0, the pose taking up what they lose |
+//! | `renormalize` | descriptors back to A_1 = 1, C_1 = 0, the pose taking up what they lose |
 //!
 //! Proved by `tests/property/optim.rs` and `tests/gradient/optim.rs`.
 
@@ -89,7 +89,7 @@ impl<T: Real> Parameters<T> {
         }
     }
 
-    /// Makes the values admissible: colors into \[0, 1\], scales to at least [`MIN_SCALE`], descriptors into normal form by
+    /// Makes the values admissible: colors into \[0, 1\], scales to at least [`MIN_SCALE`], descriptors to unit size by
     /// [`renormalize`]. `scene`, the one last loaded, tells the numbers of harmonics. Allocates nothing.
     pub fn settle(&mut self, scene: &Scene<T>) {
         let (background, mut rest) = self.values.split_at_mut(BACKGROUND);
@@ -163,7 +163,10 @@ fn pull_back_object<T: Real>(grad: &ObjectGrad<T>, values: &[T], slot: &mut [T])
 }
 
 fn settle_object<T: Real>(slot: &mut [T]) {
-    slot[2] = slot[2].max(T::of(MIN_SCALE));
+    // A comparison, not a maximum, for the same reason as in `into_unit`.
+    if slot[2] < T::of(MIN_SCALE) {
+        slot[2] = T::of(MIN_SCALE);
+    }
     into_unit(&mut slot[5..POSE_AND_COLOR]);
     let (head, shape) = slot.split_at_mut(POSE_AND_COLOR);
     let (rows, _) = shape.as_chunks_mut::<4>();

@@ -1,54 +1,29 @@
-//! Descriptors back to their normal form, the outline staying where it is.
+//! Descriptors back to unit size and angle zero, the outline staying where it is.
 
 use dvp_core::Real;
 
-/// Differences of the two axes of the first harmonic, relative to their sum, below which its phase is noise.
+/// Brings `rows` to A_1 = 1, C_1 = 0 and multiplies `scale` by the size they lose. Returns the angle they lose, to be
+/// added to the rotation. The posed outline stays the same, vertex by vertex. Allocates nothing.
 ///
-/// Normal form turns the starting point to the long axis; the first harmonic of a square is a circle and has none. Below
-/// this the turn fades out and the phase that is there stays.
-const CIRCLE: f64 = 1e-2;
-
-/// Brings `rows` to A_1 = 1, C_1 = 0 and, unless the first harmonic is nearly a circle, B_1 = 0, and multiplies `scale`
-/// by what they lose in size. Returns the angle they lose, to be added to the rotation. Allocates nothing.
+/// The starting point, which the normal form of [`Efd::normalize`](dvp_core::Efd::normalize) moves to the long axis,
+/// stays: it changes no outline, and of a first harmonic that is nearly a circle (a square's) the axis is noise that
+/// would shuffle the vertices in each step. A first harmonic that starts at the origin, or is not finite, leaves
+/// all as it is.
 ///
-/// The posed curve stays the same; its sampled vertices slide along it if the starting point turns. A first harmonic of
-/// zero, or one that is not finite, leaves all as it is.
-///
-/// *Units*: radians. *Source*: Kuhl and Giardina, Elliptic Fourier features of a closed contour, 1982, with the turn of
-/// the starting point limited to 45 degrees.
+/// *Units*: radians. *Source*: the evaluation of the paper's optimizers, which normalizes fully.
 pub fn renormalize<T: Real>(rows: &mut [[T; 4]], scale: &mut T) -> T {
-    let zero = T::zero();
-    let Some(&[a, b, c, d]) = rows.first() else {
-        return zero;
+    let Some(&[x, _, y, _]) = rows.first() else {
+        return T::zero();
     };
-    let two = T::of(2.0);
-    let (major, minor) = (a * a + c * c, b * b + d * d);
-    let (product, gap) = (a * b + c * d, major - minor);
-    let floor = T::of(CIRCLE) * (major + minor);
-    // tan(2 phase) = 2 product / gap, with gap / (gap^2 + floor^2) for 1 / gap.
-    let phase = (two * product * gap / (gap * gap + floor * floor)).atan() / two;
-    let (sin, cos) = phase.sin_cos();
-    let first = [a * cos + b * sin, c * cos + d * sin];
-    let size = first[0].hypot(first[1]);
-    if !(size > zero && size.is_finite()) {
-        return zero;
+    let size = x.hypot(y);
+    if !size.is_normal() {
+        return T::zero();
     }
-    let turn = first[1].atan2(first[0]);
-    let (turn_sin, turn_cos) = (first[1] / size, first[0] / size);
-    // (cos, sin) of n times the phase by the addition theorem.
-    let (mut sin_n, mut cos_n) = (sin, cos);
+    let (cos, sin) = (x / (size * size), y / (size * size));
     for row in rows.iter_mut() {
-        let [a, b, c, d] = row.map(|value| value / size);
-        let [a, b] = [a * cos_n + b * sin_n, b * cos_n - a * sin_n];
-        let [c, d] = [c * cos_n + d * sin_n, d * cos_n - c * sin_n];
-        *row = [
-            turn_cos * a + turn_sin * c,
-            turn_cos * b + turn_sin * d,
-            turn_cos * c - turn_sin * a,
-            turn_cos * d - turn_sin * b,
-        ];
-        (sin_n, cos_n) = (sin_n * cos + cos_n * sin, cos_n * cos - sin_n * sin);
+        let [a, b, c, d] = *row;
+        *row = [cos * a + sin * c, cos * b + sin * d, cos * c - sin * a, cos * d - sin * b];
     }
     *scale *= size;
-    turn
+    y.atan2(x)
 }

@@ -51,21 +51,16 @@ fn settling_keeps_to_the_box() {
 }
 
 #[test]
-fn first_harmonic_becomes_normal() {
-    // 3 R(0.3) diag(1, -0.5) R(0.1): size 3, angle 0.3, starting point 0.1.
-    let ((s, c), (p, q)) = (0.3_f64.sin_cos(), 0.1_f64.sin_cos());
-    let mut rows = [[
-        3.0 * (c * q + 0.5 * s * p),
-        3.0 * (-c * p + 0.5 * s * q),
-        3.0 * (s * q - 0.5 * c * p),
-        3.0 * (-s * p - 0.5 * c * q),
-    ]];
+fn size_and_angle_go_to_the_pose() {
+    // 3 R(0.3) [[1, 0.2], [0, -0.5]], and twice the identity.
+    let (s, c) = 0.3_f64.sin_cos();
+    let mut rows = [[3.0 * c, 0.6 * c + 1.5 * s, 3.0 * s, 0.6 * s - 1.5 * c], [2.0, 0.0, 0.0, 2.0]];
     let mut scale = 2.0;
     let turn = renormalize(&mut rows, &mut scale);
-    // The gap of the axes is 0.6 of their sum: the fade near a circle takes (0.01 / 0.6)^2 of the phase, 3e-5.
-    assert!((turn - 0.3).abs() < 1e-4 && (scale - 6.0).abs() < 1e-4, "{turn} {scale}");
-    for (value, expected) in rows[0].into_iter().zip([1.0, 0.0, 0.0, -0.5]) {
-        assert!((value - expected).abs() < 1e-4, "{rows:?}");
+    assert!((turn - 0.3).abs() < 1e-12 && (scale - 6.0).abs() < 1e-12, "{turn} {scale}");
+    let expected = [1.0, 0.2, 0.0, -0.5, 2.0 / 3.0 * c, 2.0 / 3.0 * s, -2.0 / 3.0 * s, 2.0 / 3.0 * c];
+    for (value, expected) in rows.as_flattened().iter().zip(expected) {
+        assert!((value - expected).abs() < 1e-12, "{rows:?}");
     }
 }
 
