@@ -4,7 +4,7 @@
 //! time per image. Targets are float images: those of `val_first32_f32.npy` beside DATA where it exists, for the
 //! other scenes images of the soft-triangle renderer (8-bit pictures would hide errors below 1/255).
 
-use std::error::Error;
+use core::error::Error;
 use std::fs::File;
 use std::io::Write as _;
 use std::path::Path;

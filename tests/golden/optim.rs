@@ -1,5 +1,7 @@
 //! Adam and its schedule against PyTorch's; `golden_data/make_optim.py` made the numbers.
 
+#![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test with a line number")]
+
 use dvp_core::Real;
 use dvp_fit::adam::{Adam, AdamSettings};
 use dvp_fit::plateau::{Plateau, PlateauSettings};
