@@ -10,6 +10,7 @@ use dvp_core::shape::{OutlineBasis, ShapeError};
 use dvp_core::{Drawing, DrawingGrad, ImageView, Real, Scene, SceneGrad};
 
 use super::contour_length::mean_length_and_grad;
+use super::fixed_shapes::FixedShapes;
 use super::{Adam, AdamSettings};
 use crate::parameters::{Free, Parameters};
 use crate::plateau::{Plateau, PlateauSettings};
@@ -43,6 +44,7 @@ pub struct Outcome<T> {
 pub struct Descent<'a, T: Real, R: Renderer<T>> {
     renderer: &'a R,
     basis: OutlineBasis<T>,
+    shapes: FixedShapes<T>,
     scratch: R::Scratch,
     drawing: Drawing<T>,
     drawing_grad: DrawingGrad<T>,
@@ -61,6 +63,7 @@ impl<'a, T: Real, R: Renderer<T>> Descent<'a, T, R> {
         Ok(Self {
             renderer,
             basis: OutlineBasis::new(vertex_count, harmonic_count)?,
+            shapes: FixedShapes::default(),
             scratch: R::Scratch::default(),
             drawing: Drawing::default(),
             drawing_grad: DrawingGrad::default(),
@@ -86,6 +89,7 @@ impl<'a, T: Real, R: Renderer<T>> Descent<'a, T, R> {
         self.parameters.settle(scene);
         self.parameters.store(scene);
         self.adam.reset(self.parameters.values().len());
+        self.shapes.sample(scene, &self.basis)?;
         let mut schedule = Plateau::new(PlateauSettings::default(), stage.learning_rate);
         let mut best = self.evaluate(target, scene, stage, 0)?;
         self.keep();
@@ -129,7 +133,10 @@ impl<'a, T: Real, R: Renderer<T>> Descent<'a, T, R> {
         stage: &Stage,
         step: usize,
     ) -> Result<Outcome<T>, DescentError> {
-        scene.draw(&self.basis, &mut self.drawing)?;
+        match stage.free {
+            Free::PoseAndColor => self.shapes.draw(scene, &mut self.drawing),
+            Free::PoseColorAndShape => scene.draw(&self.basis, &mut self.drawing)?,
+        }
         self.drawing_grad.reset(&self.drawing);
         self.scene_grad.reset(scene);
         let (drawing, grad) = (&self.drawing, &mut self.drawing_grad);
@@ -139,7 +146,10 @@ impl<'a, T: Real, R: Renderer<T>> Descent<'a, T, R> {
             weight => mean_length_and_grad(scene, drawing, weight, grad, &mut self.scene_grad),
         };
         let objective = loss + length;
-        scene.draw_vjp(&self.basis, &self.drawing_grad, &mut self.scene_grad)?;
+        match stage.free {
+            Free::PoseAndColor => self.shapes.draw_vjp(scene, &self.drawing_grad, &mut self.scene_grad),
+            Free::PoseColorAndShape => scene.draw_vjp(&self.basis, &self.drawing_grad, &mut self.scene_grad)?,
+        }
         if !objective.is_finite() {
             return Err(DescentError::NotFinite { step });
         }

@@ -1,11 +1,18 @@
 //! Adam on flat slices, and its descent of a scene's image loss.
 //!
-//! In: a parameter slice and its gradient. Out: the slice after one step. [`descent`] joins it with the renderer, the
-//! schedule of [`crate::plateau`] and the vector of [`crate::parameters`]; `tests/golden/optim.rs` holds the numbers of
+//! In: a parameter slice and its gradient. Out: the slice after one step. `tests/golden/optim.rs` holds the numbers of
 //! PyTorch.
+//!
+//! | file | |
+//! |---|---|
+//! | `mod` | [`Adam`] |
+//! | `descent` | Adam joined with a renderer, the schedule of [`crate::plateau`] and the vector of [`crate::parameters`] |
+//! | `fixed_shapes` | drawings while the shapes stay |
+//! | `contour_length` | the price on long outlines |
 
 pub mod contour_length;
 pub mod descent;
+pub mod fixed_shapes;
 #[cfg(test)]
 mod tests;
 
