@@ -1,16 +1,23 @@
 //! Float pixels: NumPy files of one image (height, width, 3) or several (number, height, width, 3).
+//!
+//! *Source*: the NPY format, versions 1 to 3. Read here and not by a crate: three element types in C order are all that
+//! images need, and a parser of Python literals would cost a fresh build more than this file.
 
 use std::fs::File;
-use std::io::BufReader;
+use std::io::{BufReader, Read};
 use std::path::Path;
 
 use dvp_core::image::CHANNELS;
 use dvp_core::{Image, ImageSize, Real};
-use npyz::{DType, NpyFile, Order};
 
 use super::error::{FormatError, Place};
 
-/// Reads the images of a NumPy file of f32, f64 (as they are) or u8 (over 255) in C order.
+/// Longest header that is read; NumPy's own are below 200 bytes.
+const MAX_HEADER: u32 = 1 << 16;
+/// Bytes before the header in version 1.
+const PREAMBLE: usize = 10;
+
+/// Reads the images of a NumPy file of f32, f64 (as they are) or u8 (over 255), little-endian, in C order.
 ///
 /// # Errors
 /// [`FormatError`] if the file cannot be read, is no such array, has images above `max_pixels` or holds NaN.
@@ -23,38 +30,78 @@ pub fn read_npy<T: Real>(path: &Path, max_pixels: usize) -> Result<Vec<Image<T>>
     };
     let file = File::open(path).map_err(unreadable)?;
     let bytes = file.metadata().map_err(unreadable)?.len();
-    let npy = NpyFile::new(BufReader::new(file)).map_err(unreadable)?;
-    let shape = npy.shape().to_vec();
-    let ([height, width, channels] | [_, height, width, channels]) = shape[..] else {
-        return Err(wrong("shape", format!("is {shape:?}, must be (height, width, 3) or (number, height, width, 3)")));
+    let mut reader = BufReader::new(file);
+    let header = read_header(&mut reader).map_err(unreadable)?;
+    let header = header.ok_or_else(|| wrong("header", "is not that of a NumPy array".to_owned()))?;
+    let [descr, order, shape] = ["descr", "fortran_order", "shape"].map(|key| field(&header, key));
+    let (bytes_each, decode): (usize, fn(&[u8]) -> f64) = match descr.trim_matches(['\'', '"']) {
+        "<f4" => (4, |b| f64::from(f32::from_le_bytes(array(b)))),
+        "<f8" => (8, |b| f64::from_le_bytes(array(b))),
+        "|u1" => (1, |b| f64::from(b[0]) / 255.0),
+        other => return Err(wrong("descr", format!("is {other}, must be <f4, <f8 or |u1"))),
     };
-    if channels != CHANNELS as u64 || npy.order() != Order::C {
-        return Err(wrong("shape", format!("is {shape:?}, must end in 3 channels, in C order")));
-    }
-    let side = |n: u64| u32::try_from(n).unwrap_or(u32::MAX);
-    let limits = || FormatError::Pixels {
+    let extents: Option<Vec<usize>> =
+        shape.split(',').map(str::trim).filter(|n| !n.is_empty()).map(|n| n.parse().ok()).collect();
+    let (count, height, width) = match extents.as_deref() {
+        Some(&[height, width, CHANNELS]) if order == "False" => (1, height, width),
+        Some(&[count, height, width, CHANNELS]) if order == "False" => (count, height, width),
+        _ => {
+            let must = "(height, width, 3) or (number, height, width, 3) in C order";
+            return Err(wrong("shape", format!("is ({shape}), must be {must}")));
+        }
+    };
+    let side = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
+    let size = ImageSize::new(width, height).ok().filter(|size| size.pixels() <= max_pixels);
+    let size = size.ok_or_else(|| FormatError::Pixels {
         path: path.to_path_buf(),
         width: side(width),
         height: side(height),
         limit: max_pixels,
-    };
-    let sides = usize::try_from(width).ok().zip(usize::try_from(height).ok());
-    let size = sides.and_then(|(width, height)| ImageSize::new(width, height).ok()).ok_or_else(limits)?;
-    // A header may promise anything; the file has at least a byte per value.
-    if size.pixels() > max_pixels || shape.iter().try_fold(1u64, |n, &m| n.checked_mul(m)).is_none_or(|n| n > bytes) {
-        return Err(limits());
+    })?;
+    // A header may promise anything; memory is taken for what the file can hold.
+    let image_bytes = size.pixels() * CHANNELS * bytes_each;
+    let before = PREAMBLE + header.len();
+    if count.checked_mul(image_bytes).is_none_or(|all| all.saturating_add(before) as u64 > bytes) {
+        return Err(wrong("shape", format!("is ({shape}), more than the file holds; it is truncated")));
     }
-    let values: Vec<T> = match npy.dtype() {
-        DType::Plain(kind) => match kind.to_string().trim_start_matches(['<', '>', '|', '=']) {
-            "f4" => npy.into_vec::<f32>().map_err(unreadable)?.into_iter().map(|v| T::of(f64::from(v))).collect(),
-            "f8" => npy.into_vec::<f64>().map_err(unreadable)?.into_iter().map(T::of).collect(),
-            "u1" => {
-                npy.into_vec::<u8>().map_err(unreadable)?.into_iter().map(|v| T::of(f64::from(v) / 255.0)).collect()
-            }
-            other => return Err(wrong("dtype", format!("is {other}, must be f4, f8 or u1"))),
-        },
-        _ => return Err(wrong("dtype", "is a record, must be f4, f8 or u1".to_owned())),
-    };
-    let bad = |source| FormatError::Values { path: path.to_path_buf(), source };
-    values.chunks(size.pixels() * CHANNELS).map(|image| Image::from_interleaved(size, image).map_err(bad)).collect()
+    let mut buffer = vec![0; image_bytes];
+    let images = (0..count).map(|_| {
+        reader.read_exact(&mut buffer).map_err(unreadable)?;
+        let values: Vec<T> = buffer.chunks_exact(bytes_each).map(|value| T::of(decode(value))).collect();
+        Image::from_interleaved(size, &values)
+            .map_err(|source| FormatError::Values { path: path.to_path_buf(), source })
+    });
+    images.collect()
+}
+
+/// The Python dictionary of the header; none if this is no NumPy file.
+fn read_header(reader: &mut impl Read) -> std::io::Result<Option<String>> {
+    let mut start = [0; PREAMBLE];
+    reader.read_exact(&mut start)?;
+    if &start[..6] != b"\x93NUMPY" {
+        return Ok(None);
+    }
+    let mut length = u32::from(u16::from_le_bytes([start[8], start[9]]));
+    if start[6] > 1 {
+        let mut high = [0; 2];
+        reader.read_exact(&mut high)?;
+        length |= u32::from(u16::from_le_bytes(high)) << 16;
+    }
+    let mut header = Vec::new();
+    reader.take(u64::from(length.min(MAX_HEADER))).read_to_end(&mut header)?;
+    Ok(String::from_utf8(header).ok())
+}
+
+/// The value of a key: a word, or what stands between parentheses; empty if there is none.
+fn field<'a>(header: &'a str, key: &str) -> &'a str {
+    let after = header.split_once(&format!("'{key}':")).map_or("", |(_, after)| after.trim_start());
+    match after.strip_prefix('(') {
+        Some(tuple) => tuple.split(')').next().unwrap_or(""),
+        None => after.split([',', '}']).next().unwrap_or("").trim(),
+    }
+}
+
+/// The bytes of one number; zeros where there are too few, which [`read_npy`]'s chunks never are.
+fn array<const N: usize>(bytes: &[u8]) -> [u8; N] {
+    bytes.try_into().unwrap_or([0; N])
 }

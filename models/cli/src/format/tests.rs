@@ -119,3 +119,42 @@ fn png_keeps_eight_bits() {
     let error = read_picture::<f32>(&path, 255).unwrap_err().to_string();
     assert!(error.contains("16 x 16") && error.contains("--max-pixels"), "{error}");
 }
+
+fn npy(header: &str, data: &[u8]) -> Vec<u8> {
+    let mut file = b"\x93NUMPY\x01\x00".to_vec();
+    file.extend(u16::try_from(header.len()).unwrap().to_le_bytes());
+    file.extend(header.as_bytes());
+    file.extend(data);
+    file
+}
+
+#[test]
+fn numpy_arrays_are_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.npy");
+    let floats: Vec<u8> = (0_u8..12).flat_map(|i| (f32::from(i) / 16.0).to_le_bytes()).collect();
+    let header = "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 1, 2, 3), }\n";
+    write_atomic(&path, &npy(header, &floats)).unwrap();
+    let images = read_npy::<f64>(&path, 2).unwrap();
+    assert_eq!(images.len(), 2);
+    // The second image holds 6/16 .. 11/16, pixel by pixel.
+    assert_eq!(
+        images[1].view().pixel(1).map(|value| value * 16.0).map(f64::to_bits),
+        [9.0, 10.0, 11.0].map(f64::to_bits)
+    );
+    for (header, data, part) in [
+        (header, &floats[..40], "truncated"),
+        ("{'descr': '<f4', 'fortran_order': True, 'shape': (2, 1, 2, 3), }", &floats[..], "C order"),
+        ("{'descr': '<f4', 'fortran_order': False, 'shape': (12,), }", &floats[..], "(12,)"),
+        ("{'descr': '>f4', 'fortran_order': False, 'shape': (2, 1, 2, 3), }", &floats[..], "descr is >f4"),
+        ("{'descr': '<f4', 'fortran_order': False, 'shape': (1, 3, 3), }", &floats[..], "3 x 1 pixels"),
+        ("{'descr': '<f8', 'fortran_order': False, 'shape': (1, 1, 3), }", &[0xff; 24][..], "NaN"),
+        ("what", &floats[..], "descr"),
+    ] {
+        write_atomic(&path, &npy(header, data)).unwrap();
+        let error = read_npy::<f64>(&path, 2).unwrap_err().to_string();
+        assert!(error.contains(part), "{header}: '{error}' lacks '{part}'");
+    }
+    write_atomic(&path, b"PK\x03\x04 is a zip archive").unwrap();
+    assert!(read_npy::<f64>(&path, 2).unwrap_err().to_string().contains("not that of a NumPy array"));
+}

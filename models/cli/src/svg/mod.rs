@@ -9,7 +9,7 @@
 //!
 //! Approximations: the softness of edges is left to the viewer's anti-aliasing; fully confident objects mix exactly
 //! except for the outermost pixel of the common part; objects with a confidence below 0.99 are drawn with that
-//! opacity, one over the other; outlines pass the 64 vertices that renderers paint within 0.05 px, but as smooth curves.
+//! opacity, one over the other; outlines pass the 64 vertices that renderers paint within 0.2 px, but as smooth curves.
 //!
 //! | file | holds |
 //! |---|---|

@@ -8,7 +8,7 @@ use super::overlap::{Body, shared_regions};
 use super::path::{path_data, short};
 
 /// How far a path may stray from the outline, pixels.
-const TOLERANCE_PX: f64 = 0.05;
+const TOLERANCE_PX: f64 = 0.2;
 /// Below it an object is drawn translucent instead of mixed; below its complement not at all.
 const SURE: f64 = 0.99;
 

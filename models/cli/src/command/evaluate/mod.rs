@@ -66,8 +66,8 @@ enum Against {
 /// What every image is scored with.
 struct Judge<'a> {
     arguments: &'a Arguments,
-    data: DataSet<f64>,
-    stack: Option<Vec<Image<f64>>>,
+    data: DataSet<f32>,
+    stack: Option<Vec<Image<f32>>>,
     painter: Painter,
 }
 
@@ -131,7 +131,7 @@ impl Judge<'_> {
         Ok(score)
     }
 
-    fn prediction(&self, sample: &Sample) -> Result<(SceneJson, Scene<f64>)> {
+    fn prediction(&self, sample: &Sample) -> Result<(SceneJson, Scene<f32>)> {
         let path = self.arguments.predictions.join(format!("{}.json", sample.stem));
         if !path.exists() {
             bail!("no prediction {}", path.display());
@@ -146,9 +146,9 @@ impl Judge<'_> {
         &self,
         index: usize,
         sample: &Sample,
-        truth: Option<&Scene<f64>>,
+        truth: Option<&Scene<f32>>,
         predicted: &SceneJson,
-    ) -> Result<Image<f64>> {
+    ) -> Result<Image<f32>> {
         if let Some(stack) = &self.stack {
             return stack.get(index).cloned().context("the NumPy file holds no such image");
         }

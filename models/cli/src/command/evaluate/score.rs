@@ -32,24 +32,24 @@ pub(super) struct MaskScore {
 /// Memory of one thread.
 #[derive(Default)]
 pub(super) struct Scratch {
-    ssim: SsimScratch<f64>,
+    ssim: SsimScratch<f32>,
     rand_index: RandIndexScratch,
-    coverage: Vec<f64>,
+    coverage: Vec<f32>,
     found: Ownership,
     truth: Ownership,
 }
 
 /// Compares images of one size.
 pub(super) fn score_images(
-    painted: ImageView<'_, f64>,
-    target: ImageView<'_, f64>,
+    painted: ImageView<'_, f32>,
+    target: ImageView<'_, f32>,
     scratch: &mut Scratch,
 ) -> Result<Score> {
     let pair = ImagePair::new(painted, target)?;
     Ok(Score {
-        mae: PixelLoss::Mae.value(pair, &mut ())?,
-        mse: PixelLoss::Mse.value(pair, &mut ())?,
-        ssim: Ssim::default().similarity(pair, &mut scratch.ssim)?,
+        mae: f64::from(PixelLoss::Mae.value(pair, &mut ())?),
+        mse: f64::from(PixelLoss::Mse.value(pair, &mut ())?),
+        ssim: f64::from(Ssim::default().similarity(pair, &mut scratch.ssim)?),
         masks: None,
     })
 }
@@ -57,8 +57,8 @@ pub(super) fn score_images(
 /// Compares the pixels that objects own.
 pub(super) fn score_masks(
     painter: &Painter,
-    truth: &Scene<f64>,
-    found: &Scene<f64>,
+    truth: &Scene<f32>,
+    found: &Scene<f32>,
     size: ImageSize,
     scratch: &mut Scratch,
 ) -> Result<MaskScore> {
@@ -77,9 +77,9 @@ pub(super) fn score_masks(
 /// An object owns what its fattened outline reaches, whatever renderer painted it.
 fn own(
     painter: &Painter,
-    scene: &Scene<f64>,
+    scene: &Scene<f32>,
     size: ImageSize,
-    coverage: &mut Vec<f64>,
+    coverage: &mut Vec<f32>,
     owned: &mut Ownership,
 ) -> Result<()> {
     let drawing = painter.draw(scene)?;
