@@ -22,10 +22,13 @@ pub mod parameters;
 pub mod plateau;
 pub mod rand_opt_p;
 
+mod cholesky;
 mod fitter;
 mod free;
+mod joint;
 mod options;
 mod pose;
+mod residual;
 mod segment;
 
 use alloc::vec::Vec;

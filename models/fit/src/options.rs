@@ -36,7 +36,7 @@ impl<T: Real> Default for FitOptions<T> {
         Self {
             bank: None,
             max_objects: 256,
-            max_harmonics: 24,
+            max_harmonics: 31,
             max_steps: 10,
             edge: None,
             compositing: Compositing::Blend,

@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use super::pieces::for_each_piece;
+use super::pieces::{Piece, Visit, for_each_piece};
 use crate::dims::ImageSize;
 use crate::real::Real;
 use crate::render::tile::{ChunkState, LANES, Lanes, Tile, grow, reserved_chunks};
@@ -42,27 +42,11 @@ impl<T: Real> Kernel for Cover<'_, T> {
         let (width, chunks) = (window.width(), window.chunks);
         record.prepare(outline_px, [window.left(), window.top], chunks * window.rows, window.rows, size);
         let ExactRecord { outline, winding, carry, entry } = record;
-        let (one, half) = (T::one(), T::of(0.5));
         let Some(&last) = outline.last() else { return };
+        let mut sums = Accumulate { tile: &mut *tile, winding, carry, entry, chunks };
         let mut a = last;
         for &b in outline.iter() {
-            for_each_piece(a, b, width, window.rows, |piece| {
-                let height = piece.to[1] - piece.from[1];
-                if piece.is_left_of_window() {
-                    entry[piece.row] += height;
-                    return;
-                }
-                let (chunk, lane) = (piece.row * chunks + piece.column / LANES, piece.column % LANES);
-                if tile.states[chunk] == ChunkState::Empty {
-                    tile.states[chunk] = ChunkState::Mixed;
-                    winding[chunk] = [T::zero(); LANES];
-                    carry[chunk] = T::zero();
-                }
-                let right = half * (piece.from[0] + piece.to[0]) - T::of_usize(piece.column);
-                winding[chunk][lane] += height * (one - right);
-                let next = if lane + 1 < LANES { &mut winding[chunk][lane + 1] } else { &mut carry[chunk] };
-                *next += height * right;
-            });
+            for_each_piece(a, b, width, window.rows, &mut sums);
             a = b;
         }
         for (row, &entry) in entry.iter().enumerate() {
@@ -77,12 +61,43 @@ impl<T: Real> Kernel for Cover<'_, T> {
                     tile.coverage[chunk] = winding[chunk].map(even_odd);
                 } else {
                     sum = sum.round();
-                    if even_odd(sum) > half {
+                    if even_odd(sum) > T::of(0.5) {
                         tile.states[chunk] = ChunkState::Full;
                     }
                 }
             }
         }
+    }
+}
+
+/// Adds up, per pixel, what pieces hand to the running sum of their row.
+struct Accumulate<'a, T> {
+    tile: &'a mut Tile<T>,
+    winding: &'a mut [Lanes<T>],
+    carry: &'a mut [T],
+    entry: &'a mut [T],
+    chunks: usize,
+}
+
+impl<T: Real> Visit<T> for Accumulate<'_, T> {
+    #[inline(always)]
+    fn piece(&mut self, piece: Piece<T>) {
+        let height = piece.to[1] - piece.from[1];
+        let (chunk, lane) = (piece.row * self.chunks + piece.column / LANES, piece.column % LANES);
+        if self.tile.states[chunk] == ChunkState::Empty {
+            self.tile.states[chunk] = ChunkState::Mixed;
+            self.winding[chunk] = [T::zero(); LANES];
+            self.carry[chunk] = T::zero();
+        }
+        let right = T::of(0.5) * (piece.from[0] + piece.to[0]) - T::of_usize(piece.column);
+        self.winding[chunk][lane] += height * (T::one() - right);
+        let next = if lane + 1 < LANES { &mut self.winding[chunk][lane + 1] } else { &mut self.carry[chunk] };
+        *next += height * right;
+    }
+
+    #[inline(always)]
+    fn left(&mut self, row: usize, height: T) {
+        self.entry[row] += height;
     }
 }
 

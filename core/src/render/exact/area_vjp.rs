@@ -1,7 +1,7 @@
 //! Backward: how the area of each pixel follows the vertices.
 
 use super::area::{ExactRecord, even_odd_slope, orientation};
-use super::pieces::for_each_piece;
+use super::pieces::{Piece, Visit, for_each_piece};
 use crate::real::Real;
 use crate::render::tile::{LANES, Tile};
 use crate::simd::Kernel;
@@ -26,7 +26,7 @@ impl<T: Real> Kernel for CoverVjp<'_, T> {
         let Self { tile, record, grad_outline } = self;
         let outline = &record.outline;
         let window = tile.window();
-        let (zero, half) = (T::zero(), T::of(0.5));
+        let zero = T::zero();
         let orientation = orientation(outline);
         for (k, &a) in outline.iter().enumerate() {
             let next = if k + 1 == outline.len() { 0 } else { k + 1 };
@@ -38,23 +38,44 @@ impl<T: Real> Kernel for CoverVjp<'_, T> {
                 continue;
             }
             let per_length = T::one() / along[axis];
-            let (mut at_a, mut at_b) = (zero, zero);
-            for_each_piece(a, b, window.width(), window.rows, |piece| {
-                if piece.is_left_of_window() {
-                    return;
-                }
-                let (chunk, lane) = (piece.row * window.chunks + piece.column / LANES, piece.column % LANES);
-                let share = (piece.to[axis] - piece.from[axis]) * per_length;
-                let middle = (half * (piece.from[axis] + piece.to[axis]) - a[axis]) * per_length;
-                let slope = even_odd_slope(record.winding[chunk][lane], orientation);
-                let weight = tile.grad[chunk][lane] * slope * share;
-                at_a += weight * (T::one() - middle);
-                at_b += weight * middle;
-            });
-            for (vertex, weight) in [(k, at_a), (next, at_b)] {
+            let mut sweep =
+                Sweep { tile, record, orientation, axis, origin: a[axis], per_length, at_a: zero, at_b: zero };
+            for_each_piece(a, b, window.width(), window.rows, &mut sweep);
+            for (vertex, weight) in [(k, sweep.at_a), (next, sweep.at_b)] {
                 grad_outline[vertex][0] -= along[1] * weight;
                 grad_outline[vertex][1] += along[0] * weight;
             }
         }
     }
+}
+
+/// Adds up how far the area under the gradient follows the two ends of an edge, per length of its normal.
+struct Sweep<'a, T> {
+    tile: &'a Tile<T>,
+    record: &'a ExactRecord<T>,
+    orientation: T,
+    /// The component along which the edge is longer, where it starts there, and 1 / its length.
+    axis: usize,
+    origin: T,
+    per_length: T,
+    at_a: T,
+    at_b: T,
+}
+
+impl<T: Real> Visit<T> for Sweep<'_, T> {
+    #[inline(always)]
+    fn piece(&mut self, piece: Piece<T>) {
+        let at = piece.row * self.tile.window().chunks + piece.column / LANES;
+        let lane = piece.column % LANES;
+        let (from, to) = (piece.from[self.axis], piece.to[self.axis]);
+        let share = (to - from) * self.per_length;
+        let middle = (T::of(0.5) * (from + to) - self.origin) * self.per_length;
+        let slope = even_odd_slope(self.record.winding[at][lane], self.orientation);
+        let weight = self.tile.grad[at][lane] * slope * share;
+        self.at_a += weight * (T::one() - middle);
+        self.at_b += weight * middle;
+    }
+
+    #[inline(always)]
+    fn left(&mut self, _row: usize, _height: T) {}
 }

@@ -15,30 +15,24 @@ pub(super) struct Piece<T> {
     pub(super) to: [T; 2],
 }
 
-impl<T: Real> Piece<T> {
-    /// Whether this stands for a part of the edge to the left of the window.
-    #[inline(always)]
-    pub(super) fn is_left_of_window(&self) -> bool {
-        self.from[0] < T::zero()
-    }
+/// What is done with the pieces of an edge. Implementations mark both `#[inline(always)]`, so that they are compiled for
+/// the instruction set of their kernel.
+pub(super) trait Visit<T> {
+    /// A piece in a pixel of the window.
+    fn piece(&mut self, piece: Piece<T>);
+
+    /// A part to the left of the window, of which only the height (positive downward) matters to its row.
+    fn left(&mut self, row: usize, height: T);
 }
 
-/// Calls `visit` with each piece of the edge from `a` to `b` that lies in the window of `width` x `height` pixels.
+/// Shows `visit` each part of the edge from `a` to `b` that matters to the window of `width` x `height` pixels.
 ///
-/// The part to the left of the window also matters to the area of the row: it is handed over with column 0 and both x at
-/// -1 (see [`Piece::is_left_of_window`]). Parts above, below and to the right are left out. The cost is bounded by
-/// `width` + `height`, however long the edge; in each row the heights of the pieces add up to exactly the height of
-/// the edge in that row, up to rounding.
+/// Parts above, below and to the right do not. The cost is bounded by `width` + `height`, however long the edge; in each
+/// row the heights of the parts add up to exactly the height of the edge in that row, up to rounding.
 ///
 /// *Units*: pixels from the upper left corner of the window; pixel (r, c) spans \[c, c + 1\] x \[r, r + 1\].
 #[inline(always)]
-pub(super) fn for_each_piece<T: Real>(
-    a: [T; 2],
-    b: [T; 2],
-    width: usize,
-    height: usize,
-    mut visit: impl FnMut(Piece<T>),
-) {
+pub(super) fn for_each_piece<T: Real>(a: [T; 2], b: [T; 2], width: usize, height: usize, visit: &mut impl Visit<T>) {
     let zero = T::zero();
     let (top, bottom, down) = if a[1] <= b[1] { (a, b, true) } else { (b, a, false) };
     let rows = T::of_usize(height);
@@ -57,7 +51,7 @@ pub(super) fn for_each_piece<T: Real>(
     while row < end || rise == zero {
         let next = row + T::one();
         let lower = if bottom[1] <= next { bottom } else { at(next) };
-        in_row(upper, lower, down, row, width, &mut visit);
+        in_row(upper, lower, down, row, width, visit);
         if bottom[1] <= next {
             return;
         }
@@ -68,7 +62,7 @@ pub(super) fn for_each_piece<T: Real>(
 
 /// The pieces between two points of one row, `upper` not below `lower`.
 #[inline(always)]
-fn in_row<T: Real>(upper: [T; 2], lower: [T; 2], down: bool, row: T, width: usize, visit: &mut impl FnMut(Piece<T>)) {
+fn in_row<T: Real>(upper: [T; 2], lower: [T; 2], down: bool, row: T, width: usize, visit: &mut impl Visit<T>) {
     let zero = T::zero();
     let columns = T::of_usize(width);
     let rightward = upper[0] <= lower[0];
@@ -76,15 +70,11 @@ fn in_row<T: Real>(upper: [T; 2], lower: [T; 2], down: bool, row: T, width: usiz
     // Pieces come from left to right; the edge may run the other way.
     let along = rightward == down;
     let row = row.to_count();
-    let mut emit = |column: usize, start: [T; 2], end: [T; 2]| {
-        let (from, to) = if along { (start, end) } else { (end, start) };
-        visit(Piece { row, column, from, to });
-    };
     let slope = if right[0] > left[0] { (right[1] - left[1]) / (right[0] - left[0]) } else { zero };
     let mut start = left;
     if left[0] < zero {
         let y = if right[0] <= zero { right[1] } else { left[1] - left[0] * slope };
-        emit(0, [-T::one(), left[1]], [-T::one(), y]);
+        visit.left(row, if along { y - left[1] } else { left[1] - y });
         if right[0] <= zero {
             return;
         }
@@ -93,13 +83,13 @@ fn in_row<T: Real>(upper: [T; 2], lower: [T; 2], down: bool, row: T, width: usiz
     let mut column = start[0].floor();
     while column < columns {
         let next = column + T::one();
-        let index = column.to_count();
-        if right[0] <= next {
-            emit(index, start, right);
+        let is_last = right[0] <= next;
+        let end = if is_last { right } else { [next, left[1] + (next - left[0]) * slope] };
+        let (from, to) = if along { (start, end) } else { (end, start) };
+        visit.piece(Piece { row, column: column.to_count(), from, to });
+        if is_last {
             return;
         }
-        let end = [next, left[1] + (next - left[0]) * slope];
-        emit(index, start, end);
         start = end;
         column = next;
     }

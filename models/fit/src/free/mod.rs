@@ -1,7 +1,10 @@
 //! From edge samples to an outline of unknown shape.
 //!
-//! `basis` is the Fourier basis at the vertices, `outline_fit` moves center and coefficients, `solve` is its Cholesky.
+//! In: the samples of one segment. Out: an [`Efd`](dvp_core::Efd) with its pose, with as few harmonics as the samples
+//! support. `start` traces a first outline, `outline_fit` moves center and coefficients until it lies at the sampled
+//! distances (on the Fourier `basis`), `grow` adds harmonics while they pay.
 
-mod basis;
-mod outline_fit;
-mod solve;
+pub(crate) mod basis;
+pub(crate) mod grow;
+pub(crate) mod outline_fit;
+pub(crate) mod start;

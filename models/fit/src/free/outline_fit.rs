@@ -6,10 +6,10 @@
 
 use alloc::vec::Vec;
 
-use dvp_core::Real;
+use dvp_core::{Real, simd};
 
 use super::basis::Basis;
-use super::solve::{factor, packed, solve};
+use crate::cholesky::{factor, packed, solve};
 use crate::segment::EdgeSample;
 
 /// Center (px) and rows (a, b, c, d) in px: x = cx + sum a cos + b sin, y = cy + sum c cos + d sin.
@@ -28,7 +28,54 @@ pub(crate) struct OutlineScratch<T> {
     damped: Vec<T>,
     mix: Vec<T>,
     tried: FreeOutline<T>,
-    nearest: Vec<u32>,
+    edges: EdgeLanes<T>,
+}
+
+/// Edges of the outline as lanes: start, step, inverse squared length, and room for squared distances.
+#[derive(Clone, Debug, Default)]
+struct EdgeLanes<T> {
+    start: [Vec<T>; 2],
+    step: [Vec<T>; 2],
+    inverse: Vec<T>,
+    squared: Vec<T>,
+}
+
+impl<T: Real> EdgeLanes<T> {
+    fn set(&mut self, vertices: &[[T; 2]]) {
+        for lane in self.start.iter_mut().chain(&mut self.step).chain([&mut self.inverse, &mut self.squared]) {
+            lane.clear();
+        }
+        for pair in vertices.windows(2) {
+            let step = [pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]];
+            for c in 0..2 {
+                self.start[c].push(pair[0][c]);
+                self.step[c].push(step[c]);
+            }
+            self.inverse.push(T::one() / (step[0] * step[0] + step[1] * step[1]).max(T::of(1e-9)));
+            self.squared.push(T::zero());
+        }
+    }
+
+    /// The edge closest to `point`.
+    #[inline(always)]
+    fn closest(&mut self, point: [T; 2]) -> usize {
+        let n = self.squared.len();
+        let (ax, ay, sx, sy) = (&self.start[0][..n], &self.start[1][..n], &self.step[0][..n], &self.step[1][..n]);
+        let (inverse, squared) = (&self.inverse[..n], &mut self.squared[..n]);
+        for i in 0..n {
+            let (dx, dy) = (point[0] - ax[i], point[1] - ay[i]);
+            let u = ((dx * sx[i] + dy * sy[i]) * inverse[i]).max(T::zero()).min(T::one());
+            let (ex, ey) = (dx - u * sx[i], dy - u * sy[i]);
+            squared[i] = ex * ex + ey * ey;
+        }
+        let mut best = (T::infinity(), 0);
+        for (i, &value) in squared.iter().enumerate() {
+            if value < best.0 {
+                best = (value, i);
+            }
+        }
+        best.1
+    }
 }
 
 /// Settings of one refinement.
@@ -44,7 +91,7 @@ pub(crate) struct OutlineSettings<T> {
 }
 
 impl<T: Real> FreeOutline<T> {
-    fn write_vertices(&self, basis: &Basis<T>, vertex_count: usize, vertices: &mut Vec<[T; 2]>) {
+    pub(crate) fn write_vertices(&self, basis: &Basis<T>, vertex_count: usize, vertices: &mut Vec<[T; 2]>) {
         vertices.clear();
         for i in 0..vertex_count {
             let row = basis.row(i, self.rows.len());
@@ -79,12 +126,44 @@ pub(crate) fn refine<T: Real>(
     settings: &OutlineSettings<T>,
     scratch: &mut OutlineScratch<T>,
 ) -> T {
+    simd::dispatch(Refine { outline, samples, basis, vertex_count, settings, scratch })
+}
+
+/// The arguments of [`refine`], compiled per instruction set.
+struct Refine<'a, T> {
+    outline: &'a mut FreeOutline<T>,
+    samples: &'a [EdgeSample<T>],
+    basis: &'a Basis<T>,
+    vertex_count: usize,
+    settings: &'a OutlineSettings<T>,
+    scratch: &'a mut OutlineScratch<T>,
+}
+
+impl<T: Real> simd::Kernel for Refine<'_, T> {
+    type Output = T;
+
+    #[inline(always)]
+    fn run(self) -> T {
+        steps(self.outline, self.samples, self.basis, self.vertex_count, self.settings, self.scratch)
+    }
+}
+
+#[inline(always)]
+fn steps<T: Real>(
+    outline: &mut FreeOutline<T>,
+    samples: &[EdgeSample<T>],
+    basis: &Basis<T>,
+    vertex_count: usize,
+    settings: &OutlineSettings<T>,
+    scratch: &mut OutlineScratch<T>,
+) -> T {
     let harmonics = outline.rows.len();
     let half = 1 + 2 * harmonics;
     let n = 2 * half;
-    scratch.nearest.clear();
     let mut cost = assemble(outline, samples, basis, vertex_count, settings, scratch);
-    let mut damping = T::of(1e-3);
+    // Weaker damping lets vertices slide along the outline and fold it.
+    let weakest = T::of(1e-3);
+    let mut damping = T::of(4e-3);
     for _ in 0..settings.max_steps {
         scratch.damped.clear();
         scratch.damped.extend_from_slice(&scratch.hessian);
@@ -115,7 +194,7 @@ pub(crate) fn refine<T: Real>(
         if better {
             let done = cost - next <= T::of(1e-3) * cost;
             cost = next;
-            damping *= T::of(0.1);
+            damping = (damping * T::of(0.25)).max(weakest);
             if done {
                 break;
             }
@@ -131,6 +210,7 @@ pub(crate) fn refine<T: Real>(
 }
 
 /// Fills hessian (packed) and gradient at `outline`; returns the robust cost.
+#[inline(always)]
 fn assemble<T: Real>(
     outline: &FreeOutline<T>,
     samples: &[EdgeSample<T>],
@@ -150,28 +230,14 @@ fn assemble<T: Real>(
     scratch.gradient.resize(n, T::zero());
     scratch.mix.resize(half, T::zero());
     let orientation = if signed_area(&vertices) > T::zero() { T::one() } else { -T::one() };
-    let fresh = scratch.nearest.len() != samples.len();
-    if fresh {
-        scratch.nearest.clear();
-        scratch.nearest.resize(samples.len(), 0);
-    }
+    scratch.edges.set(&vertices);
     let edges = vertex_count - 1;
     let inverse = T::one() / (settings.width_px * settings.width_px);
     let noise = T::one() / (settings.pixel_noise * settings.pixel_noise);
     let mut cost = T::zero();
-    for (sample, hint) in samples.iter().zip(&mut scratch.nearest) {
-        let mut best = (T::infinity(), T::zero(), [T::zero(); 2], 0);
-        let (first, count) = if fresh { (0, edges) } else { ((*hint as usize + edges - 4) % edges, 9.min(edges)) };
-        let mut at = first;
-        for _ in 0..count {
-            let (squared, u, offset) = edge_distance(vertices[at], vertices[at + 1], sample.point);
-            if squared < best.0 {
-                best = (squared, u, offset, at);
-            }
-            at = if at + 1 == edges { 0 } else { at + 1 };
-        }
-        let (squared, u, offset, at) = best;
-        *hint = u32::try_from(at).unwrap_or(0);
+    for sample in samples {
+        let at = scratch.edges.closest(sample.point);
+        let (squared, u, offset) = edge_distance(vertices[at], vertices[at + 1], sample.point);
         let (a, b) = (vertices[at], vertices[at + 1]);
         let mut normal = [(b[1] - a[1]) * orientation, -(b[0] - a[0]) * orientation];
         if u <= T::zero() || u >= T::one() {

@@ -6,9 +6,7 @@ use alloc::vec::Vec;
 use dvp_core::Real;
 
 /// Cells per side of the grid.
-const CELLS: usize = 48;
-/// Edges looked at on either side of a cell's nearest edge.
-const NEIGHBORS: usize = 2;
+const CELLS: usize = 64;
 /// Edges shorter than this (squared, in units of the outline) are points that two vertices share.
 const SHORTEST_EDGE: f64 = 1e-12;
 
@@ -25,8 +23,11 @@ struct Edge<T> {
 /// Signed distance field of a unit outline.
 #[derive(Clone, Debug)]
 pub(crate) struct OutlineField<T> {
+    /// In order, the last one repeated in front and the first one behind.
     edges: Vec<Edge<T>>,
     nearest: Vec<u16>,
+    /// Signed distance at the center of each cell.
+    centers: Vec<T>,
     low: [T; 2],
     cells_per_unit: T,
     /// Area, centroid and largest distance of a vertex from the origin.
@@ -39,12 +40,15 @@ impl<T: Real> OutlineField<T> {
     /// The field of a closed polygon; none if it has fewer than three edges or no area.
     pub(crate) fn new(vertices: &[[T; 2]]) -> Option<Self> {
         let signed = signed_area(vertices);
-        let edges: Vec<Edge<T>> = (0..vertices.len())
+        let mut edges: Vec<Edge<T>> = (0..vertices.len())
             .filter_map(|i| Edge::new(vertices[i], vertices[(i + 1) % vertices.len()], signed > T::zero()))
             .collect();
         if edges.len() < 3 || signed.abs() <= T::of(1e-9) {
             return None;
         }
+        let (first, last) = (edges[0], edges[edges.len() - 1]);
+        edges.insert(0, last);
+        edges.push(first);
         let mut low = vertices[0];
         let mut high = vertices[0];
         let mut radius = T::zero();
@@ -63,6 +67,7 @@ impl<T: Real> OutlineField<T> {
         let mut field = Self {
             edges,
             nearest: vec![0; CELLS * CELLS],
+            centers: vec![T::zero(); CELLS * CELLS],
             low,
             cells_per_unit,
             area: signed.abs(),
@@ -81,47 +86,64 @@ impl<T: Real> OutlineField<T> {
                     self.low[1] + (T::of_usize(row) + T::of(0.5)) / self.cells_per_unit,
                 ];
                 let mut best = (T::infinity(), 0);
-                for (i, edge) in self.edges.iter().enumerate() {
+                let inner = 1..self.edges.len() - 1;
+                for (i, edge) in inner.clone().zip(&self.edges[inner]) {
                     let (squared, _, _) = edge.closest(point);
                     if squared < best.0 {
                         best = (squared, i);
                     }
                 }
                 self.nearest[row * CELLS + column] = u16::try_from(best.1).unwrap_or(u16::MAX);
+                self.centers[row * CELLS + column] = self.distance(point).0;
             }
         }
+    }
+
+    fn cell(&self, point: [T; 2]) -> usize {
+        let along = |c: usize| -> usize {
+            let position = (point[c] - self.low[c]) * self.cells_per_unit;
+            position.min(T::of_usize(CELLS - 1)).to_count()
+        };
+        along(1) * CELLS + along(0)
+    }
+
+    /// Bounds of the signed distance at `point`, from its cell alone; for points in the grid.
+    #[inline(always)]
+    pub(crate) fn distance_bounds(&self, point: [T; 2]) -> (T, T) {
+        let center = self.centers[self.cell(point)];
+        // Half the diagonal of a cell.
+        let slack = T::of(core::f64::consts::FRAC_1_SQRT_2) / self.cells_per_unit;
+        (center - slack, center + slack)
     }
 
     /// Signed distance from `point` to the outline (positive outside) and its gradient, both in units of the outline.
     #[inline]
     pub(crate) fn distance(&self, point: [T; 2]) -> (T, [T; 2]) {
-        let cell = |c: usize| -> usize {
-            let position = (point[c] - self.low[c]) * self.cells_per_unit;
-            position.max(T::zero()).min(T::of_usize(CELLS - 1)).to_usize().unwrap_or(0)
-        };
-        let center = usize::from(self.nearest[cell(1) * CELLS + cell(0)]);
-        let count = self.edges.len();
-        let mut at = (center + count - NEIGHBORS) % count;
-        let mut best = (T::infinity(), T::zero(), [T::zero(); 2], at);
-        for _ in 0..=2 * NEIGHBORS {
-            let (squared, u, offset) = self.edges[at].closest(point);
+        let center = usize::from(self.nearest[self.cell(point)]);
+        let Some(edges) = self.edges.get(center - 1..center + 2) else { return (T::zero(), [T::zero(); 2]) };
+        let mut best = (T::infinity(), T::zero(), [T::zero(); 2], 0);
+        for (i, edge) in edges.iter().enumerate() {
+            let (squared, u, offset) = edge.closest(point);
             if squared < best.0 {
-                best = (squared, u, offset, at);
+                best = (squared, u, offset, i);
             }
-            at = if at + 1 == count { 0 } else { at + 1 };
         }
         let (squared, u, offset, at) = best;
-        let mut normal = self.edges[at].normal;
-        // At a vertex the two normals together tell the side.
+        let mut normal = edges[at].normal;
+        // At a vertex the two normals together tell the side; the second is the center's own or, for it, the nearer one.
         if u <= T::zero() || u >= T::one() {
-            let other = if u <= T::zero() { (at + count - 1) % count } else { (at + 1) % count };
-            let beside = self.edges[other].normal;
+            let other = match (at, u <= T::zero()) {
+                (1, true) => 0,
+                (1, false) => 2,
+                _ => 1,
+            };
+            let beside = edges[other].normal;
             normal = [normal[0] + beside[0], normal[1] + beside[1]];
         }
         let side = offset[0] * normal[0] + offset[1] * normal[1];
         let length = squared.sqrt();
         if length <= T::of(1e-9) {
-            return (T::zero(), self.edges[at].normal);
+            return (T::zero(), edges[at].normal);
         }
         let sign = if side < T::zero() { -T::one() } else { T::one() };
         let scale = sign / length;

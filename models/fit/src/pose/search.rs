@@ -15,6 +15,22 @@ const FULL_TURN_STARTS: usize = 12;
 /// Sizes tried for an object that leaves the image, relative to its visible part.
 const CROPPED_SIZES: [f64; 4] = [1.0, 1.3, 1.7, 2.4];
 
+/// Sizes of the wide search.
+const WIDE_SIZES: [f64; 9] = [0.6, 0.8, 1.0, 1.25, 1.5, 1.8, 2.2, 2.7, 3.3];
+/// Most starts of one prototype that are refined.
+const MOST_KEPT: usize = 10;
+
+/// What a search tries.
+#[derive(Clone, Copy, Debug)]
+struct Plan {
+    /// Sizes relative to the visible part.
+    sizes: &'static [f64],
+    /// Angles over a full turn.
+    starts: usize,
+    /// Starts per prototype that are refined; at most [`MOST_KEPT`].
+    keep: usize,
+}
+
 /// A shape ready to be searched for.
 #[derive(Clone, Debug)]
 pub(crate) struct Prototype<T> {
@@ -35,12 +51,22 @@ pub(crate) struct Candidate<T> {
     pub(crate) steps: usize,
 }
 
+/// How hard to look.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Effort {
+    /// A few starts per prototype.
+    Usual,
+    /// More angles, more sizes, more of the starts refined: for objects that the usual search missed.
+    Wide,
+}
+
 /// Poses of every prototype that could explain `segment`, best first; empty if it has too few samples.
 pub(crate) fn search<T: Real>(
     segment: &Segment<T>,
     prototypes: &[Prototype<T>],
     size: ImageSize,
     segmentation: &Segmentation<T>,
+    effort: Effort,
     out: &mut Vec<Candidate<T>>,
 ) {
     out.clear();
@@ -48,14 +74,19 @@ pub(crate) fn search<T: Real>(
         return;
     }
     let cropped = segment.border > 0;
+    let plan = match (effort, cropped) {
+        (Effort::Usual, false) => Plan { sizes: &CROPPED_SIZES[..1], starts: FULL_TURN_STARTS, keep: 2 },
+        (Effort::Usual, true) => Plan { sizes: &CROPPED_SIZES, starts: FULL_TURN_STARTS, keep: 4 },
+        (Effort::Wide, _) => Plan { sizes: &WIDE_SIZES, starts: 3 * FULL_TURN_STARTS, keep: MOST_KEPT },
+    };
     for (index, prototype) in prototypes.iter().enumerate() {
-        let sizes = if cropped { &CROPPED_SIZES[..] } else { &CROPPED_SIZES[..1] };
-        rough(segment, prototype, index, size, sizes, if cropped { 4 } else { 2 }, out);
+        rough(segment, prototype, index, size, plan, out);
     }
     // The best of the rough ones are worth all samples.
     sort(out);
     let Some(best) = out.first().map(|candidate| candidate.cost) else { return };
-    out.retain(|candidate| candidate.cost <= T::of(8.0) * best + T::of(0.05));
+    let worth = if effort == Effort::Wide { T::of(0.4) } else { T::of(0.05) };
+    out.retain(|candidate| candidate.cost <= T::of(8.0) * best + worth);
     let mut kept = 0;
     for i in 0..out.len() {
         let refined = finish(out[i], segment, prototypes, size, segmentation);
@@ -89,25 +120,24 @@ fn rough<T: Real>(
     prototype: &Prototype<T>,
     index: usize,
     size: ImageSize,
-    sizes: &[f64],
-    keep: usize,
+    plan: Plan,
     out: &mut Vec<Candidate<T>>,
 ) {
     let stride = 1 + segment.samples.len() / SEARCH_SAMPLES;
     let wide = Robustness { width_px: T::of(3.0), weighted: false, stride };
     let turns = prototype.symmetry.max(1);
-    let starts = if prototype.symmetry == 0 { 1 } else { FULL_TURN_STARTS.div_ceil(turns).max(3) };
+    let starts = if prototype.symmetry == 0 { 1 } else { plan.starts.div_ceil(turns).max(3) };
     let range = T::of(2.0 * core::f64::consts::PI) / T::of_usize(turns);
     let field = &prototype.field;
-    let mut best: [Option<(T, PosePx<T>)>; 4] = [None; 4];
-    for &enlarged in sizes {
+    let mut best: [Option<(T, PosePx<T>)>; MOST_KEPT] = [None; MOST_KEPT];
+    for &enlarged in plan.sizes {
         for i in 0..starts {
             let rotation = range * T::of_usize(i) / T::of_usize(starts);
             let pose = start(segment, field, size, T::of(enlarged), rotation);
             let cost = pose.cost(field, &segment.samples, wide);
             // Insertion into a short list of the best.
             let mut entry = Some((cost, pose));
-            for slot in &mut best[..keep.min(4)] {
+            for slot in &mut best[..plan.keep] {
                 let better = match (&entry, &slot) {
                     (Some((cost, _)), Some((held, _))) => cost < held,
                     (Some(_), None) => true,
@@ -173,14 +203,15 @@ fn finish<T: Real>(
     let (mut pose, mut cost, mut steps) = candidate.pose.refine(field, &segment.samples, fine, 8);
     let turn = T::of(2.0 * core::f64::consts::PI) / T::of_usize(prototype.symmetry.max(1));
     let base = pose;
+    let mut turned = false;
     for i in 1..prototype.symmetry {
         let twin = PosePx { rotation: base.rotation + turn * T::of_usize(i), ..base };
         let twin_cost = twin.cost(field, &segment.samples, fine);
         if twin_cost < cost {
-            (pose, cost) = (twin, twin_cost);
+            (pose, cost, turned) = (twin, twin_cost, true);
         }
     }
-    if pose.rotation != base.rotation {
+    if turned {
         let (refined, refined_cost, more) = pose.refine(field, &segment.samples, fine, 4);
         (pose, cost, steps) = (refined, refined_cost, steps + more);
     }

@@ -5,6 +5,7 @@
 //! signed distance from the pixel center to the outline. `flat` finds regions, `region` measures them, `transition` places
 //! soft pixels between them, `interpret` decides which objects cover which region.
 
+mod edge_kind;
 mod flat;
 mod interpret;
 mod region;
@@ -12,8 +13,10 @@ mod transition;
 
 use alloc::vec::Vec;
 
-use dvp_core::render::EdgeProfile;
-use dvp_core::{ImageView, Real};
+use dvp_core::{ImageSize, ImageView, Real};
+
+pub(crate) use edge_kind::EdgeKind;
+use edge_kind::CoverageCounts;
 
 /// Signed distance from a pixel center to the outline of an object, read from the pixel's color.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,20 +35,26 @@ pub(crate) struct EdgeSample<T> {
 pub(crate) struct Segment<T> {
     pub(crate) color: [T; 3],
     pub(crate) samples: Vec<EdgeSample<T>>,
+    /// Coverage of each soft pixel at its rim: column, row, share.
+    pub(crate) rim: Vec<([u32; 2], T)>,
     /// Flat pixels it covers.
     pub(crate) pixels: usize,
     /// Sums over those: x, y, xx, xy, yy (px).
     pub(crate) sums: [T; 5],
     /// Border pixels of the image among them.
     pub(crate) border: usize,
+    /// Box of those pixels: first column, first row, last column + 1, last row + 1.
+    pub(crate) bounds: [u32; 4],
 }
 
 impl<T: Real> Segment<T> {
     fn clear(&mut self) {
         self.samples.clear();
+        self.rim.clear();
         self.pixels = 0;
         self.sums = [T::zero(); 5];
         self.border = 0;
+        self.bounds = [u32::MAX, u32::MAX, 0, 0];
     }
 }
 
@@ -81,8 +90,8 @@ pub(crate) struct Segmentation<T> {
 }
 
 impl<T: Real> Segmentation<T> {
-    /// Segments `image`; false if no pixel is flat.
-    pub(crate) fn run(&mut self, image: &ImageView<'_, T>, edge: &EdgeProfile<T>, options: &SegmentOptions<T>) -> bool {
+    /// Segments `image`; false if no pixel is flat. [`Self::gather`] must follow.
+    pub(crate) fn read(&mut self, image: &ImageView<'_, T>, options: &SegmentOptions<T>) -> bool {
         self.count = 0;
         self.map.label(image, options.flat_tolerance, options.min_pixels);
         region::measure(image, &self.map, &mut self.regions, &mut self.region_scratch);
@@ -98,8 +107,57 @@ impl<T: Real> Segmentation<T> {
             segment.color = color;
         }
         self.gather_moments();
-        self.gather_samples(image, edge);
         true
+    }
+
+    /// The edge kind that the soft pixels between background and objects speak for.
+    pub(crate) fn edge_kind(&self) -> EdgeKind<T> {
+        let mut counts = CoverageCounts::default();
+        for transition in &self.transitions {
+            if let Some(rim) = self.rim(transition)
+                && rim.others == 0
+                && rim.contrast > T::of(0.15)
+            {
+                counts.add(rim.coverage);
+            }
+        }
+        counts.kind()
+    }
+
+    /// Turns soft pixels into samples under the given edge kind.
+    pub(crate) fn gather(&mut self, size: ImageSize, edge: &EdgeKind<T>) {
+        let unit = T::of_usize(size.unit_px());
+        let (one, half) = (T::one(), T::of(0.5));
+        for at in 0..self.transitions.len() {
+            let transition = self.transitions[at];
+            let Some(rim) = self.rim(&transition) else { continue };
+            let segment = &mut self.segments[rim.object];
+            segment.rim.push((transition.pixel, rim.coverage));
+            let Some((distance, slope)) = edge.distance(rim.coverage, unit) else { continue };
+            let n = T::of_usize(rim.others);
+            let share =
+                if rim.others == 0 { one } else { n * (n + one) / ((n + rim.coverage) * (n + rim.coverage)) };
+            let [x, y] = transition.pixel.map(|v| T::of_usize(v as usize) + half);
+            segment.samples.push(EdgeSample { point: [x, y], distance, weight: rim.contrast * slope * share });
+        }
+    }
+
+    /// Whose outline passes through a soft pixel, and how much of it that object covers.
+    fn rim(&self, transition: &transition::Transition<T>) -> Option<Rim<T>> {
+        let one = T::one();
+        let [a, b] = transition.pair.map(|i| i as usize);
+        let (cover_a, cover_b) = (&self.reading.covers[a], &self.reading.covers[b]);
+        let (object, others, along) = if let Some(object) = cover_b.beyond(cover_a) {
+            (object, cover_a.members().len(), transition.weight)
+        } else {
+            (cover_a.beyond(cover_b)?, cover_b.members().len(), one - transition.weight)
+        };
+        // Along the line from the mean of n objects to the mean of n + 1, coverage p shows as p (n + 1) / (n + p).
+        let n = T::of_usize(others);
+        let coverage = if others == 0 { along } else { along * n / (n + one - along) };
+        let (from, to) = (self.regions[a].color, self.regions[b].color);
+        let contrast = (0..3).map(|c| (from[c] - to[c]) * (from[c] - to[c])).sum::<T>().sqrt();
+        Some(Rim { object: object as usize, others, coverage, contrast })
     }
 
     pub(crate) fn background(&self) -> [T; 3] {
@@ -115,60 +173,36 @@ impl<T: Real> Segmentation<T> {
         self.map.labels.get(index).is_some_and(|&label| label != 0)
     }
 
+    /// Whether the object covers a flat pixel; none for soft pixels and regions that were not understood.
+    pub(crate) fn covers(&self, index: usize, object: u32) -> Option<bool> {
+        let label = self.map.labels.get(index).copied().filter(|&label| label != 0)?;
+        let cover = self.reading.covers.get(label as usize - 1)?;
+        cover.known.then(|| cover.members().contains(&object))
+    }
+
     fn gather_moments(&mut self) {
         for (region, cover) in self.regions.iter().zip(&self.reading.covers) {
             for &object in cover.members() {
                 let segment = &mut self.segments[object as usize];
                 segment.pixels += region.pixels;
                 segment.border += region.border;
+                let [left, top, right, bottom] = region.bounds;
+                let [l, t, r, b] = segment.bounds;
+                segment.bounds = [l.min(left), t.min(top), r.max(right), b.max(bottom)];
                 for (sum, &part) in segment.sums.iter_mut().zip(&region.sums) {
                     *sum += part;
                 }
             }
         }
     }
-
-    fn gather_samples(&mut self, image: &ImageView<'_, T>, edge: &EdgeProfile<T>) {
-        let unit = T::of_usize(image.size().unit_px());
-        let (one, half) = (T::one(), T::of(0.5));
-        for transition in &self.transitions {
-            let [a, b] = transition.pair.map(|i| i as usize);
-            let (cover_a, cover_b) = (&self.reading.covers[a], &self.reading.covers[b]);
-            let (object, others, along, inside, outside) = if let Some(object) = cover_b.beyond(cover_a) {
-                (object, cover_a.members().len(), transition.weight, b, a)
-            } else if let Some(object) = cover_a.beyond(cover_b) {
-                (object, cover_b.members().len(), one - transition.weight, a, b)
-            } else {
-                continue;
-            };
-            // Along the line from the mean of n objects to the mean of n + 1, coverage p shows as p (n + 1) / (n + p).
-            let n = T::of_usize(others);
-            let coverage = if others == 0 { along } else { along * n / (n + one - along) };
-            let Some((distance, slope)) = distance_of_coverage(coverage, edge, unit) else { continue };
-            let share = if others == 0 { one } else { n * (n + one) / ((n + coverage) * (n + coverage)) };
-            let (inner, outer) = (self.regions[inside].color, self.regions[outside].color);
-            let contrast = (0..3).map(|c| (inner[c] - outer[c]) * (inner[c] - outer[c])).sum::<T>().sqrt();
-            let [x, y] = transition.pixel.map(|v| T::of_usize(v as usize) + half);
-            let sample = EdgeSample { point: [x, y], distance, weight: contrast * slope * share };
-            self.segments[object as usize].samples.push(sample);
-        }
-    }
 }
 
-/// Inverts the edge profile: signed distance (px) at which coverage is `coverage`, and the slope of coverage there
-/// (per px); none where coverage is too close to 0 or 1 to tell.
-fn distance_of_coverage<T: Real>(coverage: T, edge: &EdgeProfile<T>, unit_px: T) -> Option<(T, T)> {
-    if !(coverage > T::of(0.02) && coverage < T::of(0.985)) {
-        return None;
-    }
-    let (one, two) = (T::one(), T::of(2.0));
-    let doubled_px = unit_px / two;
-    if edge.sigma <= T::zero() {
-        // Area coverage of a half plane parallel to the pixel grid.
-        return Some((T::of(0.5) - coverage, one));
-    }
-    let d2 = edge.offset - edge.sigma * (coverage / (one - coverage)).ln();
-    let d = d2.abs().sqrt() * d2.signum();
-    let slope = coverage * (one - coverage) / edge.sigma * two * d.abs() / doubled_px;
-    Some((d * doubled_px, slope))
+/// A soft pixel as part of an object's rim.
+#[derive(Clone, Copy, Debug)]
+struct Rim<T> {
+    object: usize,
+    /// Objects below it there.
+    others: usize,
+    coverage: T,
+    contrast: T,
 }

@@ -18,6 +18,8 @@ pub(crate) struct Region<T> {
     pub(crate) sums: [T; 5],
     /// Pixels on the first or last row or column.
     pub(crate) border: usize,
+    /// First column, first row, last column + 1, last row + 1.
+    pub(crate) bounds: [u32; 4],
 }
 
 /// Fills `regions` from labels; region k of the map is `regions[k - 1]`.
@@ -33,7 +35,8 @@ pub(crate) fn measure<T: Real>(
     let (width, height) = (image.size().width(), image.size().height());
     let half = T::of(0.5);
     regions.clear();
-    regions.resize(map.region_count, Region::default());
+    let nowhere = [u32::MAX, u32::MAX, 0, 0];
+    regions.resize(map.region_count, Region { bounds: nowhere, ..Region::default() });
     scratch.resize_with(scratch.len().max(map.region_count), Vec::new);
     for run in &map.runs {
         let region = &mut regions[run.label as usize - 1];
@@ -49,6 +52,8 @@ pub(crate) fn measure<T: Real>(
         region.sums[2] += n * mean * mean + spread;
         region.sums[3] += n * mean * y;
         region.sums[4] += n * y * y;
+        let [left, top, right, bottom] = region.bounds;
+        region.bounds = [left.min(run.start), top.min(run.row), right.max(run.end), bottom.max(run.row + 1)];
         region.border += if row == 0 || row + 1 == height {
             end - start
         } else {

@@ -9,6 +9,7 @@ pub(crate) const fn packed(row: usize, column: usize) -> usize {
 }
 
 /// Overwrites the packed symmetric `matrix` by its Cholesky factor; false if it is not positive definite.
+#[inline(always)]
 pub(crate) fn factor<T: Real>(matrix: &mut [T], n: usize) -> bool {
     for i in 0..n {
         let (done, rest) = matrix.split_at_mut(packed(i, 0));
@@ -28,6 +29,7 @@ pub(crate) fn factor<T: Real>(matrix: &mut [T], n: usize) -> bool {
 }
 
 /// Solves L L^T x = b in place, `factor`ed matrix.
+#[inline(always)]
 pub(crate) fn solve<T: Real>(factor: &[T], n: usize, b: &mut [T]) {
     for i in 0..n {
         let row = &factor[packed(i, 0)..=packed(i, i)];

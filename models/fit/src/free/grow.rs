@@ -1,0 +1,155 @@
+//! As many harmonics as the samples pay for: harmonics are added while the description gets shorter.
+
+use alloc::vec::Vec;
+
+use dvp_core::contour::resample;
+use dvp_core::{Efd, Real};
+
+use super::basis::Basis;
+use super::outline_fit::{FreeOutline, OutlineScratch, OutlineSettings, refine};
+use crate::segment::EdgeSample;
+
+/// Numbers of harmonics an outline is cut to.
+const LADDER: [usize; 10] = [2, 3, 4, 6, 8, 10, 12, 16, 20, 24];
+/// Harmonics of the first full fit, and of the later ones if it misses the samples.
+const FULL: [usize; 3] = [16, 24, 31];
+/// Price of one coefficient in bits: its precision is about a 200th of the object.
+const COEFFICIENT_BITS: f64 = 8.0;
+/// Noise of a pixel value that no outline explains: rounding to 8 bits and the seams of the reference renderer.
+pub(crate) const PIXEL_NOISE: f64 = 0.003;
+
+/// An outline with what it costs to describe.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Grown<T> {
+    pub(crate) outline: FreeOutline<T>,
+    /// Bits of coefficients plus bits of what the samples miss.
+    pub(crate) bits: T,
+    pub(crate) steps: usize,
+}
+
+/// Fits the traced outline with as many harmonics as pay.
+///
+/// An ellipse is tried first. If it does not explain the samples, 16 harmonics are fitted, and more while that shortens the
+/// description. Then harmonics that do not pay are dropped: what a cut outline misses is foretold from how far its
+/// vertices move across the outline, and the most promising cut is fitted.
+pub(crate) fn grow<T: Real>(
+    contour: &[[T; 2]],
+    samples: &[EdgeSample<T>],
+    basis: &Basis<T>,
+    vertex_count: usize,
+    max_harmonics: usize,
+    scratch: &mut OutlineScratch<T>,
+) -> Option<Grown<T>> {
+    let most = max_harmonics.min(FULL[FULL.len() - 1]).max(1);
+    let (start, center) = Efd::from_contour(contour, most).ok()?;
+    let mut steps = 0;
+    let mut fit = |rows: &[[T; 4]], center: [T; 2], rounds: [usize; 2]| {
+        let mut outline = FreeOutline { center, rows: rows.to_vec() };
+        let mut cost = T::zero();
+        for (width, max_steps) in [2.0, 0.5].into_iter().zip(rounds) {
+            let settings = OutlineSettings {
+                width_px: T::of(width),
+                pixel_noise: T::of(PIXEL_NOISE),
+                smoothness: T::of(1e-3),
+                max_steps,
+            };
+            if max_steps > 0 {
+                cost = refine(&mut outline, samples, basis, vertex_count, &settings, scratch);
+                steps += max_steps;
+            }
+        }
+        let price = 4.0 * COEFFICIENT_BITS * rows.len() as f64;
+        Grown { outline, bits: T::of(price) + cost * misfit_bits(), steps: 0 }
+    };
+    let mut best = fit(&start.rows()[..1], center, [3, 3]);
+    // More harmonics cannot pay for themselves if what is missed costs less than the second one.
+    let ellipse_is_enough = best.bits < T::of(2.0 * 4.0 * COEFFICIENT_BITS);
+    if !ellipse_is_enough {
+        let mut previous: Option<FreeOutline<T>> = None;
+        for harmonics in FULL.map(|n| n.min(most)) {
+            let mut rows = start.rows()[..harmonics].to_vec();
+            let mut from = center;
+            if let Some(known) = &previous {
+                if known.rows.len() >= harmonics {
+                    break;
+                }
+                rows[..known.rows.len()].copy_from_slice(&known.rows);
+                from = known.center;
+            }
+            let rounds = if previous.is_none() { [2, 2] } else { [0, 3] };
+            let tried = fit(&rows, from, rounds);
+            previous = Some(tried.outline.clone());
+            if tried.bits >= best.bits {
+                break;
+            }
+            best = tried;
+        }
+        let cut = most_promising_cut(&best, samples, basis, vertex_count);
+        if cut < best.outline.rows.len() {
+            let tried = fit(&best.outline.rows[..cut], best.outline.center, [0, 3]);
+            if tried.bits < best.bits {
+                best = tried;
+            }
+        }
+    }
+    best.steps = steps;
+    Some(best)
+}
+
+/// Bits per unit of the robust cost: half a squared residual in units of the noise, in base 2.
+fn misfit_bits<T: Real>() -> T {
+    T::of(0.5 * core::f64::consts::LOG2_E)
+}
+
+/// The number of harmonics with the shortest foretold description.
+fn most_promising_cut<T: Real>(
+    full: &Grown<T>,
+    samples: &[EdgeSample<T>],
+    basis: &Basis<T>,
+    vertex_count: usize,
+) -> usize {
+    let rows = &full.outline.rows;
+    let noise = T::one() / T::of(PIXEL_NOISE * PIXEL_NOISE);
+    let weights = samples.iter().map(|sample| sample.weight * sample.weight * noise).sum::<T>();
+    let mut vertices = Vec::new();
+    full.outline.write_vertices(basis, vertex_count, &mut vertices);
+    let edges = vertex_count - 1;
+    let mut missed = vertices.clone();
+    missed.iter_mut().for_each(|v| *v = [T::zero(); 2]);
+    let mut best = (full.bits, rows.len());
+    for harmonics in (1..rows.len()).rev() {
+        // Displacement of each vertex by all harmonics above, taken across the outline.
+        let [a, b, c, d] = rows[harmonics];
+        let mut across = T::zero();
+        for i in 0..edges {
+            let pair = &basis.row(i, harmonics + 1)[1 + 2 * harmonics..];
+            missed[i][0] += a * pair[0] + b * pair[1];
+            missed[i][1] += c * pair[0] + d * pair[1];
+            let (before, after) = (vertices[(i + edges - 1) % edges], vertices[i + 1]);
+            let (x, y) = (after[0] - before[0], after[1] - before[1]);
+            let normal = missed[i][0] * y - missed[i][1] * x;
+            across += normal * normal / (x * x + y * y).max(T::of(1e-9));
+        }
+        if LADDER.contains(&harmonics) {
+            let extra = weights * across / T::of_usize(edges) * misfit_bits();
+            let saved = T::of(4.0 * COEFFICIENT_BITS) * T::of_usize(rows.len() - harmonics);
+            let bits = full.bits + extra - saved;
+            if bits < best.0 {
+                best = (bits, harmonics);
+            }
+        }
+    }
+    best.1
+}
+
+/// Samples that hold the invisible part of a cropped outline where it was traced, beyond the image border.
+pub(crate) fn hold_outside<T: Real>(contour: &[[T; 2]], width: T, height: T, samples: &mut Vec<EdgeSample<T>>) {
+    let half = T::of(0.5);
+    for [x, y] in resample(contour, 96) {
+        let beyond = (-x).max(-y).max(x - width).max(y - height);
+        if beyond > half {
+            let weight = T::of(0.02);
+            samples.push(EdgeSample { point: [x, y], distance: T::zero(), weight });
+        }
+    }
+}

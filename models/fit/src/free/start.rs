@@ -1,0 +1,129 @@
+//! The first outline of an object of unknown shape, traced where its coverage crosses one half.
+
+use alloc::vec::Vec;
+
+use dvp_core::contour::{Connectivity, perimeter, resample, signed_area, trace_level};
+use dvp_core::{ImageSize, Real};
+
+use crate::segment::{Segment, Segmentation};
+
+/// Rows and columns added around; beyond the image border they continue the border pixels, so that a cropped object closes
+/// outside the view.
+const MARGIN: usize = 3;
+
+/// Memory of [`trace`].
+#[derive(Clone, Debug, Default)]
+pub(crate) struct StartScratch<T> {
+    field: Vec<T>,
+    filled: Vec<T>,
+}
+
+/// The traced outline (px), largest loop; none if the object has no inside.
+pub(crate) fn trace<T: Real>(
+    segment: &Segment<T>,
+    object: u32,
+    segmentation: &Segmentation<T>,
+    size: ImageSize,
+    scratch: &mut StartScratch<T>,
+) -> Option<Vec<[T; 2]>> {
+    let [left, top, right, bottom] = segment.bounds.map(|v| v as usize);
+    // The window in image coordinates, shifted by the margin on all sides; it may leave the image by the margin.
+    let (low_x, low_y) = (left.saturating_sub(MARGIN), top.saturating_sub(MARGIN));
+    let (high_x, high_y) = ((right + MARGIN).min(size.width()), (bottom + MARGIN).min(size.height()));
+    let (columns, rows) = (high_x - low_x + 2 * MARGIN, high_y - low_y + 2 * MARGIN);
+    let field = &mut scratch.field;
+    field.clear();
+    field.resize(columns * rows, T::nan());
+    for y in low_y..high_y {
+        let line = &mut field[(y - low_y + MARGIN) * columns..][..columns];
+        for x in low_x..high_x {
+            if let Some(inside) = segmentation.covers(y * size.width() + x, object) {
+                line[x - low_x + MARGIN] = if inside { T::one() } else { T::zero() };
+            }
+        }
+    }
+    for &([x, y], coverage) in &segment.rim {
+        let (x, y) = (x as usize, y as usize);
+        if (low_x..high_x).contains(&x) && (low_y..high_y).contains(&y) {
+            field[(y - low_y + MARGIN) * columns + x - low_x + MARGIN] = coverage;
+        }
+    }
+    fill_unknown(field, &mut scratch.filled, columns);
+    let at_border = [low_x == 0, low_y == 0, high_x == size.width(), high_y == size.height()];
+    continue_beyond(field, columns, rows, at_border);
+    let window = ImageSize::new(columns, rows).ok()?;
+    let loops = trace_level(field, window, T::of(0.5), Connectivity::Four).ok()?;
+    let mut best = loops.into_iter().max_by(|a, b| {
+        let (a, b) = (signed_area(a).abs(), signed_area(b).abs());
+        a.partial_cmp(&b).unwrap_or(core::cmp::Ordering::Equal)
+    })?;
+    let shift = |low: usize| T::of_usize(low) - T::of_usize(MARGIN);
+    for vertex in &mut best {
+        vertex[0] += shift(low_x);
+        vertex[1] += shift(low_y);
+    }
+    (best.len() >= 3).then_some(best)
+}
+
+/// Moves a traced outline inward by `offset` (px, outward if negative), along normals taken over its neighbors.
+pub(crate) fn shrink<T: Real>(contour: &[[T; 2]], offset: T) -> Vec<[T; 2]> {
+    let count = (perimeter(contour) / T::of(1.5)).to_count().clamp(16, 256);
+    let points = resample(contour, count);
+    let inward = if signed_area(&points) > T::zero() { -offset } else { offset };
+    let n = points.len();
+    (0..n)
+        .map(|i| {
+            let (a, b) = (points[(i + n - 1) % n], points[(i + 1) % n]);
+            let (x, y) = (b[0] - a[0], b[1] - a[1]);
+            let step = inward / (x * x + y * y).sqrt().max(T::of(1e-6));
+            [points[i][0] + y * step, points[i][1] - x * step]
+        })
+        .collect()
+}
+
+/// Gives soft pixels without a sample the mean of their known neighbors, ring by ring.
+fn fill_unknown<T: Real>(field: &mut Vec<T>, filled: &mut Vec<T>, columns: usize) {
+    for _ in 0..4 {
+        filled.clear();
+        filled.extend_from_slice(field);
+        let mut open = false;
+        for i in columns..field.len().saturating_sub(columns) {
+            if !field[i].is_nan() {
+                continue;
+            }
+            let known = [i - 1, i + 1, i - columns, i + columns].map(|j| field[j]);
+            let (mut sum, mut count) = (T::zero(), 0);
+            for value in known.into_iter().filter(|value| !value.is_nan()) {
+                sum += value;
+                count += 1;
+            }
+            if count > 0 {
+                filled[i] = sum / T::of_usize(count);
+            } else {
+                open = true;
+            }
+        }
+        core::mem::swap(field, filled);
+        if !open {
+            break;
+        }
+    }
+}
+
+/// Copies border pixels of the image outward and clears the outermost ring.
+fn continue_beyond<T: Real>(field: &mut [T], columns: usize, rows: usize, at_border: [bool; 4]) {
+    let clamp = |v: usize, low: bool, high: bool, count: usize| {
+        let first = if low { MARGIN } else { 0 };
+        let last = if high { count - MARGIN - 1 } else { count - 1 };
+        v.clamp(first, last)
+    };
+    for y in 0..rows {
+        for x in 0..columns {
+            let outer = x == 0 || y == 0 || x + 1 == columns || y + 1 == rows;
+            let source =
+                clamp(y, at_border[1], at_border[3], rows) * columns + clamp(x, at_border[0], at_border[2], columns);
+            let value = field[source];
+            field[y * columns + x] = if outer || value.is_nan() { T::zero() } else { value };
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! Which edge profile a picture was drawn with, told from its soft pixels.
+//!
+//! Three kinds are told apart: the reference renderer's (lopsided: coverage lingers near 1 and drops off fast), area coverage
+//! (what drawing programs produce: even), and hard pixels (no soft ones). Only the ratio of counts matters, so the picture's
+//! size does not.
+
+use dvp_core::Real;
+use dvp_core::render::EdgeProfile;
+
+/// How coverage and distance belong together at the edges of a picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum EdgeKind<T> {
+    /// A profile in squared distance.
+    Profile(EdgeProfile<T>),
+    /// Share of the pixel's area.
+    Area,
+    /// All or nothing by the pixel's center.
+    Hard,
+}
+
+/// Counts of soft pixels between the background and one object, by coverage.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct CoverageCounts {
+    /// Below 0.015 or above 0.985.
+    pub(crate) settled: usize,
+    /// 0.015 to 0.1.
+    pub(crate) low: usize,
+    /// 0.1 to 0.9.
+    pub(crate) middle: usize,
+    /// 0.9 to 0.985.
+    pub(crate) high: usize,
+}
+
+impl CoverageCounts {
+    pub(crate) fn add<T: Real>(&mut self, coverage: T) {
+        if coverage < T::of(0.015) || coverage > T::of(0.985) {
+            self.settled += 1;
+        } else if coverage < T::of(0.1) {
+            self.low += 1;
+        } else if coverage <= T::of(0.9) {
+            self.middle += 1;
+        } else {
+            self.high += 1;
+        }
+    }
+
+    /// The kind that explains the counts; the thresholds lie between the two. At uniform distances the reference profile gives low : middle : high as
+    /// 0.34 : 1 : 0.75, area coverage 0.11 : 1 : 0.11.
+    pub(crate) fn kind<T: Real>(&self) -> EdgeKind<T> {
+        let soft = self.low + self.middle + self.high;
+        if soft * 20 < self.settled {
+            EdgeKind::Hard
+        } else if 4 * self.high > self.middle && self.high >= self.low {
+            EdgeKind::Profile(EdgeProfile::reference())
+        } else {
+            EdgeKind::Area
+        }
+    }
+}
+
+impl<T: Real> EdgeKind<T> {
+    /// The profile that renders this kind at `unit_px` pixels per scene unit.
+    pub(crate) fn profile(&self, unit_px: T) -> EdgeProfile<T> {
+        match self {
+            Self::Profile(profile) => *profile,
+            Self::Area => EdgeProfile::area(unit_px),
+            Self::Hard => EdgeProfile::hard(unit_px),
+        }
+    }
+
+    /// Signed distance (px, positive outside) at which coverage is `coverage`, and the slope of coverage there per px; none
+    /// where coverage is too close to 0 or 1 to tell.
+    pub(crate) fn distance(&self, coverage: T, unit_px: T) -> Option<(T, T)> {
+        let (one, two, half) = (T::one(), T::of(2.0), T::of(0.5));
+        let settled = !(coverage > T::of(0.02) && coverage < T::of(0.985));
+        match self {
+            Self::Profile(_) | Self::Area if settled => None,
+            Self::Profile(edge) => {
+                let doubled_px = unit_px / two;
+                let d2 = edge.offset - edge.sigma * (coverage / (one - coverage)).ln();
+                let d = d2.abs().sqrt() * d2.signum();
+                let slope = coverage * (one - coverage) / edge.sigma * two * d.abs() / doubled_px;
+                Some((d * doubled_px, slope))
+            }
+            // Of a half plane along the pixel grid; others differ by a few hundredths of a pixel.
+            Self::Area => Some((half - coverage, one)),
+            // The outline passes somewhere within half a pixel.
+            Self::Hard => Some((if coverage > half { -half } else { half }, half)),
+        }
+    }
+}
