@@ -23,11 +23,14 @@ pub mod plateau;
 pub mod rand_opt_p;
 
 mod cholesky;
+mod colors;
+mod doubt;
 mod fitter;
 mod free;
 mod joint;
 mod options;
 mod pose;
+mod price;
 mod residual;
 mod segment;
 
@@ -50,6 +53,8 @@ pub enum StopReason {
     Stalled,
     /// Nothing to fit: the image is one flat color.
     Empty,
+    /// Nothing to start from: no pixel is flat (noise, a gradient, a photo), the scene is its mean color.
+    NotFlat,
 }
 
 /// What a fit cannot tell.

@@ -34,6 +34,13 @@ impl<T: Real> Residual<T> {
         total / T::of_usize(3 * pixels)
     }
 
+    /// Bits of what is unexplained: half the squared largest channel difference of each pixel in units of `noise`,
+    /// capped at 24 (a pixel may be written down as it is).
+    pub(crate) fn bits(&self, noise: T) -> f64 {
+        let scale = T::of(0.5 * core::f64::consts::LOG2_E) / (noise * noise);
+        self.largest.iter().map(|&off| (off * off * scale).min(T::of(24.0)).as_f64()).sum()
+    }
+
     /// Pixels within `reach` (px, a square) of `center` that are off by more than `threshold`.
     pub(crate) fn count_above(&self, size: ImageSize, center: [T; 2], reach: T, threshold: T) -> usize {
         let bounds = |middle: T, extent: usize| {

@@ -7,14 +7,13 @@ use dvp_core::{Efd, Real};
 
 use super::basis::Basis;
 use super::outline_fit::{FreeOutline, OutlineScratch, OutlineSettings, refine};
+use crate::price::COEFFICIENT_BITS;
 use crate::segment::EdgeSample;
 
 /// Numbers of harmonics an outline is cut to.
 const LADDER: [usize; 10] = [2, 3, 4, 6, 8, 10, 12, 16, 20, 24];
 /// Harmonics of the first full fit, and of the later ones if it misses the samples.
 const FULL: [usize; 3] = [16, 24, 31];
-/// Price of one coefficient in bits: its precision is about a 200th of the object.
-const COEFFICIENT_BITS: f64 = 8.0;
 /// Noise of a pixel value that no outline explains: rounding to 8 bits and the seams of the reference renderer.
 pub(crate) const PIXEL_NOISE: f64 = 0.003;
 

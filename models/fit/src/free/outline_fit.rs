@@ -33,7 +33,7 @@ pub(crate) struct OutlineScratch<T> {
 
 /// Edges of the outline as lanes: start, step, inverse squared length, and room for squared distances.
 #[derive(Clone, Debug, Default)]
-struct EdgeLanes<T> {
+pub(crate) struct EdgeLanes<T> {
     start: [Vec<T>; 2],
     step: [Vec<T>; 2],
     inverse: Vec<T>,
@@ -41,7 +41,7 @@ struct EdgeLanes<T> {
 }
 
 impl<T: Real> EdgeLanes<T> {
-    fn set(&mut self, vertices: &[[T; 2]]) {
+    pub(crate) fn set(&mut self, vertices: &[[T; 2]]) {
         for lane in self.start.iter_mut().chain(&mut self.step).chain([&mut self.inverse, &mut self.squared]) {
             lane.clear();
         }
@@ -58,7 +58,7 @@ impl<T: Real> EdgeLanes<T> {
 
     /// The edge closest to `point`.
     #[inline(always)]
-    fn closest(&mut self, point: [T; 2]) -> usize {
+    pub(crate) fn closest(&mut self, point: [T; 2]) -> usize {
         let n = self.squared.len();
         let (ax, ay, sx, sy) = (&self.start[0][..n], &self.start[1][..n], &self.step[0][..n], &self.step[1][..n]);
         let (inverse, squared) = (&self.inverse[..n], &mut self.squared[..n]);

@@ -2,8 +2,8 @@
 
 use alloc::vec::Vec;
 
-use dvp_core::render::Compositing;
 use dvp_core::Real;
+use dvp_core::render::Compositing;
 
 use super::{JointProblem, JointScene, PER_OBJECT};
 use crate::cholesky::packed;
@@ -73,8 +73,10 @@ impl<T: Real> JointScratch<T> {
                     if !(near || problem.colors && interior && self.inside_box(first, column, row)) {
                         continue;
                     }
-                    let earlier = (0..first).any(|k| self.inside_box(k, column, row) && {
-                        (problem.colors && interior) || self.near(problem, scene, &profile, k, column, row)
+                    let earlier = (0..first).any(|k| {
+                        self.inside_box(k, column, row) && {
+                            (problem.colors && interior) || self.near(problem, scene, &profile, k, column, row)
+                        }
                     });
                     if earlier {
                         continue;

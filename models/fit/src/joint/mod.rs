@@ -11,10 +11,10 @@ use alloc::vec::Vec;
 use dvp_core::render::{Compositing, EdgeProfile};
 use dvp_core::{ImageView, Real};
 
+use crate::StopReason;
 use crate::cholesky::{factor, packed, solve};
 use crate::pose::gauss_newton::PosePx;
 use crate::pose::search::Prototype;
-use crate::StopReason;
 
 pub(crate) use assemble::JointScratch;
 

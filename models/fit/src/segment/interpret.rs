@@ -264,9 +264,13 @@ impl<T: Real> Reading<T> {
                         && self.parents[j as usize] == top
                 });
                 self.parents[i as usize] = top;
-                self.covers[i as usize] = match known {
-                    Some(j) => self.covers[j as usize],
-                    None => {
+                self.covers[i as usize] = match (known, self.host(regions, i as usize)) {
+                    (Some(j), _) => self.covers[j as usize],
+                    (None, Some((host, color))) => {
+                        self.colors.push(color);
+                        Cover::of(&[host, self.colors.len() as u32 - 1])
+                    }
+                    (None, None) => {
                         self.colors.push(regions[i as usize].color);
                         Cover::of(&[self.colors.len() as u32 - 1])
                     }
@@ -282,6 +286,20 @@ impl<T: Real> Reading<T> {
                 self.covers[i] = Cover::of(&objects[..usize::from(len)]);
             }
         }
+    }
+
+    /// The object that region `i` lies inside, if it touches nothing else, and the color that makes `i` the mean of both.
+    fn host(&self, regions: &[Region<T>], i: usize) -> Option<(u32, [T; 3])> {
+        let mut contacts = self.contacts_of(i);
+        let (outer, _) = contacts.next()?;
+        let alone = contacts.next().is_none() && regions[i].border == 0;
+        let [host] = *self.covers[outer].members() else { return None };
+        let two = T::of(2.0);
+        let color: [T; 3] = core::array::from_fn(|c| two * regions[i].color[c] - regions[outer].color[c]);
+        // Two rounding errors of 8 bits.
+        let slack = T::of(0.006);
+        let possible = color.iter().all(|&v| v >= -slack && v <= T::one() + slack);
+        (alone && possible).then(|| (host, color.map(|v| v.max(T::zero()).min(T::one()))))
     }
 
     fn top(&self, mut i: u32) -> u32 {

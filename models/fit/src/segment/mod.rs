@@ -15,8 +15,8 @@ use alloc::vec::Vec;
 
 use dvp_core::{ImageSize, ImageView, Real};
 
-pub(crate) use edge_kind::EdgeKind;
 use edge_kind::CoverageCounts;
+pub(crate) use edge_kind::EdgeKind;
 
 /// Signed distance from a pixel center to the outline of an object, read from the pixel's color.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -135,8 +135,7 @@ impl<T: Real> Segmentation<T> {
             segment.rim.push((transition.pixel, rim.coverage));
             let Some((distance, slope)) = edge.distance(rim.coverage, unit) else { continue };
             let n = T::of_usize(rim.others);
-            let share =
-                if rim.others == 0 { one } else { n * (n + one) / ((n + rim.coverage) * (n + rim.coverage)) };
+            let share = if rim.others == 0 { one } else { n * (n + one) / ((n + rim.coverage) * (n + rim.coverage)) };
             let [x, y] = transition.pixel.map(|v| T::of_usize(v as usize) + half);
             segment.samples.push(EdgeSample { point: [x, y], distance, weight: rim.contrast * slope * share });
         }
@@ -166,6 +165,19 @@ impl<T: Real> Segmentation<T> {
 
     pub(crate) fn segments(&self) -> &[Segment<T>] {
         &self.segments[..self.count]
+    }
+
+    /// Colors of all flat regions.
+    pub(crate) fn region_colors(&self) -> impl Iterator<Item = [T; 3]> + '_ {
+        self.regions.iter().map(|region| region.color)
+    }
+
+    /// Indices of the pixels between two regions, for an image of `width` columns.
+    pub(crate) fn soft_pixels(&self, width: usize) -> impl Iterator<Item = usize> + '_ {
+        self.transitions.iter().map(move |transition| {
+            let [x, y] = transition.pixel.map(|v| v as usize);
+            y * width + x
+        })
     }
 
     /// Whether the pixel belongs to a flat region.

@@ -1,0 +1,113 @@
+//! Colors finer than 8 bits, from soft pixels.
+//!
+//! Rounding hides up to half a step of every flat color, but each soft pixel mixes two of them in its own proportion
+//! before it is rounded: hundreds of differently rounded sums together tell the colors to a small part of a step. Poses
+//! must stand, so that the proportions are known; the image is linear in the colors then.
+
+use alloc::vec::Vec;
+
+use dvp_core::{ImageView, Real};
+
+use crate::cholesky::{factor, packed, solve};
+
+/// Steps of an 8-bit channel.
+const STEPS: f64 = 255.0;
+/// How far from a multiple of 1/255 a value may be to count as rounded.
+const ROUNDED: f64 = 1e-5;
+/// Noise of a soft pixel beyond its own rounding: what the outline misses.
+const PIXEL_NOISE: f64 = 0.002;
+/// Residual above which a pixel is no mixture of the colors around.
+const OUTLIER: f64 = 0.015;
+/// Coverage planes of at most this many values are taken: beyond it, colors stay as they are.
+pub(crate) const MAX_COVERAGE_VALUES: usize = 1 << 22;
+
+/// Memory of [`refine_colors`].
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ColorScratch<T> {
+    pub(crate) coverage: Vec<T>,
+    matrix: Vec<T>,
+    sides: [Vec<T>; 3],
+    shares: Vec<T>,
+}
+
+/// Whether every value is a multiple of 1/255.
+pub(crate) fn is_rounded<T: Real>(values: impl IntoIterator<Item = T>) -> bool {
+    values.into_iter().all(|value| {
+        let steps = value * T::of(STEPS);
+        (steps - steps.round()).abs() <= T::of(ROUNDED * STEPS)
+    })
+}
+
+/// Moves background (last) and object colors by at most half a step, so that the soft `pixels` are explained best.
+///
+/// `coverage` of the scratch holds a plane per object; objects are fully confident and `blend` into each other.
+pub(crate) fn refine_colors<T: Real>(
+    image: &ImageView<'_, T>,
+    pixels: impl Iterator<Item = usize>,
+    colors: &mut [[T; 3]],
+    scratch: &mut ColorScratch<T>,
+) {
+    let n = colors.len();
+    let objects = n - 1;
+    let plane = image.size().pixels();
+    let step = T::one() / T::of(STEPS);
+    // The rounded color is within a uniform half step: standard deviation step / sqrt(12).
+    let prior = T::of(12.0) / (step * step);
+    let data = T::one() / T::of(PIXEL_NOISE * PIXEL_NOISE);
+    scratch.matrix.clear();
+    scratch.matrix.resize(packed(n, 0), T::zero());
+    for side in &mut scratch.sides {
+        side.clear();
+        side.resize(n, T::zero());
+    }
+    for i in 0..n {
+        scratch.matrix[packed(i, i)] = prior;
+    }
+    for index in pixels {
+        scratch.shares.clear();
+        let (mut total, mut clear) = (T::zero(), T::one());
+        for k in 0..objects {
+            let p = scratch.coverage[k * plane + index];
+            total += p;
+            clear *= T::one() - p;
+            scratch.shares.push(p);
+        }
+        let scale = if total > T::zero() { (T::one() - clear) / total } else { T::zero() };
+        scratch.shares.iter_mut().for_each(|share| *share *= scale);
+        scratch.shares.push(clear);
+        let target = image.pixel(index);
+        let mut residual = target;
+        for (color, &share) in colors.iter().zip(&scratch.shares) {
+            for c in 0..3 {
+                residual[c] -= share * color[c];
+            }
+        }
+        if residual.iter().any(|r| r.abs() > T::of(OUTLIER)) {
+            continue;
+        }
+        for i in 0..n {
+            let share = scratch.shares[i];
+            if share <= T::zero() {
+                continue;
+            }
+            let weighted = data * share;
+            for (side, r) in scratch.sides.iter_mut().zip(residual) {
+                side[i] += weighted * r;
+            }
+            let row = &mut scratch.matrix[packed(i, 0)..=packed(i, i)];
+            for (value, &other) in row.iter_mut().zip(&scratch.shares) {
+                *value += weighted * other;
+            }
+        }
+    }
+    if !factor(&mut scratch.matrix, n) {
+        return;
+    }
+    let half = T::of(0.5) * step;
+    for (c, side) in scratch.sides.iter_mut().enumerate() {
+        solve(&scratch.matrix, n, side);
+        for (color, &change) in colors.iter_mut().zip(side.iter()) {
+            color[c] = (color[c] + change.max(-half).min(half)).max(T::zero()).min(T::one());
+        }
+    }
+}

@@ -1,0 +1,94 @@
+//! What a fit cannot tell: covariance of poses, and how much of an outline is out of sight.
+
+use dvp_core::{ImageSize, Real};
+
+use crate::free::outline_fit::EdgeLanes;
+use crate::segment::EdgeSample;
+
+/// Standard deviations assumed before looking: position and log scale 1, rotation that of a uniform angle. They keep the
+/// covariance finite where the image says nothing (the angle of a disk).
+const PRIOR_VARIANCE: [f64; 4] = [1.0, 1.0, 1.0, 3.29];
+
+/// Covariance of (x, y in scene units, log scale, rotation), row-major, from the normal equations of the samples.
+///
+/// `outline_px` is the closed posed outline, `center_px` the point it turns and grows about; `pixel_noise` the standard
+/// deviation of a channel. Samples are taken as independent.
+pub(crate) fn covariance<T: Real>(
+    outline_px: &[[T; 2]],
+    center_px: [T; 2],
+    samples: &[EdgeSample<T>],
+    unit_px: T,
+    pixel_noise: T,
+    lanes: &mut EdgeLanes<T>,
+) -> [T; 16] {
+    lanes.set(outline_px);
+    let mut information = [[T::zero(); 4]; 4];
+    let noise = T::one() / (pixel_noise * pixel_noise);
+    for sample in samples {
+        let at = lanes.closest(sample.point);
+        let (a, b) = (outline_px[at], outline_px[at + 1]);
+        let (x, y) = (b[0] - a[0], b[1] - a[1]);
+        let length = (x * x + y * y).sqrt();
+        if length <= T::of(1e-6) {
+            continue;
+        }
+        let n = [y / length, -x / length];
+        let arm = [sample.point[0] - center_px[0], sample.point[1] - center_px[1]];
+        // The outline moves across itself by n for a shift (in scene units: times the unit), n.arm for a growth, and
+        // n x arm for a turn.
+        let row = [n[0] * unit_px, n[1] * unit_px, n[0] * arm[0] + n[1] * arm[1], n[1] * arm[0] - n[0] * arm[1]];
+        let weight = sample.weight * sample.weight * noise;
+        for i in 0..4 {
+            for j in 0..4 {
+                information[i][j] += weight * row[i] * row[j];
+            }
+        }
+    }
+    for (i, &variance) in PRIOR_VARIANCE.iter().enumerate() {
+        information[i][i] += T::of(1.0 / variance);
+    }
+    inverse4(information)
+}
+
+/// Inverse of a symmetric positive definite matrix, row-major, by Gauss-Jordan with scaled rows.
+fn inverse4<T: Real>(matrix: [[T; 4]; 4]) -> [T; 16] {
+    // Unit diagonal first: the entries span many orders of magnitude.
+    let scale: [T; 4] = core::array::from_fn(|i| T::one() / matrix[i][i].sqrt());
+    let mut left: [[T; 4]; 4] = core::array::from_fn(|i| core::array::from_fn(|j| matrix[i][j] * scale[i] * scale[j]));
+    let mut right = [[T::zero(); 4]; 4];
+    for (i, row) in right.iter_mut().enumerate() {
+        row[i] = T::one();
+    }
+    for i in 0..4 {
+        let pivot = left[i][i].max(T::epsilon());
+        for j in 0..4 {
+            left[i][j] /= pivot;
+            right[i][j] /= pivot;
+        }
+        for k in 0..4 {
+            if k != i {
+                let factor = left[k][i];
+                for j in 0..4 {
+                    let (l, r) = (left[i][j], right[i][j]);
+                    left[k][j] -= factor * l;
+                    right[k][j] -= factor * r;
+                }
+            }
+        }
+    }
+    let mut out = [T::zero(); 16];
+    for i in 0..4 {
+        for j in 0..4 {
+            out[4 * i + j] = T::of(0.5) * (right[i][j] + right[j][i]) * scale[i] * scale[j];
+        }
+    }
+    out
+}
+
+/// Share of the vertices that lie in the image.
+pub(crate) fn visible_share<T: Real>(outline_px: &[[T; 2]], size: ImageSize) -> f64 {
+    let (width, height) = (T::of_usize(size.width()), T::of_usize(size.height()));
+    let inside = |&&[x, y]: &&[T; 2]| x >= T::zero() && y >= T::zero() && x < width && y < height;
+    let seen = outline_px.iter().filter(inside).count();
+    T::of_usize(seen).as_f64() / T::of_usize(outline_px.len().max(1)).as_f64()
+}

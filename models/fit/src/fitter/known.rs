@@ -1,0 +1,170 @@
+//! Objects whose shapes are in a bank: every prototype is posed, the best is kept, all are refined together.
+
+use alloc::vec::Vec;
+
+use dvp_core::scene::Pose;
+use dvp_core::{Object, Real};
+
+use super::run::{Found, FoundObject, Run};
+use crate::joint::{JointObject, JointProblem, JointScene, refine};
+use crate::pose::gauss_newton::Frame;
+use crate::pose::search::{Candidate, Effort, search};
+use crate::{FitError, StopReason};
+
+/// An object whose rendering misses the image by this much in some channel ...
+const VISIBLE_ERROR: f64 = 0.03;
+/// ... in more than this many pixels is searched for again, with more starts.
+const VISIBLE_PIXELS: usize = 4;
+/// Candidates of the wide search that are rendered.
+const RENDERED_CANDIDATES: usize = 8;
+/// Mean absolute error from which a joint refinement is worth its time: four times the seams of the reference renderer.
+const JOINT_LOSS: f64 = 4e-4;
+/// Residual at which a pixel loses most of its say in the joint refinement.
+const JOINT_WIDTH: f64 = 0.05;
+
+/// Where a posed object came from.
+#[derive(Clone, Copy, Debug)]
+struct Source {
+    segment: usize,
+    twin: Option<(usize, f64)>,
+}
+
+impl<T: Real> Run<'_, T> {
+    /// Poses prototypes on all segments.
+    pub(super) fn known_shapes(&mut self) -> Result<Found<T>, FitError> {
+        let background = self.scratch.segmentation.background();
+        let mut posed = JointScene { background, objects: Vec::new() };
+        let mut sources = Vec::new();
+        let mut steps = 0;
+        for segment in 0..self.scratch.segmentation.segments().len() {
+            self.search(segment, Effort::Usual);
+            let Some(&best) = self.scratch.candidates.first() else { continue };
+            steps += best.steps;
+            sources.push(Source { segment, twin: twin(&self.scratch.candidates) });
+            posed.objects.push(self.posed(&best, segment));
+        }
+        let mut loss = self.compare(&posed)?;
+        for (at, source) in sources.iter_mut().enumerate() {
+            if self.misses(&posed, at) {
+                loss = self.search_again(&mut posed, at, source, loss)?;
+            }
+        }
+        let mut stop = StopReason::Converged;
+        if self.fitter.options.max_steps > 0 && loss > T::of(JOINT_LOSS) {
+            let problem = JointProblem {
+                image: self.image,
+                shapes: &self.fitter.prototypes,
+                edge: self.edge,
+                compositing: self.fitter.options.compositing,
+                colors: false,
+                width: T::of(JOINT_WIDTH),
+            };
+            let mut moved = posed.clone();
+            let result = refine(&problem, &mut moved, self.fitter.options.max_steps, &mut self.scratch.joint);
+            steps += result.steps;
+            stop = result.stop;
+            if self.compare(&moved)? < loss {
+                posed = moved;
+            }
+        }
+        let objects = posed.objects.iter().zip(&sources);
+        let objects = objects.map(|(part, source)| self.found(part, *source)).collect();
+        Ok(Found { background, objects, steps, stop })
+    }
+
+    /// Fills the candidates of the scratch.
+    fn search(&mut self, segment: usize, effort: Effort) {
+        let scratch = &mut *self.scratch;
+        let segments = scratch.segmentation.segments();
+        let prototypes = &self.fitter.prototypes;
+        let size = self.image.size();
+        search(&segments[segment], prototypes, size, &scratch.segmentation, effort, &mut scratch.candidates);
+    }
+
+    fn posed(&self, candidate: &Candidate<T>, segment: usize) -> JointObject<T> {
+        let color = self.scratch.segmentation.segments()[segment].color;
+        JointObject { shape: candidate.prototype, pose: candidate.pose, color, confidence: T::one() }
+    }
+
+    /// Renders and keeps the residual; returns the mean absolute error.
+    fn compare(&mut self, posed: &JointScene<T>) -> Result<T, FitError> {
+        let unit = self.unit_px();
+        let scratch = &mut *self.scratch;
+        scratch.drawing.clear();
+        scratch.drawing.background = posed.background;
+        for object in &posed.objects {
+            let frame = Frame::new(&object.pose);
+            scratch.outline.clear();
+            let unit_outline = &self.fitter.prototypes[object.shape].outline;
+            scratch.outline.extend(unit_outline.iter().map(|&v| frame.to_pixels(v).map(|x| x / unit)));
+            scratch.drawing.push(&scratch.outline, object.color, object.confidence);
+        }
+        self.compare_drawing()
+    }
+
+    /// Whether the last rendering visibly misses the image around an object.
+    fn misses(&self, posed: &JointScene<T>, at: usize) -> bool {
+        let object = &posed.objects[at];
+        let radius = self.fitter.prototypes[object.shape].field.radius;
+        let reach = object.pose.log_scale.exp() * radius + T::of(2.0);
+        let center = object.pose.translation;
+        let residual = &self.scratch.residual;
+        residual.count_above(self.image.size(), center, reach, T::of(VISIBLE_ERROR)) > VISIBLE_PIXELS
+    }
+
+    /// Looks harder for one object; rendered candidates compete, the best stays. Returns the loss.
+    fn search_again(
+        &mut self,
+        posed: &mut JointScene<T>,
+        at: usize,
+        source: &mut Source,
+        loss: T,
+    ) -> Result<T, FitError> {
+        self.search(source.segment, Effort::Wide);
+        let mut best = (loss, posed.objects[at]);
+        let count = self.scratch.candidates.len().min(RENDERED_CANDIDATES);
+        for i in 0..count {
+            let candidate = self.scratch.candidates[i];
+            posed.objects[at] = self.posed(&candidate, source.segment);
+            let loss = self.compare(posed)?;
+            if loss < best.0 {
+                best = (loss, posed.objects[at]);
+            }
+        }
+        source.twin = twin(&self.scratch.candidates).filter(|&(prototype, _)| prototype != best.1.shape);
+        posed.objects[at] = best.1;
+        self.compare(posed)
+    }
+
+    fn found(&self, part: &JointObject<T>, source: Source) -> FoundObject<T> {
+        let unit = self.unit_px();
+        let bank = self.fitter.options.bank.as_ref();
+        let efd = bank.and_then(|bank| bank.prototypes.get(part.shape)).map(|(_, efd)| efd.clone());
+        let object = Object {
+            pose: Pose {
+                translation: part.pose.translation.map(|v| v / unit),
+                scale: part.pose.log_scale.exp() / unit,
+                rotation: wrapped(part.pose.rotation),
+            },
+            color: part.color,
+            confidence: part.confidence,
+            efd: efd.unwrap_or_default(),
+            prototype: Some(part.shape),
+        };
+        FoundObject { object, segment: source.segment, twin: source.twin }
+    }
+}
+
+/// The best candidate of another prototype, and its cost over that of the best.
+fn twin<T: Real>(candidates: &[Candidate<T>]) -> Option<(usize, f64)> {
+    let best = candidates.first()?;
+    let other = candidates.iter().find(|candidate| candidate.prototype != best.prototype)?;
+    let floor = T::of(1e-6);
+    Some((other.prototype, (other.cost.max(floor) / best.cost.max(floor)).as_f64()))
+}
+
+/// The angle in (-pi, pi].
+fn wrapped<T: Real>(angle: T) -> T {
+    let turn = T::of(core::f64::consts::TAU);
+    angle - turn * (angle / turn).round()
+}

@@ -1,0 +1,24 @@
+//! Description length: what a scene costs to write down, and what it leaves unexplained, in bits.
+
+use dvp_core::{Real, Scene};
+
+/// Bits of a color: 8 per channel.
+const COLOR_BITS: f64 = 24.0;
+/// Bits of a pose: position to a hundredth of a pixel of 128, scale and angle alike.
+const POSE_BITS: f64 = 4.0 * 12.0;
+/// Bits of one coefficient of a free shape: its precision is about a 200th of the object.
+pub(crate) const COEFFICIENT_BITS: f64 = 8.0;
+
+/// Bits of background and objects; a prototype costs the choice among `bank` shapes, a free shape its coefficients.
+pub(crate) fn scene_bits<T: Real>(scene: &Scene<T>, bank: usize) -> f64 {
+    let shape = |harmonics: usize, known: bool| {
+        if known {
+            T::of_usize(bank.max(1)).as_f64().log2()
+        } else {
+            4.0 * COEFFICIENT_BITS * T::of_usize(harmonics).as_f64()
+        }
+    };
+    let objects = scene.objects.iter();
+    let parts = objects.map(|o| COLOR_BITS + POSE_BITS + shape(o.efd.harmonic_count(), o.prototype.is_some()));
+    COLOR_BITS + parts.sum::<f64>()
+}
