@@ -69,6 +69,17 @@ pub(super) struct Place {
     len: usize,
 }
 
+/// An object whose window holds the current row.
+#[derive(Clone, Copy, Debug)]
+struct Active {
+    object: usize,
+    /// First chunk of the window, and their number.
+    left: usize,
+    chunks: usize,
+    /// Index of the row's first chunk in the tile.
+    first: usize,
+}
+
 /// An object in a chunk of several.
 #[derive(Clone, Copy, Debug)]
 struct Layer {
@@ -113,7 +124,7 @@ impl<T: Real, S: PixelSink<T>> Kernel for Pass<'_, '_, T, S> {
             self.find_active(row);
             let mut c = 0;
             while c < chunks {
-                let (paint, until) = self.paints(row, c, chunks);
+                let (paint, until) = self.paints(c, chunks);
                 let start = row * width + c * LANES;
                 let end = (row * width + until * LANES).min((row + 1) * width);
                 let object = match paint {
@@ -150,32 +161,32 @@ impl<T: Real, S: PixelSink<T>> Pass<'_, '_, T, S> {
     #[inline(always)]
     fn find_active(&mut self, row: usize) {
         self.scratch.active.clear();
-        for (k, tile) in self.composition.tiles.iter().enumerate() {
+        for (object, tile) in self.composition.tiles.iter().enumerate() {
             let window = tile.window();
             if row >= window.top && row - window.top < window.rows {
-                self.scratch.active.push(k);
+                let first = (row - window.top) * window.chunks;
+                self.scratch.active.push(Active { object, left: window.left_chunk, chunks: window.chunks, first });
             }
         }
     }
 
     /// What paints chunk `c` of the row, and the chunk up to which that holds. Fills `scratch.layers` for several objects.
     #[inline(always)]
-    fn paints(&mut self, row: usize, c: usize, chunks: usize) -> (Paint, usize) {
-        if self.scratch.active.is_empty() {
-            return (Paint::Background, chunks);
-        }
+    fn paints(&mut self, c: usize, chunks: usize) -> (Paint, usize) {
         self.scratch.layers.clear();
-        for &object in &self.scratch.active {
-            let tile = &self.composition.tiles[object];
-            let window = tile.window();
-            let column = c.wrapping_sub(window.left_chunk);
-            if column < window.chunks {
-                let chunk = (row - window.top) * window.chunks + column;
-                match tile.states[chunk] {
+        let mut until = chunks;
+        for active in &self.scratch.active {
+            let column = c.wrapping_sub(active.left);
+            if column < active.chunks {
+                until = c + 1;
+                let (object, chunk) = (active.object, active.first + column);
+                match self.composition.tiles[object].states[chunk] {
                     ChunkState::Empty => {}
                     ChunkState::Mixed => self.scratch.layers.push(Layer { object, chunk: Some(chunk) }),
                     ChunkState::Full => self.scratch.layers.push(Layer { object, chunk: None }),
                 }
+            } else if active.left > c {
+                until = until.min(active.left);
             }
         }
         let paint = match *self.scratch.layers {
@@ -186,7 +197,7 @@ impl<T: Real, S: PixelSink<T>> Pass<'_, '_, T, S> {
             },
             _ => Paint::Several,
         };
-        (paint, c + 1)
+        (paint, until)
     }
 
     /// Paints a span, and adds its gradient: with p = 1, pixel = b + f (c - b).

@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use super::{Layer, SHARPNESS, SMALLEST_WEIGHT};
+use super::{Active, Layer, SHARPNESS, SMALLEST_WEIGHT};
 use crate::image::CHANNELS;
 use crate::real::Real;
 use crate::render::Compositing;
@@ -16,7 +16,7 @@ pub(in crate::render) struct CompositeScratch<T> {
     /// Sum of g, over chunks where the background's share is not written out yet (see [`Sums::covered`]), of g x share elsewhere.
     pub(super) background: [Lanes<T>; CHANNELS],
     /// Objects whose window holds the current row.
-    pub(super) active: Vec<usize>,
+    pub(super) active: Vec<Active>,
     /// Objects in the current chunk, in painting order.
     pub(super) layers: Vec<Layer>,
     /// What the general formulas keep per layer between their way up and their way down.

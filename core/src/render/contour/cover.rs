@@ -1,7 +1,7 @@
 //! Forward: squared distance to the closest edge in the band, inside by parity, coverage.
 
 use super::Band;
-use super::edge::{BLOCK, Edge, SHORTEST_SQUARED};
+use super::edge::{BLOCK, Edge, Near, SHORTEST_SQUARED};
 use crate::dims::ImageSize;
 use crate::real::Real;
 use crate::render::tile::{ChunkState, LANES, Lanes, Tile, grow, reserved_chunks};
@@ -10,9 +10,6 @@ use alloc::vec::Vec;
 
 /// Squared distance of pixels that no edge looked at, px^2.
 const UNSEEN: f64 = 1e30;
-
-/// Beyond this many sigma coverage falls no further; e^-80 still has a reciprocal in f32.
-const FARTHEST: f64 = 80.0;
 
 /// All pixels of a chunk.
 const ALL: u32 = (1 << LANES) - 1;
@@ -27,7 +24,7 @@ pub struct ContourRecord<T> {
     pub(super) inside: Vec<u32>,
     /// Chunks that the band may reach.
     pub(super) mixed: Vec<usize>,
-    /// Squared distance per pixel, px^2; `UNSEEN` everywhere between calls.
+    /// Squared distance per pixel, px^2.
     squared: Vec<T>,
 }
 
@@ -51,9 +48,8 @@ impl<T: Real> Kernel for Cover<'_, T> {
         grow(&mut record.closest, chunks * LANES, reserved * LANES);
         grow(&mut record.inside, chunks, reserved);
         record.inside[..chunks].fill(0);
-        if record.squared.len() < chunks * LANES {
-            record.squared.resize(chunks.max(reserved) * LANES, T::of(UNSEEN));
-        }
+        grow(&mut record.squared, chunks * LANES, reserved * LANES);
+        record.squared[..chunks * LANES].fill(T::of(UNSEEN));
         self.prepare_edges();
         for index in 0..self.record.edges.len() {
             self.near_edge(index);
@@ -81,7 +77,10 @@ impl<T: Real> Cover<'_, T> {
             let along = [b[0] - a[0], b[1] - a[1]];
             let squared = along[0] * along[0] + along[1] * along[1];
             if squared >= shortest {
-                record.edges.push(Edge { from, to, start: a, along, inverse_squared: squared.recip() });
+                let edge = Edge { from, to, start: a, along, inverse_squared: squared.recip(), near: Near::default() };
+                if let Some(near) = edge.find_near(self.band.reach, window) {
+                    record.edges.push(Edge { near, ..edge });
+                }
             }
             // Rows with low <= row < high meet the edge: each row meets a closed outline an even number of times.
             let (low, high) = (a[1].min(b[1]).ceil().to_count(), b[1].max(a[1]).ceil().to_count().min(window.rows));
@@ -103,15 +102,17 @@ impl<T: Real> Cover<'_, T> {
         let edge = record.edges[index];
         let name = T::of_usize(index);
         let window = self.tile.window();
-        let Some(near) = edge.near(self.band.reach, window) else { return };
+        let near = edge.near;
         for block in 0..near.blocks {
             let column = near.column + block * BLOCK;
             let columns = edge.columns(column);
+            let mut y = T::of_usize(near.top);
             for row in near.top..=near.bottom {
                 let start = row * window.width() + column;
                 let Some(squared) = record.squared[start..].first_chunk_mut::<BLOCK>() else { return };
                 let Some(closest) = record.closest[start..].first_chunk_mut::<BLOCK>() else { return };
-                let (ex, ey, _) = edge.offsets(&columns, row);
+                let (ex, ey, _) = edge.offsets(&columns, y);
+                y += T::one();
                 let d2: [T; BLOCK] = lanes(|i| ex[i] * ex[i] + ey[i] * ey[i]);
                 let (old, names) = (*squared, *closest);
                 let least: [T; BLOCK] = lanes(|i| if d2[i] < old[i] { d2[i] } else { old[i] });
@@ -119,9 +120,11 @@ impl<T: Real> Cover<'_, T> {
                 // Stored as they are, choices would become masked stores, which are slow on some processors.
                 *squared = lanes(|i| if least[i] > T::zero() { least[i] } else { T::zero() });
                 *closest = lanes(|i| names[i] + change[i]);
-                let first = row * window.chunks;
-                self.tile.states[first + column / LANES] = ChunkState::Mixed;
-                self.tile.states[first + (column + BLOCK - 1) / LANES] = ChunkState::Mixed;
+            }
+        }
+        for row in near.top..=near.bottom {
+            for chunk in near.chunks[0]..=near.chunks[1] {
+                self.tile.states[row * window.chunks + chunk] = ChunkState::Mixed;
             }
         }
     }
@@ -154,23 +157,20 @@ impl<T: Real> Cover<'_, T> {
         }
     }
 
-    /// Turns distances into coverage, and forgets them.
+    /// Turns distances into coverage.
     #[inline(always)]
     fn finish(&mut self) {
         let Band { offset, sharpness, cut, full, .. } = self.band;
-        let (one, zero, farthest) = (T::one(), T::zero(), T::of(FARTHEST));
+        let (one, zero) = (T::one(), T::zero());
         for &chunk in &self.record.mixed {
             let inside = self.record.inside[chunk];
-            let Some(squared) = self.record.squared[chunk * LANES..].first_chunk_mut::<LANES>() else { return };
+            let Some(squared) = self.record.squared[chunk * LANES..].first_chunk::<LANES>() else { return };
             let d2: Lanes<T> = lanes(|i| if (inside >> i) & 1 == 1 { -squared[i] } else { squared[i] });
-            // Far outside the quotient would be subnormal, which is slow.
             let steps: Lanes<T> = lanes(|i| (d2[i] - offset) * sharpness);
-            let steps: Lanes<T> = lanes(|i| if steps[i] < farthest { steps[i] } else { farthest });
             let powers: Lanes<T> = lanes(|i| steps[i].exp_lanes());
             let p: Lanes<T> = lanes(|i| one / (powers[i] + one));
             let p: Lanes<T> = lanes(|i| if d2[i] < full { one } else { p[i] });
             self.tile.coverage[chunk] = lanes(|i| if d2[i] > cut { zero } else { p[i] });
-            *squared = [T::of(UNSEEN); LANES];
         }
     }
 }

@@ -53,16 +53,18 @@ impl<T: Real> CoverVjp<'_, T> {
         let (grad, closest) = (self.tile.grad.as_flattened(), &self.record.closest);
         // Sums of g e and g u e. Even and odd rows have their own, which keeps them in memory: the loop vectorizes then.
         let mut sums = [[[T::zero(); BLOCK]; 4]; 2];
-        let Some(near) = edge.near(self.band.reach, window) else { return };
+        let near = edge.near;
         for block in 0..near.blocks {
             let column = near.column + block * BLOCK;
             let columns = edge.columns(column);
+            let mut y = T::of_usize(near.top);
             for row in near.top..=near.bottom {
                 let start = row * window.width() + column;
                 let Some(grad) = grad[start..].first_chunk::<BLOCK>() else { return };
                 let Some(closest) = closest[start..].first_chunk::<BLOCK>() else { return };
                 let (grad, closest) = (*grad, *closest);
-                let (ex, ey, position) = edge.offsets(&columns, row);
+                let (ex, ey, position) = edge.offsets(&columns, y);
+                y += T::one();
                 let g: [T; BLOCK] = lanes(|i| if closest[i] == name { grad[i] } else { T::zero() });
                 let gx: [T; BLOCK] = lanes(|i| g[i] * ex[i]);
                 let gy: [T; BLOCK] = lanes(|i| g[i] * ey[i]);

@@ -1,7 +1,7 @@
 //! Edges of an outline, and the blocks of pixels near them.
 
 use crate::real::Real;
-use crate::render::tile::{Window, pixel_range};
+use crate::render::tile::{LANES, Window, pixel_range};
 use crate::simd::lanes;
 
 /// Pixels of a row that are worked on together; they may start at any column.
@@ -21,14 +21,18 @@ pub(super) struct Edge<T> {
     pub(super) along: [T; 2],
     /// 1 / squared length.
     pub(super) inverse_squared: T,
+    /// The pixels within reach.
+    pub(super) near: Near,
 }
 
 /// The pixels near an edge: `blocks` times [`BLOCK`] columns from `column` on, rows `top..=bottom`, all counted from the
 /// window's top left pixel.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Near {
     pub(super) column: usize,
     pub(super) blocks: usize,
+    /// First and last chunk of a row that are really near.
+    pub(super) chunks: [usize; 2],
     pub(super) top: usize,
     pub(super) bottom: usize,
 }
@@ -45,7 +49,7 @@ pub(super) struct Columns<T> {
 impl<T: Real> Edge<T> {
     /// A rectangle inside the window that holds all its pixels within `reach` of the edge; `None` if there are none.
     #[inline(always)]
-    pub(super) fn near(&self, reach: T, window: Window) -> Option<Near> {
+    pub(super) fn find_near(&self, reach: T, window: Window) -> Option<Near> {
         let zero = T::zero();
         let [x, y] = self.start;
         let [dx, dy] = self.along;
@@ -55,7 +59,8 @@ impl<T: Real> Edge<T> {
         let (top, bottom) = pixel_range(top, bottom, window.rows)?;
         let blocks = (last - first) / BLOCK + 1;
         // Blocks move left rather than leave the window.
-        Some(Near { column: first.min(window.width() - blocks * BLOCK), blocks, top, bottom })
+        let column = first.min(window.width() - blocks * BLOCK);
+        Some(Near { column, blocks, chunks: [first / LANES, last / LANES], top, bottom })
     }
 
     /// What the pixels of a block share in all rows.
@@ -70,10 +75,10 @@ impl<T: Real> Edge<T> {
     /// Offsets from the closest points of the edge to a block of pixels, and the closest points' positions along the edge,
     /// in \[0, 1\].
     #[inline(always)]
-    pub(super) fn offsets(&self, columns: &Columns<T>, row: usize) -> ([T; BLOCK], [T; BLOCK], [T; BLOCK]) {
+    pub(super) fn offsets(&self, columns: &Columns<T>, row: T) -> ([T; BLOCK], [T; BLOCK], [T; BLOCK]) {
         let (zero, one) = (T::zero(), T::one());
         let [dx, dy] = self.along;
-        let y = T::of_usize(row) - self.start[1];
+        let y = row - self.start[1];
         let row_share = y * (dy * self.inverse_squared);
         // One operation for all lanes after the other: loops that do several become branches.
         let position: [T; BLOCK] = lanes(|i| columns.share[i] + row_share);
