@@ -6,6 +6,7 @@ mod evaluate;
 mod fit;
 mod generate;
 mod interrupted;
+mod picture_kinds;
 mod pictures;
 mod runner;
 mod svg;
