@@ -3,10 +3,12 @@
 //! | file | forward | backward |
 //! |---|---|---|
 //! | `pose` | unit outline to scene units, [`Pose::transform`]; (sin, cos) pair to angle | `pose_vjp` |
+//! | `painting` | the settings, [`EdgeProfile`] and [`Compositing`] | |
 //! | `draw` | scene to drawing, [`Scene::draw`] | `draw_vjp`, [`Scene::draw_vjp`] |
 
 mod draw;
 mod draw_vjp;
+mod painting;
 mod pose;
 mod pose_vjp;
 #[cfg(test)]
@@ -15,9 +17,9 @@ mod tests;
 use alloc::vec::Vec;
 
 use crate::real::Real;
-use crate::render::{Compositing, EdgeProfile};
 use crate::shape::Efd;
 
+pub use painting::{Compositing, EdgeProfile};
 pub use pose::rotation_from_pair;
 pub use pose_vjp::{PoseGrad, rotation_from_pair_vjp};
 
