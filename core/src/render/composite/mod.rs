@@ -17,6 +17,8 @@ mod over;
 mod scratch;
 mod single;
 mod sink;
+#[cfg(test)]
+mod tests;
 
 pub(super) use scratch::CompositeScratch;
 pub(super) use sink::{Forward, Loss, Mae, Mse, Pull};

@@ -106,8 +106,15 @@ impl<T: Real> Cover<'_, T> {
         for block in 0..near.blocks {
             let column = near.column + block * BLOCK;
             let columns = edge.columns(column);
-            let mut y = T::of_usize(near.top);
-            for row in near.top..=near.bottom {
+            let Some((top, bottom)) = edge.rows(block, self.band.reach, window) else { continue };
+            let first_chunk = column.max(near.first) / LANES;
+            let last_chunk = (column + BLOCK - 1).min(near.last) / LANES;
+            for row in top..=bottom {
+                self.tile.states[row * window.chunks + first_chunk] = ChunkState::Mixed;
+                self.tile.states[row * window.chunks + last_chunk] = ChunkState::Mixed;
+            }
+            let mut y = T::of_usize(top);
+            for row in top..=bottom {
                 let start = row * window.width() + column;
                 let Some(squared) = record.squared[start..].first_chunk_mut::<BLOCK>() else { return };
                 let Some(closest) = record.closest[start..].first_chunk_mut::<BLOCK>() else { return };
@@ -122,11 +129,6 @@ impl<T: Real> Cover<'_, T> {
                 *closest = lanes(|i| names[i] + change[i]);
             }
         }
-        for row in near.top..=near.bottom {
-            for chunk in near.chunks[0]..=near.chunks[1] {
-                self.tile.states[row * window.chunks + chunk] = ChunkState::Mixed;
-            }
-        }
     }
 
     /// Turns flips into sides, and lists the chunks whose coverage is to be worked out.
@@ -135,7 +137,7 @@ impl<T: Real> Cover<'_, T> {
         let window = self.tile.window();
         let record = &mut *self.record;
         record.mixed.clear();
-        record.mixed.reserve(window.rows * window.chunks);
+        record.mixed.reserve((window.rows * window.chunks).max(reserved_chunks(self.size)));
         for row in 0..window.rows {
             let mut side = 0;
             for chunk in row * window.chunks..(row + 1) * window.chunks {

@@ -57,8 +57,9 @@ impl<T: Real> CoverVjp<'_, T> {
         for block in 0..near.blocks {
             let column = near.column + block * BLOCK;
             let columns = edge.columns(column);
-            let mut y = T::of_usize(near.top);
-            for row in near.top..=near.bottom {
+            let Some((top, bottom)) = edge.rows(block, self.band.reach, window) else { continue };
+            let mut y = T::of_usize(top);
+            for row in top..=bottom {
                 let start = row * window.width() + column;
                 let Some(grad) = grad[start..].first_chunk::<BLOCK>() else { return };
                 let Some(closest) = closest[start..].first_chunk::<BLOCK>() else { return };

@@ -1,7 +1,7 @@
 //! Edges of an outline, and the blocks of pixels near them.
 
 use crate::real::Real;
-use crate::render::tile::{LANES, Window, pixel_range};
+use crate::render::tile::{Window, pixel_range};
 use crate::simd::lanes;
 
 /// Pixels of a row that are worked on together; they may start at any column.
@@ -9,6 +9,9 @@ pub(super) const BLOCK: usize = 8;
 
 /// Edges with a squared length below this are skipped, in the doubled frame's units: a repeated vertex, not an edge.
 pub(super) const SHORTEST_SQUARED: f64 = 1e-12;
+
+/// Up to this length, in pixels, positions along an edge are good to 0.01 px in f32.
+const LONGEST_PX: f64 = 16_384.0;
 
 /// An edge from `start` to `start + along`, with the window's top left pixel as origin.
 #[derive(Clone, Copy, Debug)]
@@ -31,8 +34,9 @@ pub(super) struct Edge<T> {
 pub(super) struct Near {
     pub(super) column: usize,
     pub(super) blocks: usize,
-    /// First and last chunk of a row that are really near.
-    pub(super) chunks: [usize; 2],
+    /// First and last column that are really near; blocks may reach beyond them.
+    pub(super) first: usize,
+    pub(super) last: usize,
     pub(super) top: usize,
     pub(super) bottom: usize,
 }
@@ -60,7 +64,27 @@ impl<T: Real> Edge<T> {
         let blocks = (last - first) / BLOCK + 1;
         // Blocks move left rather than leave the window.
         let column = first.min(window.width() - blocks * BLOCK);
-        Some(Near { column, blocks, chunks: [first / LANES, last / LANES], top, bottom })
+        Some(Near { column, blocks, first, last, top, bottom })
+    }
+
+    /// The rows in which the `block`-th block near the edge has pixels within reach: those of the part of the edge that
+    /// passes by. Long edges would visit their whole box otherwise.
+    #[inline(always)]
+    pub(super) fn rows(&self, block: usize, reach: T, window: Window) -> Option<(usize, usize)> {
+        let Near { column, blocks, top, bottom, .. } = self.near;
+        let [dx, dy] = self.along;
+        // Of steep edges all parts pass by; of very long ones rounding hides which.
+        if blocks == 1 || dx.abs() < T::one() || dx.abs() + dy.abs() > T::of(LONGEST_PX) {
+            return Some((top, bottom));
+        }
+        let (zero, one) = (T::zero(), T::one());
+        let left = T::of_usize(column + block * BLOCK) - reach - self.start[0];
+        let right = left + T::of_usize(BLOCK - 1) + reach + reach;
+        let (u, v) = ((left / dx).max(zero).min(one), (right / dx).max(zero).min(one));
+        let (y, z) = (self.start[1] + u * dy, self.start[1] + v * dy);
+        // Half a pixel more, so that rounding loses none.
+        let margin = reach + T::of(0.5);
+        pixel_range(y.min(z) - margin, y.max(z) + margin, window.rows)
     }
 
     /// What the pixels of a block share in all rows.

@@ -17,6 +17,8 @@
 mod cover;
 mod cover_vjp;
 mod edge;
+#[cfg(test)]
+mod tests;
 
 pub use cover::ContourRecord;
 

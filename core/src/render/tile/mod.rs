@@ -19,6 +19,8 @@
 mod check;
 mod model;
 mod renderer;
+#[cfg(test)]
+mod tests;
 
 use alloc::vec::Vec;
 
