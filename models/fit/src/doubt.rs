@@ -2,7 +2,7 @@
 
 use dvp_core::{ImageSize, Real};
 
-use crate::free::outline_fit::EdgeLanes;
+use crate::free::foot::EdgeLanes;
 use crate::segment::EdgeSample;
 
 /// Standard deviations assumed before looking: position and log scale 1, rotation that of a uniform angle. They keep the

@@ -16,7 +16,8 @@ use dvp_core::{Drawing, Efd, ImageView, Real};
 
 use crate::colors::ColorScratch;
 use crate::free::basis::Basis;
-use crate::free::outline_fit::{EdgeLanes, OutlineScratch};
+use crate::free::foot::EdgeLanes;
+use crate::free::grow::GrowScratch;
 use crate::free::start::StartScratch;
 use crate::joint::JointScratch;
 use crate::pose::field::OutlineField;
@@ -47,7 +48,7 @@ pub struct FitScratch<T: Real> {
     pixels: Vec<T>,
     residual: Residual<T>,
     start: StartScratch<T>,
-    free: OutlineScratch<T>,
+    free: GrowScratch<T>,
     lanes: EdgeLanes<T>,
     samples: Vec<EdgeSample<T>>,
     colors: ColorScratch<T>,
@@ -65,7 +66,7 @@ impl<T: Real> Default for FitScratch<T> {
             pixels: Vec::new(),
             residual: Residual::default(),
             start: StartScratch::default(),
-            free: OutlineScratch::default(),
+            free: GrowScratch::default(),
             lanes: EdgeLanes::default(),
             samples: Vec::new(),
             colors: ColorScratch::default(),
@@ -124,7 +125,7 @@ impl<T: Real> Fitter<T> {
         let kind = self.options.edge.map_or_else(|| scratch.segmentation.edge_kind(), EdgeKind::Profile);
         scratch.segmentation.gather(image.size(), &kind);
         let edge = kind.profile(T::of_usize(image.size().unit_px()));
-        let mut run = Run { fitter: self, image, edge, scratch };
+        let mut run = Run { fitter: self, image, kind, edge, scratch };
         let found = if !readable {
             run.nothing()
         } else if self.prototypes.is_empty() {

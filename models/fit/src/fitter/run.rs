@@ -10,14 +10,16 @@ use dvp_core::{ImageView, Object, Real, Scene};
 use super::{FitScratch, Fitter, symmetry_order};
 use crate::colors::{MAX_COVERAGE_VALUES, is_rounded, refine_colors};
 use crate::doubt::{covariance, visible_share};
-use crate::free::grow::PIXEL_NOISE;
 use crate::price::scene_bits;
+use crate::segment::{EdgeKind, PIXEL_NOISE};
 use crate::{Ambiguity, Fit, FitError, StopReason};
 
 /// One image being fitted.
 pub(super) struct Run<'a, T: Real> {
     pub(super) fitter: &'a Fitter<T>,
     pub(super) image: ImageView<'a, T>,
+    pub(super) kind: EdgeKind<T>,
+    /// The profile that renders this kind.
     pub(super) edge: EdgeProfile<T>,
     pub(super) scratch: &'a mut FitScratch<T>,
 }
@@ -126,8 +128,9 @@ impl<T: Real> Run<'_, T> {
         let scratch = &mut *self.scratch;
         let values = scene.objects.len() * self.image.size().pixels();
         let rounded = is_rounded(scratch.segmentation.region_colors().flatten());
-        let blend = self.fitter.options.compositing == Compositing::Blend;
-        if !blend || !rounded || values > MAX_COVERAGE_VALUES || scene.objects.is_empty() {
+        // Proportions must be known to a part of a step: only where the edge profile is exact.
+        let known = matches!(self.kind, EdgeKind::Profile(_)) && scene.compositing == Compositing::Blend;
+        if !known || !rounded || values > MAX_COVERAGE_VALUES || scene.objects.is_empty() {
             return Ok(());
         }
         scratch.colors.coverage.resize(values, T::zero());

@@ -7,15 +7,14 @@ use dvp_core::{Efd, Real};
 
 use super::basis::Basis;
 use super::outline_fit::{FreeOutline, OutlineScratch, OutlineSettings, refine};
+use super::polygon_fit::{PolygonScratch, move_vertices, transform};
 use crate::price::COEFFICIENT_BITS;
-use crate::segment::EdgeSample;
+use crate::segment::{EdgeSample, PIXEL_NOISE};
 
 /// Numbers of harmonics an outline is cut to.
 const LADDER: [usize; 10] = [2, 3, 4, 6, 8, 10, 12, 16, 20, 24];
-/// Harmonics of the first full fit, and of the later ones if it misses the samples.
-const FULL: [usize; 3] = [16, 24, 31];
-/// Noise of a pixel value that no outline explains: rounding to 8 bits and the seams of the reference renderer.
-pub(crate) const PIXEL_NOISE: f64 = 0.003;
+/// Steps of the polygon after the first two.
+const POLYGON_STEPS: usize = 3;
 
 /// An outline with what it costs to describe.
 #[derive(Clone, Debug, Default)]
@@ -26,73 +25,67 @@ pub(crate) struct Grown<T> {
     pub(crate) steps: usize,
 }
 
+/// Memory of [`grow`].
+#[derive(Clone, Debug, Default)]
+pub(crate) struct GrowScratch<T> {
+    outline: OutlineScratch<T>,
+    polygon: PolygonScratch<T>,
+    vertices: Vec<[T; 2]>,
+}
+
 /// Fits the traced outline with as many harmonics as pay.
 ///
-/// An ellipse is tried first. If it does not explain the samples, 16 harmonics are fitted, and more while that shortens the
-/// description. Then harmonics that do not pay are dropped: what a cut outline misses is foretold from how far its
-/// vertices move across the outline, and the most promising cut is fitted.
+/// An ellipse is tried first. If it does not explain the samples, a polygon is fitted, which all harmonics together can
+/// be. Then harmonics that do not pay are dropped: what a cut outline misses is foretold from how far its vertices move
+/// across the outline, and the most promising cut is fitted.
 pub(crate) fn grow<T: Real>(
     contour: &[[T; 2]],
     samples: &[EdgeSample<T>],
     basis: &Basis<T>,
     vertex_count: usize,
     max_harmonics: usize,
-    scratch: &mut OutlineScratch<T>,
+    scratch: &mut GrowScratch<T>,
 ) -> Option<Grown<T>> {
-    let most = max_harmonics.min(FULL[FULL.len() - 1]).max(1);
-    let (start, center) = Efd::from_contour(contour, most).ok()?;
+    let noise = T::of(PIXEL_NOISE);
     let mut steps = 0;
-    let mut fit = |rows: &[[T; 4]], center: [T; 2], rounds: [usize; 2]| {
-        let mut outline = FreeOutline { center, rows: rows.to_vec() };
+    let mut fit = |start: &FreeOutline<T>, harmonics: usize, widths: &[f64], scratch: &mut OutlineScratch<T>| {
+        let mut outline = FreeOutline { center: start.center, rows: start.rows[..harmonics].to_vec() };
         let mut cost = T::zero();
-        for (width, max_steps) in [2.0, 0.5].into_iter().zip(rounds) {
-            let settings = OutlineSettings {
-                width_px: T::of(width),
-                pixel_noise: T::of(PIXEL_NOISE),
-                smoothness: T::of(1e-3),
-                max_steps,
-            };
-            if max_steps > 0 {
-                cost = refine(&mut outline, samples, basis, vertex_count, &settings, scratch);
-                steps += max_steps;
-            }
+        for &width in widths {
+            let settings =
+                OutlineSettings { width_px: T::of(width), pixel_noise: noise, smoothness: T::of(1e-3), max_steps: 3 };
+            cost = refine(&mut outline, samples, basis, vertex_count, &settings, scratch);
+            steps += settings.max_steps;
         }
-        let price = 4.0 * COEFFICIENT_BITS * rows.len() as f64;
-        Grown { outline, bits: T::of(price) + cost * misfit_bits(), steps: 0 }
+        Grown { outline, bits: price::<T>(harmonics) + cost * misfit_bits(), steps: 0 }
     };
-    let mut best = fit(&start.rows()[..1], center, [3, 3]);
+    let (first, center) = Efd::from_contour(contour, 1).ok()?;
+    let start = FreeOutline { center, rows: first.rows().to_vec() };
+    let mut best = fit(&start, 1, &[2.0, 0.5], &mut scratch.outline);
     // More harmonics cannot pay for themselves if what is missed costs less than the second one.
-    let ellipse_is_enough = best.bits < T::of(2.0 * 4.0 * COEFFICIENT_BITS);
-    if !ellipse_is_enough {
-        let mut previous: Option<FreeOutline<T>> = None;
-        for harmonics in FULL.map(|n| n.min(most)) {
-            let mut rows = start.rows()[..harmonics].to_vec();
-            let mut from = center;
-            if let Some(known) = &previous {
-                if known.rows.len() >= harmonics {
-                    break;
-                }
-                rows[..known.rows.len()].copy_from_slice(&known.rows);
-                from = known.center;
-            }
-            let rounds = if previous.is_none() { [2, 2] } else { [0, 3] };
-            let tried = fit(&rows, from, rounds);
-            previous = Some(tried.outline.clone());
-            if tried.bits >= best.bits {
-                break;
-            }
+    if max_harmonics > 1 && best.bits >= price(2) {
+        let GrowScratch { outline: outline_scratch, polygon, vertices } = scratch;
+        vertices.clear();
+        vertices.extend(resample(contour, vertex_count - 1));
+        vertices.push(*vertices.first()?);
+        move_vertices(vertices, samples, T::of(2.0), noise, 2, polygon);
+        let cost = move_vertices(vertices, samples, T::of(0.5), noise, POLYGON_STEPS, polygon);
+        let outline = transform(vertices, basis, max_harmonics);
+        let full = Grown { outline, bits: price::<T>(max_harmonics) + cost * misfit_bits(), steps: 0 };
+        let cut = most_promising_cut(&full, samples, basis, vertex_count);
+        // Coefficients let vertices slide into corners, which normals alone do not.
+        let tried = fit(&full.outline, cut, &[0.5], outline_scratch);
+        steps += 2 + POLYGON_STEPS;
+        if tried.bits < best.bits {
             best = tried;
-        }
-        let cut = most_promising_cut(&best, samples, basis, vertex_count);
-        if cut < best.outline.rows.len() {
-            let tried = fit(&best.outline.rows[..cut], best.outline.center, [0, 3]);
-            if tried.bits < best.bits {
-                best = tried;
-            }
         }
     }
     best.steps = steps;
     Some(best)
+}
+
+fn price<T: Real>(harmonics: usize) -> T {
+    T::of(4.0 * COEFFICIENT_BITS) * T::of_usize(harmonics)
 }
 
 /// Bits per unit of the robust cost: half a squared residual in units of the noise, in base 2.

@@ -1,10 +1,13 @@
 //! From edge samples to an outline of unknown shape.
 //!
 //! In: the samples of one segment. Out: an [`Efd`](dvp_core::Efd) with its pose, with as few harmonics as the samples
-//! support. `start` traces a first outline, `outline_fit` moves center and coefficients until it lies at the sampled
-//! distances (on the Fourier `basis`), `grow` adds harmonics while they pay.
+//! support. `start` traces a first outline, `polygon_fit` moves its vertices and `outline_fit` its center and
+//! coefficients until it lies at the sampled distances (`foot` measures them, `basis` is the Fourier basis), `grow` decides
+//! how many harmonics pay.
 
 pub(crate) mod basis;
+pub(crate) mod foot;
 pub(crate) mod grow;
 pub(crate) mod outline_fit;
+pub(crate) mod polygon_fit;
 pub(crate) mod start;

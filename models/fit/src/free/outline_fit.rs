@@ -9,6 +9,7 @@ use alloc::vec::Vec;
 use dvp_core::{Real, simd};
 
 use super::basis::Basis;
+use super::foot::{EdgeLanes, foot};
 use crate::cholesky::{factor, packed, solve};
 use crate::segment::EdgeSample;
 
@@ -29,53 +30,6 @@ pub(crate) struct OutlineScratch<T> {
     mix: Vec<T>,
     tried: FreeOutline<T>,
     edges: EdgeLanes<T>,
-}
-
-/// Edges of the outline as lanes: start, step, inverse squared length, and room for squared distances.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct EdgeLanes<T> {
-    start: [Vec<T>; 2],
-    step: [Vec<T>; 2],
-    inverse: Vec<T>,
-    squared: Vec<T>,
-}
-
-impl<T: Real> EdgeLanes<T> {
-    pub(crate) fn set(&mut self, vertices: &[[T; 2]]) {
-        for lane in self.start.iter_mut().chain(&mut self.step).chain([&mut self.inverse, &mut self.squared]) {
-            lane.clear();
-        }
-        for pair in vertices.windows(2) {
-            let step = [pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]];
-            for c in 0..2 {
-                self.start[c].push(pair[0][c]);
-                self.step[c].push(step[c]);
-            }
-            self.inverse.push(T::one() / (step[0] * step[0] + step[1] * step[1]).max(T::of(1e-9)));
-            self.squared.push(T::zero());
-        }
-    }
-
-    /// The edge closest to `point`.
-    #[inline(always)]
-    pub(crate) fn closest(&mut self, point: [T; 2]) -> usize {
-        let n = self.squared.len();
-        let (ax, ay, sx, sy) = (&self.start[0][..n], &self.start[1][..n], &self.step[0][..n], &self.step[1][..n]);
-        let (inverse, squared) = (&self.inverse[..n], &mut self.squared[..n]);
-        for i in 0..n {
-            let (dx, dy) = (point[0] - ax[i], point[1] - ay[i]);
-            let u = ((dx * sx[i] + dy * sy[i]) * inverse[i]).max(T::zero()).min(T::one());
-            let (ex, ey) = (dx - u * sx[i], dy - u * sy[i]);
-            squared[i] = ex * ex + ey * ey;
-        }
-        let mut best = (T::infinity(), 0);
-        for (i, &value) in squared.iter().enumerate() {
-            if value < best.0 {
-                best = (value, i);
-            }
-        }
-        best.1
-    }
 }
 
 /// Settings of one refinement.
@@ -103,17 +57,6 @@ impl<T: Real> FreeOutline<T> {
             vertices.push([x, y]);
         }
     }
-}
-
-/// The nearest point of a closed polygon: edge, position along it, and the vector from it to the point.
-#[inline(always)]
-fn edge_distance<T: Real>(a: [T; 2], b: [T; 2], p: [T; 2]) -> (T, T, [T; 2]) {
-    let (sx, sy) = (b[0] - a[0], b[1] - a[1]);
-    let (dx, dy) = (p[0] - a[0], p[1] - a[1]);
-    let length = (sx * sx + sy * sy).max(T::of(1e-9));
-    let u = ((dx * sx + dy * sy) / length).max(T::zero()).min(T::one());
-    let offset = [dx - u * sx, dy - u * sy];
-    (offset[0] * offset[0] + offset[1] * offset[1], u, offset)
 }
 
 /// Moves `outline` until the samples lie at their distances; returns the robust sum of squared residuals in units of
@@ -229,35 +172,14 @@ fn assemble<T: Real>(
     scratch.gradient.clear();
     scratch.gradient.resize(n, T::zero());
     scratch.mix.resize(half, T::zero());
-    let orientation = if signed_area(&vertices) > T::zero() { T::one() } else { -T::one() };
     scratch.edges.set(&vertices);
-    let edges = vertex_count - 1;
     let inverse = T::one() / (settings.width_px * settings.width_px);
     let noise = T::one() / (settings.pixel_noise * settings.pixel_noise);
     let mut cost = T::zero();
     for sample in samples {
-        let at = scratch.edges.closest(sample.point);
-        let (squared, u, offset) = edge_distance(vertices[at], vertices[at + 1], sample.point);
-        let (a, b) = (vertices[at], vertices[at + 1]);
-        let mut normal = [(b[1] - a[1]) * orientation, -(b[0] - a[0]) * orientation];
-        if u <= T::zero() || u >= T::one() {
-            // Beside a vertex both its edges tell the side.
-            let (c, d) =
-                if u <= T::zero() { (vertices[(at + edges - 1) % edges], a) } else { (b, vertices[(at + 2) % edges]) };
-            let (l1, l2) = (length(a, b), length(c, d));
-            normal =
-                [normal[0] / l1 + (d[1] - c[1]) * orientation / l2, normal[1] / l1 - (d[0] - c[0]) * orientation / l2];
-        }
-        let side = offset[0] * normal[0] + offset[1] * normal[1];
-        let sign = if side < T::zero() { -T::one() } else { T::one() };
-        let distance = squared.sqrt();
-        let direction = if distance > T::of(1e-4) {
-            [offset[0] * sign / distance, offset[1] * sign / distance]
-        } else {
-            let l = (normal[0] * normal[0] + normal[1] * normal[1]).sqrt().max(T::of(1e-9));
-            [normal[0] / l, normal[1] / l]
-        };
-        let residual = sign * distance - sample.distance;
+        let foot = foot(&vertices, &mut scratch.edges, sample.point);
+        let (at, u, direction) = (foot.edge, foot.share, foot.direction);
+        let residual = foot.distance - sample.distance;
         let squared = residual * residual;
         let base = sample.weight * sample.weight * noise;
         let falloff = T::one() / (T::one() + squared * inverse);
@@ -303,13 +225,4 @@ fn assemble<T: Real>(
     }
     scratch.vertices = vertices;
     cost
-}
-
-fn length<T: Real>(a: [T; 2], b: [T; 2]) -> T {
-    let (x, y) = (b[0] - a[0], b[1] - a[1]);
-    (x * x + y * y).sqrt().max(T::of(1e-9))
-}
-
-fn signed_area<T: Real>(vertices: &[[T; 2]]) -> T {
-    vertices.windows(2).map(|pair| pair[0][0] * pair[1][1] - pair[0][1] * pair[1][0]).sum()
 }

@@ -68,6 +68,17 @@ impl<T: Real> EdgeKind<T> {
         }
     }
 
+    /// Standard deviation (px) of distances read from noiseless pixels: what the inversion itself gets wrong.
+    pub(crate) fn distance_noise(&self) -> T {
+        match self {
+            Self::Profile(_) => T::of(0.01),
+            // The direction of the outline is not known: up to 0.1 px along diagonals.
+            Self::Area => T::of(0.05),
+            // Uniform over a pixel.
+            Self::Hard => T::of(0.29),
+        }
+    }
+
     /// Signed distance (px, positive outside) at which coverage is `coverage`, and the slope of coverage there per px; none
     /// where coverage is too close to 0 or 1 to tell.
     pub(crate) fn distance(&self, coverage: T, unit_px: T) -> Option<(T, T)> {

@@ -25,10 +25,12 @@ pub(crate) struct EdgeSample<T> {
     pub(crate) point: [T; 2],
     /// Distance (px), positive outside.
     pub(crate) distance: T,
-    /// Change of the pixel value per px of distance, contrast x slope of the coverage: the inverse of the noise of
-    /// `distance` in units of the pixel noise.
+    /// Inverse of the noise of `distance`, in units of 1 / [`PIXEL_NOISE`]: about the change of the pixel value per px.
     pub(crate) weight: T,
 }
+
+/// Noise of a pixel value that no outline explains: rounding to 8 bits and the seams of the reference renderer.
+pub(crate) const PIXEL_NOISE: f64 = 0.003;
 
 /// One object as the segmentation sees it.
 #[derive(Clone, Debug, Default)]
@@ -126,6 +128,7 @@ impl<T: Real> Segmentation<T> {
 
     /// Turns soft pixels into samples under the given edge kind.
     pub(crate) fn gather(&mut self, size: ImageSize, edge: &EdgeKind<T>) {
+        let (own, pixel_noise) = (edge.distance_noise(), T::of(PIXEL_NOISE));
         let unit = T::of_usize(size.unit_px());
         let (one, half) = (T::one(), T::of(0.5));
         for at in 0..self.transitions.len() {
@@ -137,7 +140,10 @@ impl<T: Real> Segmentation<T> {
             let n = T::of_usize(rim.others);
             let share = if rim.others == 0 { one } else { n * (n + one) / ((n + rim.coverage) * (n + rim.coverage)) };
             let [x, y] = transition.pixel.map(|v| T::of_usize(v as usize) + half);
-            segment.samples.push(EdgeSample { point: [x, y], distance, weight: rim.contrast * slope * share });
+            // Pixel noise over the slope, and the noise of the distance itself.
+            let from_pixel = pixel_noise / (rim.contrast * slope * share).max(T::of(1e-6));
+            let weight = pixel_noise / (from_pixel * from_pixel + own * own).sqrt();
+            segment.samples.push(EdgeSample { point: [x, y], distance, weight });
         }
     }
 

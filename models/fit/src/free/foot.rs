@@ -1,0 +1,111 @@
+//! The nearest point of a closed polygon: all edges at once, in lanes.
+
+use alloc::vec::Vec;
+
+use dvp_core::Real;
+
+/// Edges of a closed polygon as lanes: start, step, inverse squared length, and room for squared distances.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct EdgeLanes<T> {
+    start: [Vec<T>; 2],
+    step: [Vec<T>; 2],
+    inverse: Vec<T>,
+    squared: Vec<T>,
+    /// 1 if the outline runs counterclockwise in (x, y), else -1.
+    pub(crate) orientation: T,
+}
+
+impl<T: Real> EdgeLanes<T> {
+    /// Takes the edges of `vertices`, the last of which repeats the first.
+    #[inline(always)]
+    pub(crate) fn set(&mut self, vertices: &[[T; 2]]) {
+        for lane in self.start.iter_mut().chain(&mut self.step).chain([&mut self.inverse, &mut self.squared]) {
+            lane.clear();
+        }
+        self.orientation = if signed_area(vertices) > T::zero() { T::one() } else { -T::one() };
+        for pair in vertices.windows(2) {
+            let step = [pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]];
+            for c in 0..2 {
+                self.start[c].push(pair[0][c]);
+                self.step[c].push(step[c]);
+            }
+            self.inverse.push(T::one() / (step[0] * step[0] + step[1] * step[1]).max(T::of(1e-9)));
+            self.squared.push(T::zero());
+        }
+    }
+
+    /// The edge closest to `point`.
+    #[inline(always)]
+    pub(crate) fn closest(&mut self, point: [T; 2]) -> usize {
+        let n = self.squared.len();
+        let (ax, ay, sx, sy) = (&self.start[0][..n], &self.start[1][..n], &self.step[0][..n], &self.step[1][..n]);
+        let (inverse, squared) = (&self.inverse[..n], &mut self.squared[..n]);
+        for i in 0..n {
+            let (dx, dy) = (point[0] - ax[i], point[1] - ay[i]);
+            let u = ((dx * sx[i] + dy * sy[i]) * inverse[i]).max(T::zero()).min(T::one());
+            let (ex, ey) = (dx - u * sx[i], dy - u * sy[i]);
+            squared[i] = ex * ex + ey * ey;
+        }
+        let mut best = (T::infinity(), 0);
+        for (i, &value) in squared.iter().enumerate() {
+            if value < best.0 {
+                best = (value, i);
+            }
+        }
+        best.1
+    }
+}
+
+/// The point of a closed polygon nearest to a given point.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Foot<T> {
+    pub(crate) edge: usize,
+    /// Position along the edge, [0, 1].
+    pub(crate) share: T,
+    /// Signed distance, positive outside.
+    pub(crate) distance: T,
+    /// Gradient of the distance with respect to the given point.
+    pub(crate) direction: [T; 2],
+}
+
+/// Finds the nearest point of the closed polygon `vertices` (the last repeats the first), which `lanes` were set to.
+#[inline(always)]
+pub(crate) fn foot<T: Real>(vertices: &[[T; 2]], lanes: &mut EdgeLanes<T>, point: [T; 2]) -> Foot<T> {
+    let edges = vertices.len() - 1;
+    let at = lanes.closest(point);
+    let (a, b) = (vertices[at], vertices[at + 1]);
+    let (step, arm) = ([b[0] - a[0], b[1] - a[1]], [point[0] - a[0], point[1] - a[1]]);
+    let squared = (step[0] * step[0] + step[1] * step[1]).max(T::of(1e-9));
+    let share = ((arm[0] * step[0] + arm[1] * step[1]) / squared).max(T::zero()).min(T::one());
+    let offset = [arm[0] - share * step[0], arm[1] - share * step[1]];
+    let mut normal = [step[1] * lanes.orientation, -step[0] * lanes.orientation];
+    if share <= T::zero() || share >= T::one() {
+        // Beside a vertex both its edges tell the side.
+        let before = share <= T::zero();
+        let (c, d) = if before { (vertices[(at + edges - 1) % edges], a) } else { (b, vertices[(at + 1) % edges + 1]) };
+        let (own, other) = (length(a, b), length(c, d));
+        normal = [
+            normal[0] / own + (d[1] - c[1]) * lanes.orientation / other,
+            normal[1] / own - (d[0] - c[0]) * lanes.orientation / other,
+        ];
+    }
+    let distance = (offset[0] * offset[0] + offset[1] * offset[1]).sqrt();
+    let inside = offset[0] * normal[0] + offset[1] * normal[1] < T::zero();
+    let sign = if inside { -T::one() } else { T::one() };
+    let direction = if distance > T::of(1e-4) {
+        [offset[0] * sign / distance, offset[1] * sign / distance]
+    } else {
+        let size = (normal[0] * normal[0] + normal[1] * normal[1]).sqrt().max(T::of(1e-9));
+        [normal[0] / size, normal[1] / size]
+    };
+    Foot { edge: at, share, distance: sign * distance, direction }
+}
+
+fn length<T: Real>(a: [T; 2], b: [T; 2]) -> T {
+    let (x, y) = (b[0] - a[0], b[1] - a[1]);
+    (x * x + y * y).sqrt().max(T::of(1e-9))
+}
+
+fn signed_area<T: Real>(vertices: &[[T; 2]]) -> T {
+    vertices.windows(2).map(|pair| pair[0][0] * pair[1][1] - pair[0][1] * pair[1][0]).sum()
+}
