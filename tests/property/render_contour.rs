@@ -141,7 +141,7 @@ proptest! {
 #[test]
 fn settings_out_of_range_are_refused() {
     let size = ImageSize::new(4, 4).unwrap();
-    for (offset, sigma, cut) in [(0.0, 0.0, 1.0), (0.0, -1.0, 1.0), (f64::NAN, 1.0, 1.0), (0.0, 1.0, f64::INFINITY)] {
+    for (offset, sigma, cut) in [(0.0, 1e-40, 1.0), (0.0, -1.0, 1.0), (f64::NAN, 1.0, 1.0), (0.0, 1.0, f64::INFINITY)] {
         let renderer = ContourRenderer::new(EdgeProfile { offset, sigma, cut }, Compositing::Blend);
         let refused = renderer.render(&Drawing::default(), size, &mut Default::default(), &mut [0.0; 48]);
         assert!(matches!(refused, Err(RenderError::Setting { .. })), "{refused:?}");

@@ -43,7 +43,7 @@ impl<T: Real> EdgeProfile<T> {
     fn centered(sigma_px2: T, unit_px: T) -> Self {
         let doubled = T::of(2.0) / unit_px;
         let sigma = sigma_px2 * doubled * doubled;
-        Self { offset: T::zero(), sigma, cut: sigma * T::of(9.210_240_366_975_849) }
+        Self { offset: T::zero(), sigma, cut: sigma * T::of(9.210_240_366_975_85) }
     }
 }
 

@@ -1,12 +1,13 @@
 //! Forward: squared distance to the closest edge in the band, inside by parity, coverage.
 
+use alloc::vec::Vec;
+
 use super::Band;
 use super::edge::{BLOCK, Edge, Near, SHORTEST_SQUARED};
 use crate::dims::ImageSize;
 use crate::real::Real;
 use crate::render::tile::{ChunkState, LANES, Lanes, Tile, grow, reserved_chunks};
 use crate::simd::{Kernel, lanes};
-use alloc::vec::Vec;
 
 /// Squared distance of pixels that no edge looked at, px^2.
 const UNSEEN: f64 = 1e30;

@@ -13,6 +13,9 @@
 //! | `edge.rs` | edges, and the blocks of pixels near them |
 //! | `cover.rs` | forward: distance, inside, coverage |
 //! | `cover_vjp.rs` | backward: coverage to vertices |
+//!
+//! `tests.rs` holds it against the definition, pixel by pixel; the golden tests `render_contour` against the reference's
+//! images, masks and gradients; the gradient tests `render_contour` against differences.
 
 mod cover;
 mod cover_vjp;
@@ -30,6 +33,9 @@ use crate::simd::dispatch;
 
 /// Inside, coverage this close to 1 counts as 1.
 const SATURATION: f64 = 1e-6;
+
+/// Smallest sigma: its reciprocal in pixels stays finite in f32.
+const SOFTNESS_FLOOR: f64 = 1e-30;
 
 /// Paints by the distance to the outline.
 pub type ContourRenderer<T> = TileRenderer<ContourDistance<T>>;
@@ -95,8 +101,8 @@ impl<T: Real> CoverageModel<T> for ContourDistance<T> {
     fn check(&self) -> Result<(), RenderError> {
         let EdgeProfile { offset, sigma, cut } = self.edge;
         let refuse = |what, value: T, must| Err(RenderError::Setting { what, value: value.as_f64(), must });
-        if !(sigma > T::zero() && sigma.is_finite() && sigma.recip().is_finite()) {
-            refuse("edge.sigma", sigma, "finite and above 0")
+        if !(sigma >= T::of(SOFTNESS_FLOOR) && sigma.is_finite()) {
+            refuse("edge.sigma", sigma, "finite and at least 1e-30")
         } else if !offset.is_finite() {
             refuse("edge.offset", offset, "finite")
         } else if !cut.is_finite() {
