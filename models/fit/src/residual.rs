@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use dvp_core::{ImageSize, ImageView, Real};
+use dvp_core::{ImageSize, ImageView, Real, simd};
 
 /// Largest channel difference per pixel between an image and a rendering.
 #[derive(Clone, Debug, Default)]
@@ -14,24 +14,8 @@ impl<T: Real> Residual<T> {
     /// Compares; returns the mean absolute error.
     pub(crate) fn measure(&mut self, image: &ImageView<'_, T>, rendered: &[T]) -> T {
         let pixels = image.size().pixels();
-        self.largest.clear();
         self.largest.resize(pixels, T::zero());
-        let mut total = T::zero();
-        for c in 0..3 {
-            let (target, ours) = (image.channel(c), &rendered[c * pixels..(c + 1) * pixels]);
-            // Sixteen sums at a time: they vectorize, and rounding stays small.
-            let mut sums = [T::zero(); 16];
-            let chunks = self.largest.chunks_mut(16).zip(target.chunks(16)).zip(ours.chunks(16));
-            for ((largest, target), ours) in chunks {
-                for (((sum, largest), &a), &b) in sums.iter_mut().zip(largest).zip(target).zip(ours) {
-                    let off = (a - b).abs();
-                    *sum += off;
-                    *largest = largest.max(off);
-                }
-            }
-            total += sums.into_iter().sum::<T>();
-        }
-        total / T::of_usize(3 * pixels)
+        simd::dispatch(Measure { image, rendered, largest: &mut self.largest }) / T::of_usize(3 * pixels)
     }
 
     /// Bits of what is unexplained: half the squared largest channel difference of each pixel in units of `noise`,
@@ -56,5 +40,48 @@ impl<T: Real> Residual<T> {
             line[columns.clone()].iter().filter(|&&off| off > threshold).count()
         })
         .sum()
+    }
+}
+
+/// Sums absolute differences and keeps the largest of the three channels.
+struct Measure<'a, T> {
+    image: &'a ImageView<'a, T>,
+    rendered: &'a [T],
+    largest: &'a mut [T],
+}
+
+/// Values per step: they vectorize, and the rounding of as many sums stays small.
+const LANES: usize = 16;
+
+impl<T: Real> simd::Kernel for Measure<'_, T> {
+    type Output = T;
+
+    #[inline(always)]
+    fn run(self) -> T {
+        let pixels = self.largest.len();
+        let [r, g, b] = [0, 1, 2].map(|c| self.image.channel(c).chunks(LANES));
+        let [x, y, z] = [0, 1, 2].map(|c| self.rendered[c * pixels..(c + 1) * pixels].chunks(LANES));
+        let mut sums = [T::zero(); LANES];
+        for ((largest, (r, x)), ((g, y), (b, z))) in
+            self.largest.chunks_mut(LANES).zip(r.zip(x)).zip(g.zip(y).zip(b.zip(z)))
+        {
+            let n = largest.len();
+            if let (Ok(largest), [Ok(r), Ok(x), Ok(g), Ok(y), Ok(b), Ok(z)]) =
+                (<&mut [T; LANES]>::try_from(&mut *largest), [r, x, g, y, b, z].map(<&[T; LANES]>::try_from))
+            {
+                for i in 0..LANES {
+                    let off = [(r[i] - x[i]).abs(), (g[i] - y[i]).abs(), (b[i] - z[i]).abs()];
+                    sums[i] += off[0] + off[1] + off[2];
+                    largest[i] = off[0].max(off[1]).max(off[2]);
+                }
+            } else {
+                for i in 0..n {
+                    let off = [(r[i] - x[i]).abs(), (g[i] - y[i]).abs(), (b[i] - z[i]).abs()];
+                    sums[i] += off[0] + off[1] + off[2];
+                    largest[i] = off[0].max(off[1]).max(off[2]);
+                }
+            }
+        }
+        sums.into_iter().sum()
     }
 }

@@ -20,6 +20,14 @@ const WIDE_SIZES: [f64; 9] = [0.6, 0.8, 1.0, 1.25, 1.5, 1.8, 2.2, 2.7, 3.3];
 /// Most starts of one prototype that are refined.
 const MOST_KEPT: usize = 10;
 
+/// Cost, relative to the best so far, from which a candidate is not refined to the end.
+const HOPELESS: f64 = 16.0;
+
+/// How residuals count in the last steps.
+fn fine<T: Real>() -> Robustness<T> {
+    Robustness { width_px: T::of(0.3), weighted: true, stride: 1 }
+}
+
 /// What a search tries.
 #[derive(Clone, Copy, Debug)]
 struct Plan {
@@ -85,11 +93,21 @@ pub(crate) fn search<T: Real>(
     // The best of the rough ones are worth all samples.
     sort(out);
     let Some(best) = out.first().map(|candidate| candidate.cost) else { return };
-    let worth = if effort == Effort::Wide { T::of(0.4) } else { T::of(0.05) };
+    let worth = if effort == Effort::Wide { T::of(0.4) } else { T::of(0.01) };
     out.retain(|candidate| candidate.cost <= T::of(8.0) * best + worth);
     let mut kept = 0;
+    let mut leader = T::infinity();
     for i in 0..out.len() {
-        let refined = finish(out[i], segment, prototypes, size, segmentation);
+        // The rough poses are nearly right: what misses all samples by far now is not worth the last steps.
+        let shape = &prototypes[out[i].prototype];
+        let now = out[i].pose.cost(&shape.field, &segment.samples, fine());
+        let hopeless = effort == Effort::Usual && now > T::of(HOPELESS) * leader + T::of(1e-3);
+        let refined = if hopeless {
+            Candidate { cost: now, ..out[i] }
+        } else {
+            finish(out[i], segment, prototypes, size, segmentation)
+        };
+        leader = leader.min(refined.cost);
         // Two starts that ended in one pose are one candidate.
         let twin = out[..kept].iter().any(|c| same(c, &refined));
         if !twin {
@@ -149,10 +167,16 @@ fn rough<T: Real>(
             }
         }
     }
+    // Starts that stay far behind the best so far are left at that.
+    let mut leader = out.iter().fold(T::infinity(), |least, candidate| least.min(candidate.cost));
     for (_, pose) in best.into_iter().flatten() {
         let narrow = Robustness { width_px: T::of(1.5), weighted: false, stride };
-        let (pose, _, first) = pose.refine(field, &segment.samples, wide, 6);
-        let (pose, cost, second) = pose.refine(field, &segment.samples, narrow, 6);
+        let (pose, wide_cost, first) = pose.refine(field, &segment.samples, wide, 4);
+        if wide_cost > T::of(HOPELESS) * leader + T::of(0.1) {
+            continue;
+        }
+        let (pose, cost, second) = pose.refine(field, &segment.samples, narrow, 5);
+        leader = leader.min(cost);
         out.push(Candidate { prototype: index, pose, cost, steps: first + second });
     }
 }
@@ -199,20 +223,19 @@ fn finish<T: Real>(
 ) -> Candidate<T> {
     let prototype = &prototypes[candidate.prototype];
     let field = &prototype.field;
-    let fine = Robustness { width_px: T::of(0.3), weighted: true, stride: 1 };
-    let (mut pose, mut cost, mut steps) = candidate.pose.refine(field, &segment.samples, fine, 8);
+    let (mut pose, mut cost, mut steps) = candidate.pose.refine(field, &segment.samples, fine(), 8);
     let turn = T::of(2.0 * core::f64::consts::PI) / T::of_usize(prototype.symmetry.max(1));
     let base = pose;
     let mut turned = false;
     for i in 1..prototype.symmetry {
         let twin = PosePx { rotation: base.rotation + turn * T::of_usize(i), ..base };
-        let twin_cost = twin.cost(field, &segment.samples, fine);
+        let twin_cost = twin.cost(field, &segment.samples, fine());
         if twin_cost < cost {
             (pose, cost, turned) = (twin, twin_cost, true);
         }
     }
     if turned {
-        let (refined, refined_cost, more) = pose.refine(field, &segment.samples, fine, 4);
+        let (refined, refined_cost, more) = pose.refine(field, &segment.samples, fine(), 4);
         (pose, cost, steps) = (refined, refined_cost, steps + more);
     }
     let surplus = outline_over_flat(&pose, prototype, size, segmentation);

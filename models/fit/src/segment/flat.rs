@@ -5,7 +5,7 @@
 
 use alloc::vec::Vec;
 
-use dvp_core::{ImageView, Real};
+use dvp_core::{ImageView, Real, simd};
 
 /// A run of flat pixels of one row.
 #[derive(Clone, Copy, Debug)]
@@ -27,22 +27,35 @@ pub(crate) struct FlatMap {
     sizes: Vec<u32>,
     horizontal: Vec<u8>,
     vertical: Vec<u8>,
+    /// 0 for the flat pixels of a row, and 1 behind its end.
+    soft: Vec<u8>,
 }
 
 /// Marks where two pixels one `step` apart differ by more than the tolerance in some channel.
-#[inline(always)]
-fn mark_steps<T: Real>(image: &ImageView<'_, T>, step: usize, tolerance: T, marks: &mut Vec<u8>) {
-    let pixels = image.size().pixels();
-    marks.clear();
-    marks.resize(pixels, 0);
-    let count = pixels.saturating_sub(step);
-    let (r, g, b) = (image.channel(0), image.channel(1), image.channel(2));
-    let marks = &mut marks[..count];
-    let (r0, g0, b0) = (&r[..count], &g[..count], &b[..count]);
-    let (r1, g1, b1) = (&r[step..], &g[step..], &b[step..]);
-    for i in 0..count {
-        let d = (r0[i] - r1[i]).abs().max((g0[i] - g1[i]).abs()).max((b0[i] - b1[i]).abs());
-        marks[i] = u8::from(d > tolerance);
+struct MarkSteps<'a, T> {
+    image: &'a ImageView<'a, T>,
+    step: usize,
+    tolerance: T,
+    marks: &'a mut Vec<u8>,
+}
+
+impl<T: Real> simd::Kernel for MarkSteps<'_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let pixels = self.image.size().pixels();
+        self.marks.clear();
+        self.marks.resize(pixels, 0);
+        let count = pixels.saturating_sub(self.step);
+        let [r, g, b] = [0, 1, 2].map(|c| self.image.channel(c));
+        let marks = &mut self.marks[..count];
+        let (r0, g0, b0) = (&r[..count], &g[..count], &b[..count]);
+        let [r1, g1, b1] = [r, g, b].map(|channel| &channel[pixels - count..]);
+        for i in 0..count {
+            let d = (r0[i] - r1[i]).abs().max((g0[i] - g1[i]).abs()).max((b0[i] - b1[i]).abs());
+            marks[i] = u8::from(d > self.tolerance);
+        }
     }
 }
 
@@ -59,8 +72,8 @@ impl FlatMap {
     /// Labels `image`; regions below `min_pixels` count as soft.
     pub(crate) fn label<T: Real>(&mut self, image: &ImageView<'_, T>, tolerance: T, min_pixels: u32) {
         let (width, height) = (image.size().width(), image.size().height());
-        mark_steps(image, 1, tolerance, &mut self.horizontal);
-        mark_steps(image, width, tolerance, &mut self.vertical);
+        simd::dispatch(MarkSteps { image, step: 1, tolerance, marks: &mut self.horizontal });
+        simd::dispatch(MarkSteps { image, step: width, tolerance, marks: &mut self.vertical });
         self.collect_runs(width, height);
         self.link_runs(min_pixels);
         self.labels.clear();
@@ -75,19 +88,12 @@ impl FlatMap {
     fn collect_runs(&mut self, width: usize, height: usize) {
         self.runs.clear();
         self.parents.clear();
-        let zeros = [0u8; 0];
         let (mut above, mut above_next) = (0usize, 0usize);
         for row in 0..height {
-            let steps = &self.horizontal[row * width..(row + 1) * width];
-            let up = if row == 0 { &zeros[..] } else { &self.vertical[(row - 1) * width..row * width] };
-            let down = if row + 1 == height { &zeros[..] } else { &self.vertical[row * width..(row + 1) * width] };
+            self.mark_soft(row, width, height);
             let mut start = None;
             for x in 0..=width {
-                let flat = x < width
-                    && (x == 0 || steps[x - 1] == 0)
-                    && (x + 1 == width || steps[x] == 0)
-                    && up.get(x).is_none_or(|&m| m == 0)
-                    && down.get(x).is_none_or(|&m| m == 0);
+                let flat = self.soft[x] == 0;
                 match (flat, start) {
                     (true, None) => start = Some(x),
                     (false, Some(s)) => {
@@ -112,6 +118,29 @@ impl FlatMap {
             }
             above = self.runs.partition_point(|run| (run.row as usize) < row);
             above_next = self.runs.len();
+        }
+    }
+
+    /// Fills `soft` for one row: a pixel is soft if it steps to any neighbor.
+    fn mark_soft(&mut self, row: usize, width: usize, height: usize) {
+        let right = &self.horizontal[row * width..(row + 1) * width];
+        self.soft.clear();
+        self.soft.extend_from_slice(right);
+        // The last pixel of a row has no right neighbor; its mark looks at the next row.
+        self.soft[width - 1] = 0;
+        self.soft.push(1);
+        for (soft, &left) in self.soft[1..width].iter_mut().zip(right) {
+            *soft |= left;
+        }
+        if row > 0 {
+            for (soft, &up) in self.soft.iter_mut().zip(&self.vertical[(row - 1) * width..row * width]) {
+                *soft |= up;
+            }
+        }
+        if row + 1 < height {
+            for (soft, &down) in self.soft.iter_mut().zip(&self.vertical[row * width..(row + 1) * width]) {
+                *soft |= down;
+            }
         }
     }
 
