@@ -1,6 +1,7 @@
 //! Description length: what a scene costs to write down, and what it leaves unexplained, in bits.
 
 use dvp_core::{Real, Scene};
+use num_traits::Float;
 
 /// Bits of a color: 8 per channel.
 const COLOR_BITS: f64 = 24.0;
@@ -13,7 +14,7 @@ pub(crate) const COEFFICIENT_BITS: f64 = 8.0;
 pub(crate) fn scene_bits<T: Real>(scene: &Scene<T>, bank: usize) -> f64 {
     let shape = |harmonics: usize, known: bool| {
         if known {
-            T::of_usize(bank.max(1)).as_f64().log2()
+            Float::log2(T::of_usize(bank.max(1)).as_f64())
         } else {
             4.0 * COEFFICIENT_BITS * T::of_usize(harmonics).as_f64()
         }
