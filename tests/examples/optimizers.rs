@@ -1,4 +1,4 @@
-//! Scores the paper's optimizers on a data set: OptP from a perturbed truth, Rand-OptP, Opt-Iter.
+//! Scores optimizers on a data set: OptP and Levenberg-Marquardt from a perturbed truth, Rand-OptP, Opt-Iter.
 //!
 //! `cargo run --release -p dvp-tests --example optimizers -- DATA [IMAGES]` prints the paper's columns and the thread-CPU
 //! time per image. Targets are float images: those of `val_first32_f32.npy` beside DATA where it exists, for the
@@ -19,10 +19,11 @@ use dvp_core::render::{Compositing, EdgeProfile, Renderer};
 use dvp_core::shape::{OutlineBasis, REFERENCE_VERTICES};
 use dvp_core::{Drawing, Efd, Image, ImageSize, ImageView, Scene};
 use dvp_fit::Fit;
-use dvp_fit::adam::descent::{Descent, DescentError};
+use dvp_fit::adam::descent::Descent;
 use dvp_fit::opt_iter::OptIter;
 use dvp_fit::opt_p::OptP;
 use dvp_fit::rand_opt_p::{RandOptP, random_scene};
+use dvp_fit::refine::{Refine, RefineScratch};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -63,13 +64,16 @@ impl Judge {
         Ok(owned)
     }
 
-    fn score(
+    fn score<E>(
         &self,
         row: &mut Row,
         image: ImageView<'_, f32>,
         truth: &Scene<f32>,
-        fit: impl FnOnce() -> Result<Fit<f32>, DescentError>,
-    ) -> Result<(), Failure> {
+        fit: impl FnOnce() -> Result<Fit<f32>, E>,
+    ) -> Result<(), Failure>
+    where
+        E: Error + 'static,
+    {
         let start = ThreadTime::now();
         let fit = fit()?;
         row.milliseconds.push(1e3 * start.elapsed().as_secs_f64());
@@ -141,12 +145,10 @@ fn main() -> Result<(), Failure> {
     let mut known = Descent::new(&renderer, REFERENCE_VERTICES, MOST_HARMONICS)?;
     let mut free = Descent::new(&renderer, REFERENCE_VERTICES, HARMONICS)?;
 
-    let mut rows = ["OptP", "Rand-OptP", "Opt-Iter", "Opt-Iter, as published"].map(|name| Row {
-        name,
-        tally: Tally::default(),
-        mae: Vec::new(),
-        milliseconds: Vec::new(),
-    });
+    let mut refining = RefineScratch::default();
+
+    let mut rows = ["OptP", "LM with sigma continuation", "Rand-OptP", "Opt-Iter", "Opt-Iter, as published"]
+        .map(|name| Row { name, tally: Tally::default(), mae: Vec::new(), milliseconds: Vec::new() });
     for (i, sample) in (0_u32..).zip(data.samples.iter().take(count)) {
         let Some((scene, place)) = &sample.scene else { continue };
         let truth: Scene<f32> = scene.to_scene(Some(&data.bank), place)?;
@@ -156,8 +158,10 @@ fn main() -> Result<(), Failure> {
             None => triangles.render(&judge.draw(&truth)?, size, &mut Default::default(), target.data_mut())?,
         }
         let (image, seed) = (target.view(), u64::from(i));
-        let [opt_p, rand_opt_p, opt_iter, published] = &mut rows;
+        let [opt_p, refine, rand_opt_p, opt_iter, published] = &mut rows;
         judge.score(opt_p, image, &truth, || OptP::default().fit(&mut known, image, &perturbed(&truth, seed)))?;
+        let start = perturbed(&truth, seed);
+        judge.score(refine, image, &truth, || Refine::default().fit(image, &start, &mut refining))?;
         let start = random_scene(truth.objects.len(), &shapes, seed);
         judge.score(rand_opt_p, image, &truth, || RandOptP::default().fit(&mut free, image, &start))?;
         judge.score(opt_iter, image, &truth, || OptIter::default().fit(&mut free, image))?;

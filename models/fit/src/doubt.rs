@@ -7,7 +7,7 @@ use crate::segment::EdgeSample;
 
 /// Standard deviations assumed before looking: position and log scale 1, rotation that of a uniform angle. They keep the
 /// covariance finite where the image says nothing (the angle of a disk).
-const PRIOR_VARIANCE: [f64; 4] = [1.0, 1.0, 1.0, 3.29];
+pub(crate) const PRIOR_VARIANCE: [f64; 4] = [1.0, 1.0, 1.0, 3.29];
 
 /// Covariance of (x, y in scene units, log scale, rotation), row-major, from the normal equations of the samples.
 ///

@@ -10,6 +10,7 @@
 //! | `pose` | samples, a bank | prototype and pose |
 //! | `free` | samples, no bank | elliptic Fourier descriptors, as few as the samples support |
 //! | `fitter` | all of it | a [`Fit`] |
+//! | [`refine`] | an image, a start | a [`Fit`] by Levenberg-Marquardt |
 //! | [`opt_p`], [`opt_iter`], [`rand_opt_p`] | an image, for OptP and Rand-OptP a start | a [`Fit`] by the paper's Adam |
 #![no_std]
 
@@ -21,6 +22,7 @@ pub mod opt_p;
 pub mod parameters;
 pub mod plateau;
 pub mod rand_opt_p;
+pub mod refine;
 
 mod cholesky;
 mod colors;
@@ -33,6 +35,8 @@ mod pose;
 mod price;
 mod residual;
 mod segment;
+#[cfg(test)]
+mod tests;
 
 use alloc::vec::Vec;
 

@@ -65,6 +65,16 @@ pub enum FitError {
         /// Its index.
         index: usize,
     },
+    /// An object of the start encloses no area.
+    FlatObject {
+        /// Its index.
+        index: usize,
+    },
+    /// The scale of an object of the start is not above 0.
+    Scale {
+        /// Its index.
+        index: usize,
+    },
     /// A setting is out of range.
     Setting {
         /// Its name.
@@ -84,6 +94,8 @@ impl core::fmt::Display for FitError {
             Self::NotFinite { index } => write!(f, "image value {index} is NaN or infinite; replace it before the fit"),
             Self::Prototype { index, source } => write!(f, "prototype {index} of the bank: {source}"),
             Self::FlatPrototype { index } => write!(f, "prototype {index} of the bank encloses no area; remove it"),
+            Self::FlatObject { index } => write!(f, "object {index} of the start encloses no area; remove it"),
+            Self::Scale { index } => write!(f, "the scale of object {index} of the start must be above 0"),
             Self::Setting { what, must } => write!(f, "{what} must be {must}"),
             Self::Shape(error) => write!(f, "{error}"),
             Self::Render(error) => write!(f, "{error}"),

@@ -57,6 +57,7 @@ impl<T: Real> Run<'_, T> {
                 edge: self.edge,
                 compositing: self.fitter.options.compositing,
                 colors: false,
+                coarse: false,
                 width: T::of(JOINT_WIDTH),
             };
             let mut moved = posed.clone();

@@ -141,7 +141,7 @@ impl<T: Real> Fitter<T> {
 const MAX_HARMONICS: usize = 31;
 
 /// Symmetry order of a shape, 0 for a disk.
-fn symmetry_order<T: Real>(efd: &Efd<T>) -> usize {
+pub(crate) fn symmetry_order<T: Real>(efd: &Efd<T>) -> usize {
     match efd.symmetry(T::of(SYMMETRY_TOLERANCE)) {
         Symmetry::Finite(order) => order,
         Symmetry::Continuous => 0,

@@ -11,3 +11,5 @@ pub(crate) mod grow;
 pub(crate) mod outline_fit;
 pub(crate) mod polygon_fit;
 pub(crate) mod start;
+#[cfg(test)]
+mod tests;

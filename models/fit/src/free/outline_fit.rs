@@ -25,7 +25,7 @@ pub(crate) struct FreeOutline<T> {
 pub(crate) struct OutlineScratch<T> {
     vertices: Vec<[T; 2]>,
     hessian: Vec<T>,
-    gradient: Vec<T>,
+    pub(super) gradient: Vec<T>,
     damped: Vec<T>,
     mix: Vec<T>,
     tried: FreeOutline<T>,
@@ -154,7 +154,7 @@ fn steps<T: Real>(
 
 /// Fills hessian (packed) and gradient at `outline`; returns the robust cost.
 #[inline(always)]
-fn assemble<T: Real>(
+pub(super) fn assemble<T: Real>(
     outline: &FreeOutline<T>,
     samples: &[EdgeSample<T>],
     basis: &Basis<T>,

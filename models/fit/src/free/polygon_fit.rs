@@ -121,8 +121,8 @@ impl<T: Real> Move<'_, T> {
         let limit = T::one() + T::one();
         for i in 0..n {
             let step = gradient[i].max(-limit).min(limit);
-            for c in 0..2 {
-                self.vertices[i][c] -= step * normals[i][c];
+            for (v, &normal) in self.vertices[i].iter_mut().zip(&normals[i]) {
+                *v -= step * normal;
             }
         }
         self.vertices[n] = self.vertices[0];

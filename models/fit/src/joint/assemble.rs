@@ -62,12 +62,14 @@ impl<T: Real> JointScratch<T> {
         let profile = Profile::new(problem);
         self.place(problem, scene, &profile);
         let size = problem.image.size();
+        let stride = if problem.coarse { profile.stride() } else { 1 };
+        let near_weight = T::of_usize(stride * stride);
         let mut cost = T::zero();
         // Each pixel once, by the first object whose band holds it; interiors on a coarse grid for the colors.
         for first in 0..scene.objects.len() {
             let [left, top, right, bottom] = self.boxes[first];
-            for row in top..bottom {
-                for column in left..right {
+            for row in (top.next_multiple_of(stride)..bottom).step_by(stride) {
+                for column in (left.next_multiple_of(stride)..right).step_by(stride) {
                     let interior = row % INTERIOR_STRIDE == 0 && column % INTERIOR_STRIDE == 0;
                     let near = self.near(problem, scene, &profile, first, column, row);
                     if !(near || problem.colors && interior && self.inside_box(first, column, row)) {
@@ -81,7 +83,7 @@ impl<T: Real> JointScratch<T> {
                     if earlier {
                         continue;
                     }
-                    let weight = if near { T::one() } else { T::of_usize(INTERIOR_STRIDE * INTERIOR_STRIDE) };
+                    let weight = if near { near_weight } else { T::of_usize(INTERIOR_STRIDE * INTERIOR_STRIDE) };
                     let index = row * size.width() + column;
                     cost += self.add_pixel(problem, scene, &profile, [column, row], index, weight);
                 }
@@ -294,6 +296,12 @@ impl<T: Real> Profile<T> {
             inside: (-full).max(T::zero()).sqrt() * doubled_px,
             outside: edge.cut.max(T::zero()).sqrt() * doubled_px,
         }
+    }
+
+    /// Every how many rows and columns suffice to see the band: at least three to its width, at most those of interiors.
+    fn stride(&self) -> usize {
+        let band = (self.inside + self.outside) / T::of(3.0);
+        if band >= T::of_usize(INTERIOR_STRIDE) { INTERIOR_STRIDE } else { band.to_count().clamp(1, 2) }
     }
 
     /// Coverage at a signed distance (px), and its derivative per px.

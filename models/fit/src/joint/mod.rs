@@ -4,7 +4,10 @@
 //! pixels near outlines, [`refine`] takes damped steps, and [`continue_sigma`] does so at softer edges first, which widens
 //! the basin from about a pixel to several.
 
+#[expect(clippy::needless_range_loop, reason = "loops over channels walk several arrays")]
 mod assemble;
+#[cfg(test)]
+mod tests;
 
 use alloc::vec::Vec;
 
@@ -49,6 +52,8 @@ pub(crate) struct JointProblem<'a, T> {
     pub(crate) compositing: Compositing,
     /// Whether colors and background move too.
     pub(crate) colors: bool,
+    /// Whether wide bands may be looked at on a grid instead of pixel by pixel, and steps end early: for softened edges.
+    pub(crate) coarse: bool,
     /// Residual of a channel at which a pixel loses most of its say (Geman-McClure).
     pub(crate) width: T,
 }
@@ -75,6 +80,7 @@ pub(crate) fn refine<T: Real>(
     let mut tried = core::mem::take(&mut scratch.tried);
     let mut result = JointResult { cost, steps: 0, stop: StopReason::StepLimit };
     let mut fresh = true;
+    let tolerance = T::of(if problem.coarse { 1e-2 } else { 1e-4 });
     while result.steps < max_steps {
         result.steps += 1;
         if !fresh {
@@ -91,7 +97,7 @@ pub(crate) fn refine<T: Real>(
         if fresh {
             core::mem::swap(scene, &mut tried);
             let gain = cost - next;
-            let done = gain <= T::of(1e-4) * cost;
+            let done = gain <= tolerance * cost;
             cost = next;
             damping *= T::of(0.2);
             if done {
@@ -111,7 +117,8 @@ pub(crate) fn refine<T: Real>(
     result
 }
 
-/// Refines at `factors` x sigma, one after the other; the last one should be 1.
+/// Refines at `factors` x sigma, one after the other; the last one should be 1. The width grows with the root of the factor:
+/// a soft edge is off by more.
 pub(crate) fn continue_sigma<T: Real>(
     problem: &JointProblem<'_, T>,
     scene: &mut JointScene<T>,
@@ -124,7 +131,9 @@ pub(crate) fn continue_sigma<T: Real>(
     for &factor in factors {
         let sigma = problem.edge.sigma * T::of(factor);
         let cut = problem.edge.offset + (problem.edge.cut - problem.edge.offset) * T::of(factor);
-        let softened = JointProblem { edge: EdgeProfile { sigma, cut, ..problem.edge }, ..*problem };
+        let width = problem.width * T::of(factor).sqrt();
+        let softened =
+            JointProblem { edge: EdgeProfile { sigma, cut, ..problem.edge }, coarse: factor > 1.0, width, ..*problem };
         result = refine(&softened, scene, max_steps, scratch);
         steps += result.steps;
     }

@@ -107,12 +107,17 @@ impl<T: Real> OutlineField<T> {
         along(1) * CELLS + along(0)
     }
 
-    /// Bounds of the signed distance at `point`, from its cell alone; for points in the grid.
+    /// Bounds of the signed distance at `point`, from its cell alone; outside the grid from the nearest cell.
     #[inline(always)]
     pub(crate) fn distance_bounds(&self, point: [T; 2]) -> (T, T) {
         let center = self.centers[self.cell(point)];
-        // Half the diagonal of a cell.
-        let slack = T::of(core::f64::consts::FRAC_1_SQRT_2) / self.cells_per_unit;
+        let side = T::of_usize(CELLS) / self.cells_per_unit;
+        let outside = (0..2).fold(T::zero(), |sum, c| {
+            let beyond = (self.low[c] - point[c]).max(point[c] - self.low[c] - side).max(T::zero());
+            sum + beyond
+        });
+        // Half the diagonal of a cell, and at most the way to it (a distance changes by no more than a point moves).
+        let slack = T::of(core::f64::consts::FRAC_1_SQRT_2) / self.cells_per_unit + outside;
         (center - slack, center + slack)
     }
 

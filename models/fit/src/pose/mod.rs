@@ -4,5 +4,8 @@
 //! a unit outline, `gauss_newton` moves a pose until its outline lies at the sampled distances, `search` finds starts.
 
 pub(crate) mod field;
+#[expect(clippy::needless_range_loop, reason = "indices of a 4 x 4 matrix")]
 pub(crate) mod gauss_newton;
 pub(crate) mod search;
+#[cfg(test)]
+mod tests;

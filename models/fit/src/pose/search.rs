@@ -6,7 +6,7 @@ use dvp_core::{ImageSize, Real};
 
 use super::field::OutlineField;
 use super::gauss_newton::{Frame, PosePx, Robustness};
-use crate::segment::{EdgeSample, Segment, Segmentation};
+use crate::segment::{Segment, Segmentation};
 
 /// Samples used while searching; all are used at the end.
 const SEARCH_SAMPLES: usize = 40;
@@ -269,9 +269,4 @@ fn outline_over_flat<T: Real>(
         flat += usize::from(segmentation.is_flat(y * size.width() + x));
     }
     if visible == 0 { T::zero() } else { T::of_usize(flat) / T::of_usize(visible) }
-}
-
-/// Mean squared error (px^2) of samples that a pose leaves unexplained.
-pub(crate) fn unexplained<T: Real>(pose: &PosePx<T>, field: &OutlineField<T>, samples: &[EdgeSample<T>]) -> T {
-    pose.cost(field, samples, Robustness { width_px: T::one(), weighted: false, stride: 1 })
 }

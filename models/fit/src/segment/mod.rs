@@ -9,6 +9,8 @@ mod edge_kind;
 mod flat;
 mod interpret;
 mod region;
+#[cfg(test)]
+mod tests;
 mod transition;
 
 use alloc::vec::Vec;

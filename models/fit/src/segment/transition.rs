@@ -101,12 +101,11 @@ fn collect_soft(width: usize, height: usize, map: &FlatMap, scratch: &mut SoftSc
         loop {
             let run = map.runs.get(next).filter(|run| run.row as usize == row);
             let (end, right) = run.map_or((width, 0), |run| (run.start as usize, run.label));
-            for at in x..end {
-                let (up, _) = column[at];
+            for (at, &(up, below)) in (x..end).zip(&column[x..end]) {
                 soft.push(Soft {
                     pixel: [at as u32, row as u32],
                     ends: [left, right, up, 0],
-                    runs: [(end - x) as u32, row as u32 - if up == 0 { 0 } else { column[at].1 }],
+                    runs: [(end - x) as u32, row as u32 - if up == 0 { 0 } else { below }],
                 });
             }
             let Some(run) = run else { break };

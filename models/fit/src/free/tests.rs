@@ -1,0 +1,102 @@
+use alloc::vec::Vec;
+
+use super::basis::Basis;
+use super::grow::{GrowScratch, grow};
+use super::outline_fit::{FreeOutline, OutlineScratch, OutlineSettings, assemble};
+use crate::segment::EdgeSample;
+
+const VERTICES: usize = 64;
+const SETTINGS: OutlineSettings<f64> =
+    OutlineSettings { width_px: 0.7, pixel_noise: 0.05, smoothness: 1e-3, max_steps: 0 };
+
+fn outline() -> FreeOutline<f64> {
+    FreeOutline {
+        center: [31.0, 33.0],
+        rows: [[14.0, 1.0, -2.0, -10.0], [0.5, 1.0, -0.7, 0.3], [0.2, -0.4, 0.3, 0.6]].into(),
+    }
+}
+
+/// Three samples beside each edge, off the outline by -0.9 .. 0.9 px, with distances that do not fit.
+fn samples(outline: &FreeOutline<f64>, basis: &Basis<f64>) -> Vec<EdgeSample<f64>> {
+    let mut vertices = Vec::new();
+    outline.write_vertices(basis, VERTICES, &mut vertices);
+    let mut out = Vec::new();
+    for (i, pair) in (0_u32..).zip(vertices.windows(2)) {
+        let step: [f64; 2] = [pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]];
+        let length = step[0].hypot(step[1]);
+        for k in 0..3 {
+            let (u, off) = (0.25 * f64::from(k + 1), 0.3 * f64::from((i + 2 * k) % 7) - 0.9);
+            let point = [0, 1].map(|c| pair[0][c] + u * step[c] + off * [step[1], -step[0]][c] / length);
+            out.push(EdgeSample { point, distance: off + 0.2 * f64::from((i * 5 + k) % 5) - 0.4, weight: 0.5 });
+        }
+    }
+    out
+}
+
+#[test]
+fn the_gradient_is_that_of_half_the_cost() {
+    let basis = Basis::new(VERTICES, 3);
+    let start = outline();
+    let samples = samples(&start, &basis);
+    let mut scratch = OutlineScratch::default();
+    assemble(&start, &samples, &basis, VERTICES, &SETTINGS, &mut scratch);
+    let gradient = scratch.gradient.clone();
+    // x of the center, (a, b) per harmonic, then y of the center, (c, d) per harmonic.
+    assert_eq!(gradient.len(), 14);
+    for (lane, &analytic) in gradient.iter().enumerate() {
+        let mut cost = |by: f64| {
+            let mut moved = start.clone();
+            let (axis, at) = (lane / 7, lane % 7);
+            if at == 0 {
+                moved.center[axis] += by;
+            } else {
+                moved.rows[(at - 1) / 2][2 * axis + (at - 1) % 2] += by;
+            }
+            assemble(&moved, &samples, &basis, VERTICES, &SETTINGS, &mut scratch)
+        };
+        let numeric = 0.5 * (cost(1e-6) - cost(-1e-6)) / 2e-6;
+        assert!((analytic - numeric).abs() < 1e-5 * (1.0 + numeric.abs()), "lane {lane}: {analytic} {numeric}");
+    }
+}
+
+/// Exact samples around an ellipse with half axes 14 and 9 px.
+fn ellipse_samples() -> (Vec<[f64; 2]>, Vec<EdgeSample<f64>>) {
+    let basis = Basis::new(VERTICES, 1);
+    let ellipse = FreeOutline { center: [30.0, 28.0], rows: [[14.0, 0.0, 0.0, -9.0]].into() };
+    let mut vertices = Vec::new();
+    ellipse.write_vertices(&basis, VERTICES, &mut vertices);
+    let mut samples = Vec::new();
+    for pair in vertices.windows(2) {
+        let step: [f64; 2] = [pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]];
+        let length = step[0].hypot(step[1]);
+        let middle = [0, 1].map(|c| 0.5 * (pair[0][c] + pair[1][c]));
+        // The outline turns from +x to -y: outside is to the right of its way, (-dy, dx).
+        for distance in [-0.6, 0.6] {
+            let point = [middle[0] - distance * step[1] / length, middle[1] + distance * step[0] / length];
+            samples.push(EdgeSample { point, distance, weight: 0.5 });
+        }
+    }
+    (vertices, samples)
+}
+
+#[test]
+fn an_ellipse_pays_for_one_harmonic() {
+    let (contour, samples) = ellipse_samples();
+    let basis = Basis::new(VERTICES, 31);
+    let grown = grow(&contour[1..], &samples, &basis, VERTICES, 31, &mut GrowScratch::default()).unwrap();
+    assert_eq!(grown.outline.rows.len(), 1);
+    let [a, b, c, d] = grown.outline.rows[0];
+    // The area pi |a d - b c| does not depend on where the outline starts.
+    assert!(((a * d - b * c).abs() - 126.0).abs() < 0.5, "{:?}", grown.outline);
+    assert!((grown.outline.center[0] - 30.0).abs() < 0.02 && (grown.outline.center[1] - 28.0).abs() < 0.02);
+}
+
+#[test]
+fn the_basis_holds_cosines_and_sines() {
+    // t = 2 pi i / 4: vertex 1 is a quarter turn, vertex 4 is vertex 0 again.
+    let basis = Basis::<f64>::new(5, 2);
+    let expected = [1.0, 0.0, 1.0, -1.0, 0.0];
+    assert!(basis.row(1, 2).iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-15), "{:?}", basis.row(1, 2));
+    assert_eq!(basis.row(0, 2), basis.row(4, 2));
+    assert_eq!(basis.row(3, 1).len(), 3);
+}

@@ -1,0 +1,198 @@
+use alloc::vec::Vec;
+
+use dvp_core::render::EdgeProfile;
+use dvp_core::{Image, ImageSize};
+
+use super::edge_kind::{CoverageCounts, EdgeKind};
+use super::flat::FlatMap;
+use super::region::{Region, measure};
+use super::transition::{SoftScratch, Transition, find};
+use super::{SegmentOptions, Segmentation};
+
+/// An image from the color of each (column, row).
+fn paint(width: usize, height: usize, color: impl Fn(usize, usize) -> [f64; 3]) -> Image<f64> {
+    let pixels: Vec<f64> = (0..width * height).flat_map(|i| color(i % width, i / width)).collect();
+    Image::from_interleaved(ImageSize::new(width, height).unwrap(), &pixels).unwrap()
+}
+
+fn regions(image: &Image<f64>) -> (FlatMap, Vec<Region<f64>>) {
+    let (mut map, mut regions) = (FlatMap::default(), Vec::new());
+    map.label(&image.view(), 0.0085, 4);
+    measure(&image.view(), &map, &mut regions, &mut Vec::new());
+    (map, regions)
+}
+
+fn assert_near(a: f64, b: f64, tolerance: f64) {
+    assert!((a - b).abs() <= tolerance, "{a} is not {b}");
+}
+
+#[test]
+fn pixels_beside_a_step_are_not_flat() {
+    // Black | white: columns 2 and 3 have a neighbor of the other color.
+    let image = paint(6, 4, |x, _| [if x < 3 { 0.0 } else { 1.0 }; 3]);
+    let (map, regions) = regions(&image);
+    assert_eq!(map.region_count, 2);
+    assert_eq!(&map.labels[..12], &[1, 1, 0, 0, 2, 2, 1, 1, 0, 0, 2, 2]);
+    let left = regions[0];
+    // Centers x = 0.5, 1.5 in 4 rows y = 0.5 .. 3.5: sum x = 4 (0.5 + 1.5), sum y = 2 (0.5 + 1.5 + 2.5 + 3.5),
+    // sum xx = 4 (0.25 + 2.25), sum xy = 2 x 8, sum yy = 2 (0.25 + 2.25 + 6.25 + 12.25).
+    assert_eq!((left.pixels, left.bounds), (8, [0, 0, 2, 4]));
+    for (sum, expected) in left.sums.into_iter().zip([8.0, 16.0, 10.0, 16.0, 42.0]) {
+        assert_near(sum, expected, 1e-12);
+    }
+    // Two pixels in the first and the last row, one in the two between.
+    assert_eq!((left.border, left.color, regions[1].color), (6, [0.0; 3], [1.0; 3]));
+}
+
+#[test]
+fn small_regions_are_soft_and_colors_are_medians() {
+    // Three pixels in a corner are fewer than four; a seam of 0.005 down one column is outvoted.
+    let image = paint(9, 9, |x, y| if x == 4 && y > 0 { [0.505; 3] } else { [0.5; 3] });
+    let (map, found) = regions(&image);
+    assert_eq!((map.region_count, found[0].pixels, found[0].color), (1, 81, [0.5; 3]));
+    let image = paint(4, 1, |x, _| [if x < 3 { 0.0 } else { 1.0 }; 3]);
+    assert_eq!(regions(&image).0.region_count, 0);
+}
+
+#[test]
+fn one_region_may_bend() {
+    // A U of black around white: its two arms are joined by the last run of all.
+    let image = paint(15, 15, |x, y| [if (5..10).contains(&x) && y < 10 { 1.0 } else { 0.0 }; 3]);
+    let (map, found) = regions(&image);
+    assert_eq!(map.region_count, 2);
+    assert_eq!(map.labels[0], map.labels[14]);
+    // White: columns 6 to 8, rows 0 to 8. Black: two arms of 4 x 11 (the rows down to the one above the bend's own) and
+    // rows 11 to 14; row 10 has the pixels below the white ones soft.
+    assert_eq!((found[1].pixels, found[0].pixels), (27, 2 * 4 * 10 + 5 + 5 + 4 * 15));
+}
+
+#[test]
+fn soft_pixels_lie_along_the_line_between_two_colors() {
+    let ramp = [0.0, 0.0, 0.0, 0.25, 0.75, 1.0, 1.0, 1.0];
+    let image = paint(8, 4, |x, _| [ramp[x], 0.5 * ramp[x], 0.2]);
+    let (map, found) = regions(&image);
+    let mut transitions: Vec<Transition<f64>> = Vec::new();
+    find(&image.view(), &map, &found, 0.012, &mut SoftScratch::default(), &mut transitions);
+    assert_eq!(transitions.len(), 16);
+    for (transition, weight) in transitions.iter().zip([0.0, 0.25, 0.75, 1.0].into_iter().cycle()) {
+        assert_eq!(transition.pair, [0, 1]);
+        assert_near(transition.weight, weight, 1e-12);
+    }
+    // A color off the line belongs to no pair.
+    let image = paint(8, 4, |x, _| [ramp[x], 0.5 * ramp[x], if x == 3 { 0.25 } else { 0.2 }]);
+    let (map, found) = regions(&image);
+    find(&image.view(), &map, &found, 0.012, &mut SoftScratch::default(), &mut transitions);
+    assert_eq!(transitions.len(), 12);
+}
+
+/// A rectangle of the mixed pictures: columns, rows, color.
+type Rectangle = ([usize; 2], [usize; 2], [f64; 3]);
+
+const BACKGROUND: [f64; 3] = [0.1, 0.9, 0.2];
+
+/// Hard rectangles; where they overlap, the mean of their colors.
+fn blended(side: usize, rectangles: &[Rectangle]) -> Image<f64> {
+    paint(side, side, |x, y| {
+        let inside = |&&(columns, rows, _): &&Rectangle| {
+            (columns[0]..columns[1]).contains(&x) && (rows[0]..rows[1]).contains(&y)
+        };
+        let colors: Vec<[f64; 3]> = rectangles.iter().filter(inside).map(|r| r.2).collect();
+        if colors.is_empty() {
+            return BACKGROUND;
+        }
+        let count = if colors.len() == 1 {
+            1.0
+        } else if colors.len() == 2 {
+            2.0
+        } else {
+            3.0
+        };
+        core::array::from_fn(|c| colors.iter().map(|color| color[c]).sum::<f64>() / count)
+    })
+}
+
+fn read(image: &Image<f64>) -> Segmentation<f64> {
+    let mut segmentation = Segmentation::default();
+    assert!(segmentation.read(&image.view(), &SegmentOptions::default()));
+    segmentation
+}
+
+/// Object with that color, to which the rectangle's pixels belong.
+fn object_of(segmentation: &Segmentation<f64>, color: [f64; 3]) -> u32 {
+    let near = |found: [f64; 3]| (0..3).all(|c| (found[c] - color[c]).abs() < 1e-9);
+    let at = segmentation.segments().iter().position(|segment| near(segment.color));
+    u32::try_from(at.expect("an object of that color")).unwrap()
+}
+
+#[test]
+fn an_overlap_of_two_is_no_object() {
+    let parts = [([3, 15], [3, 15], [0.8, 0.2, 0.1]), ([9, 21], [9, 21], [0.2, 0.3, 0.9])];
+    let found = read(&blended(24, &parts));
+    assert_eq!((found.segments().len(), found.background()), (2, BACKGROUND));
+    let [a, b] = parts.map(|part| object_of(&found, part.2));
+    for (x, y, covers) in
+        [(5, 5, [true, false]), (12, 12, [true, true]), (18, 18, [false, true]), (1, 1, [false, false])]
+    {
+        assert_eq!([a, b].map(|k| found.covers(y * 24 + x, k)), covers.map(Some), "at {x}, {y}");
+    }
+}
+
+#[test]
+fn an_overlap_of_three_is_no_object() {
+    let parts = [
+        ([2, 26], [2, 22], [0.9, 0.1, 0.0]),
+        ([14, 38], [2, 22], [0.1, 0.2, 0.8]),
+        ([8, 32], [12, 38], [0.5, 0.6, 0.3]),
+    ];
+    let found = read(&blended(40, &parts));
+    assert_eq!(found.segments().len(), 3);
+    let objects = parts.map(|part| object_of(&found, part.2));
+    let at = |x: usize, y: usize| objects.map(|k| found.covers(y * 40 + x, k) == Some(true));
+    assert_eq!(at(20, 17), [true; 3]);
+    assert_eq!(at(20, 6), [true, true, false]);
+    assert_eq!(at(11, 17), [true, false, true]);
+    assert_eq!(at(29, 17), [false, true, true]);
+}
+
+#[test]
+fn an_object_inside_another_shows_the_mean() {
+    let parts = [([4, 28], [4, 28], [0.8, 0.2, 0.1]), ([10, 20], [10, 20], [0.2, 0.4, 0.9])];
+    let found = read(&blended(32, &parts));
+    assert_eq!(found.segments().len(), 2);
+    // 2 x mean - host is the color that is seen nowhere.
+    let [host, inner] = parts.map(|part| object_of(&found, part.2));
+    assert_eq!([host, inner].map(|k| found.covers(15 * 32 + 15, k)), [Some(true); 2]);
+    assert_eq!([host, inner].map(|k| found.covers(6 * 32 + 6, k)), [Some(true), Some(false)]);
+}
+
+#[test]
+fn the_edge_kind_follows_the_counts() {
+    let mut counts = CoverageCounts::default();
+    for coverage in [0.0149, 0.05, 0.5, 0.9, 0.95, 0.99] {
+        counts.add(coverage);
+    }
+    assert_eq!(counts, CoverageCounts { settled: 2, low: 1, middle: 2, high: 1 });
+    let kind = |settled, low, middle, high| CoverageCounts { settled, low, middle, high }.kind::<f64>();
+    assert_eq!(kind(0, 34, 100, 75), EdgeKind::Profile(EdgeProfile::reference()));
+    assert_eq!(kind(0, 11, 100, 11), EdgeKind::Area);
+    assert_eq!(kind(100, 2, 0, 2), EdgeKind::Hard);
+    assert_eq!(kind(100, 3, 1, 1), EdgeKind::Area);
+}
+
+#[test]
+fn distance_inverts_coverage() {
+    let (edge, unit) = (EdgeProfile::<f64>::reference(), 128.0);
+    let coverage = |d: f64| {
+        let doubled = d / (0.5 * unit);
+        1.0 / (1.0 + ((doubled * doubled.abs() - edge.offset) / edge.sigma).exp())
+    };
+    // Coverage 0.985 lies 0.58 px outside the outline, 0.02 lies 1.9 px outside.
+    for d in [0.6, 0.9, 1.43, 1.7, 1.85] {
+        let (distance, slope) = EdgeKind::Profile(edge).distance(coverage(d), unit).unwrap();
+        assert_near(distance, d, 1e-9);
+        assert_near(slope, (coverage(d - 1e-5) - coverage(d + 1e-5)) / 2e-5, 1e-8);
+    }
+    assert!(EdgeKind::Profile(edge).distance(0.999, unit).is_none());
+    assert_eq!(EdgeKind::Area.distance(0.75, unit), Some((-0.25, 1.0)));
+    assert_eq!(EdgeKind::Hard.distance(0.0, unit), Some((0.5, 0.5)));
+}

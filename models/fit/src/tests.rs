@@ -1,0 +1,133 @@
+//! Of the modules that are one file each.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use dvp_core::{Efd, Image, ImageSize, Object, Pose, Scene};
+
+use crate::cholesky::{factor, packed, solve};
+use crate::colors::{ColorScratch, is_rounded, refine_colors};
+use crate::doubt::{covariance, visible_share};
+use crate::free::foot::EdgeLanes;
+use crate::price::scene_bits;
+use crate::residual::Residual;
+use crate::segment::EdgeSample;
+
+#[test]
+fn cholesky_of_two_equations() {
+    // [[4, 2], [2, 3]] = L L^T with L = [[2, 0], [1, sqrt 2]]; x = (3 x 2 - 2 x 1, 4 x 1 - 2 x 2) / 8.
+    let mut matrix = [4.0_f64, 2.0, 3.0];
+    assert!(factor(&mut matrix, 2));
+    assert!(matrix.iter().zip([2.0, 1.0, 2.0_f64.sqrt()]).all(|(a, b)| (a - b).abs() < 1e-15));
+    let mut x = [2.0, 1.0];
+    solve(&matrix, 2, &mut x);
+    assert!((x[0] - 0.5).abs() < 1e-15 && x[1].abs() < 1e-15);
+    assert!(!factor(&mut [1.0, 2.0, 1.0], 2));
+    assert!(!factor(&mut [f64::NAN], 1));
+}
+
+#[test]
+fn cholesky_of_many_equations() {
+    // More than two blocks of eight: 1 on the diagonal of (i - j)-dependent positive definite entries 0.5^|i - j|.
+    let n = 21_usize;
+    let entry = |i: usize, j: usize| 0.5_f64.powi(i32::try_from(i.abs_diff(j)).unwrap());
+    let mut matrix: Vec<f64> = (0..n).flat_map(|i| (0..=i).map(move |j| (i, j))).map(|(i, j)| entry(i, j)).collect();
+    assert_eq!(matrix.len(), packed(n, 0));
+    let truth: Vec<f64> = (0..n).map(|i| (1.7 * f64::from(u32::try_from(i).unwrap())).sin()).collect();
+    let mut x: Vec<f64> = (0..n).map(|i| (0..n).map(|j| entry(i, j) * truth[j]).sum()).collect();
+    assert!(factor(&mut matrix, n));
+    solve(&matrix, n, &mut x);
+    assert!(x.iter().zip(&truth).all(|(a, b)| (a - b).abs() < 1e-13), "{x:?}");
+}
+
+#[test]
+fn description_lengths() {
+    let object = |prototype, harmonics| Object {
+        pose: Pose::identity(),
+        color: [0.0_f64; 3],
+        confidence: 1.0,
+        efd: Efd::zeros(harmonics),
+        prototype,
+    };
+    // Background 24; object 24 + 48 and the choice among 4, or 2 harmonics of 4 coefficients of 8 bits.
+    let mut scene = Scene::empty([0.0; 3]);
+    assert!((scene_bits(&scene, 4) - 24.0).abs() < 1e-12);
+    scene.objects.push(object(Some(1), 16));
+    assert!((scene_bits(&scene, 4) - (24.0 + 72.0 + 2.0)).abs() < 1e-12);
+    scene.objects.push(object(None, 2));
+    assert!((scene_bits(&scene, 4) - (24.0 + 74.0 + 72.0 + 64.0)).abs() < 1e-12);
+}
+
+#[test]
+fn residuals_of_two_pixels() {
+    // Pixel 0 off by 0.01 in green, pixel 1 by 0.2 in red and 0.3 in blue.
+    let size = ImageSize::new(2, 1).unwrap();
+    let image = Image::from_planar(size, vec![0.5_f64; 6]).unwrap();
+    let mut residual = Residual::default();
+    let loss = residual.measure(&image.view(), &[0.5, 0.7, 0.51, 0.5, 0.5, 0.2]);
+    assert!((loss - 0.51 / 6.0).abs() < 1e-15);
+    // In units of noise 0.01 the first is 1: half a nat; the second is capped.
+    assert!((residual.bits(0.01) - (0.5 * core::f64::consts::LOG2_E + 24.0)).abs() < 1e-9);
+    assert_eq!(residual.count_above(size, [1.0, 0.5], 1.0, 0.25), 1);
+    assert_eq!(residual.count_above(size, [0.5, 0.5], 0.5, 0.25), 0);
+    assert_eq!(residual.count_above(size, [-9.0, 0.5], 2.0, 0.0), 0);
+}
+
+/// A regular polygon of 64 edges around (20, 20), its edges' middles 10 px away, with a sample on each.
+fn polygon() -> (Vec<[f64; 2]>, Vec<EdgeSample<f64>>) {
+    let step = core::f64::consts::TAU / 64.0;
+    let at = |angle: f64, radius: f64| [20.0 + radius * angle.cos(), 20.0 + radius * angle.sin()];
+    let radius = 10.0 / (0.5 * step).cos();
+    let outline = (0..=64_u32).map(|i| at(f64::from(i) * step, radius)).collect();
+    let middles = (0..64_u32).map(|i| at((f64::from(i) + 0.5) * step, 10.0));
+    (outline, middles.map(|point| EdgeSample { point, distance: 0.0, weight: 0.5 }).collect())
+}
+
+#[test]
+fn covariance_of_a_disk() {
+    let (outline, samples) = polygon();
+    let found = covariance(&outline, [20.0, 20.0], &samples, 40.0, 0.003, &mut EdgeLanes::default());
+    // Each sample tells its distance to 0.003 / 0.5 px. Position: 32 of 64 count (mean of cos^2), 40 px per unit. Log
+    // scale: 10 px per unit. The angle is as unknown as before.
+    let sample = (0.003_f64 / 0.5).powi(2);
+    let expected = [sample / (32.0 * 1600.0), sample / (32.0 * 1600.0), sample / (64.0 * 100.0), 3.29];
+    for (i, expected) in expected.into_iter().enumerate() {
+        assert!((found[5 * i] - expected).abs() < 1e-6 * expected, "{i}: {} is not {expected}", found[5 * i]);
+        for j in (0..4).filter(|&j| j != i) {
+            assert!(found[4 * i + j].abs() < 1e-6 * (found[5 * i] * found[5 * j]).sqrt(), "{i}, {j}");
+        }
+    }
+    // Without samples nothing is known.
+    let found = covariance(&outline, [20.0, 20.0], &[], 40.0, 0.003, &mut EdgeLanes::default());
+    assert!((found[0] - 1.0).abs() < 1e-12 && (found[15] - 3.29).abs() < 1e-12);
+}
+
+#[test]
+fn visible_vertices_are_counted() {
+    let size = ImageSize::new(10, 10).unwrap();
+    let outline = [[1.0, 1.0], [-1.0, 1.0], [9.9, 9.9], [10.0, 5.0]];
+    assert!((visible_share(&outline, size) - 0.5).abs() < 1e-15);
+}
+
+#[test]
+fn soft_pixels_tell_fractions_of_a_step() {
+    // One object whose coverage runs through 200 values; colors between the steps of 8 bits.
+    let truth = [[0.701_3, 0.302_1, 0.118_9], [0.233_7, 0.851_4, 0.549_2]];
+    let round = |value: f64| (value * 255.0).round() / 255.0;
+    let coverage: Vec<f64> = (0..200_u32).map(|i| (f64::from(i) + 0.5) / 200.0).collect();
+    let mixed = |c: usize| coverage.iter().map(move |p| round(p * truth[0][c] + (1.0 - p) * truth[1][c]));
+    let data: Vec<f64> = (0..3).flat_map(mixed).collect();
+    assert!(is_rounded(data.iter().copied()) && !is_rounded(truth.into_iter().flatten()));
+    let image = Image::from_planar(ImageSize::new(200, 1).unwrap(), data).unwrap();
+    let mut scratch = ColorScratch::default();
+    scratch.coverage = coverage;
+    let mut colors = truth.map(|color| color.map(round));
+    let worst = |colors: &[[f64; 3]; 2]| {
+        let pairs = colors.iter().flatten().zip(truth.iter().flatten());
+        pairs.fold(0.0_f64, |worst, (a, b)| worst.max((a - b).abs()))
+    };
+    let before = worst(&colors);
+    refine_colors(&image.view(), 0..200, &mut colors, &mut scratch);
+    // Rounding 0.29 steps each, 67 pixels' worth for either color: 0.04 steps.
+    assert!(before > 0.3 / 255.0 && worst(&colors) < 0.12 / 255.0, "{before} to {}", worst(&colors));
+}
