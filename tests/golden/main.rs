@@ -3,6 +3,7 @@
 extern crate alloc;
 
 mod efd;
+mod fit;
 mod loss;
 mod matching;
 mod metric;

@@ -1,0 +1,170 @@
+//! Accuracy of segment-and-fit on MDS-HR: committed scenes always, every eighth image of the validation set and its
+//! float images where the folder `shared` is there.
+
+#![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test with a line number")]
+
+use std::path::Path;
+
+use dvp::format::mdshr_bank;
+use dvp::generate::{SceneSettings, sample_scene};
+use dvp_core::loss::ImagePair;
+use dvp_core::metric::{Ownership, Scores, Tally, visible_object_count};
+use dvp_core::render::{ContourRenderer, Renderer};
+use dvp_core::shape::{OutlineBasis, REFERENCE_VERTICES};
+use dvp_core::{Drawing, Efd, Image, ImageSize, Object, Pose, Real, Scene};
+use dvp_fit::{FitOptions, FitScratch, Fitter};
+use dvp_tests::fixture;
+
+const SIDE: usize = 128;
+const HARMONICS: usize = 64;
+
+/// An image to fit, the float image to score against, and the true scene.
+type Case = (Image<f32>, Image<f32>, Scene<f32>);
+
+fn draw(scene: &Scene<f32>) -> Drawing<f32> {
+    let mut drawing = Drawing::default();
+    scene.draw(&OutlineBasis::new(REFERENCE_VERTICES, HARMONICS).unwrap(), &mut drawing).unwrap();
+    drawing
+}
+
+fn paint(scene: &Scene<f32>) -> Image<f32> {
+    let mut image = Image::zeros(ImageSize::new(SIDE, SIDE).unwrap());
+    let renderer = ContourRenderer::new(scene.edge, scene.compositing);
+    renderer.render(&draw(scene), image.size(), &mut Default::default(), image.data_mut()).unwrap();
+    image
+}
+
+fn ownership(scene: &Scene<f32>) -> Ownership {
+    let (drawing, size) = (draw(scene), ImageSize::new(SIDE, SIDE).unwrap());
+    let mut coverage = vec![0.0; drawing.object_count() * size.pixels()];
+    let renderer = ContourRenderer::new(scene.edge, scene.compositing);
+    renderer.object_coverage(&drawing, size, &mut Default::default(), &mut coverage).unwrap();
+    let mut owned = Ownership::default();
+    owned.fill(size.pixels(), &coverage, &drawing.confidences).unwrap();
+    owned
+}
+
+fn rounded(image: &Image<f32>) -> Image<f32> {
+    let mut image = image.clone();
+    image.data_mut().iter_mut().for_each(|value| *value = (*value * 255.0).round() / 255.0);
+    image
+}
+
+/// Scores over the cases, and how many have the right number of objects.
+fn score(options: FitOptions<f32>, cases: &[Case]) -> (Scores, usize) {
+    let fitter = Fitter::new(options).unwrap();
+    let (mut scratch, mut tally, mut exact) = (FitScratch::default(), Tally::default(), 0);
+    for (image, target, truth) in cases {
+        let fit = fitter.fit(image.view(), &mut scratch).unwrap();
+        exact += usize::from(fit.scene.objects.len() == visible_object_count(truth));
+        let painted = paint(&fit.scene);
+        let pair = ImagePair::new(painted.view(), target.view()).unwrap();
+        tally.add(pair, &ownership(&fit.scene), &ownership(truth)).unwrap();
+    }
+    let scores = tally.scores().unwrap();
+    eprintln!("{} images: {scores:?}, {exact} counts exact", cases.len());
+    (scores, exact)
+}
+
+fn known() -> FitOptions<f32> {
+    FitOptions { bank: Some(mdshr_bank()), ..FitOptions::default() }
+}
+
+/// Scenes of our own generator, which nothing was tuned on.
+fn own_scenes(count: u64) -> Vec<Case> {
+    let size = ImageSize::new(SIDE, SIDE).unwrap();
+    let scenes = (0..count).map(|index| sample_scene(&SceneSettings::mds_hr(), &mdshr_bank(), size, 7, index));
+    scenes.map(|scene| (paint(&scene), scene)).map(|(image, scene)| (image.clone(), image, scene)).collect()
+}
+
+fn truths(shared: &Path, count: usize) -> Vec<Scene<f32>> {
+    let to_f32 = |scene: Scene<f64>| Scene {
+        objects: scene
+            .objects
+            .iter()
+            .map(|object| Object {
+                pose: Pose {
+                    translation: object.pose.translation.map(|v| v.as_f32()),
+                    scale: object.pose.scale.as_f32(),
+                    rotation: object.pose.rotation.as_f32(),
+                },
+                color: object.color.map(|v| v.as_f32()),
+                confidence: object.confidence.as_f32(),
+                efd: Efd::new(object.efd.rows().iter().map(|row| row.map(|v| v.as_f32())).collect()),
+                prototype: object.prototype,
+            })
+            .collect(),
+        ..Scene::empty(scene.background.map(|v| v.as_f32()))
+    };
+    fixture::mdshr_val(shared, count).into_iter().map(to_f32).collect()
+}
+
+fn float_cases(shared: &Path) -> Vec<Case> {
+    let (_, values) = fixture::read_npy(&shared.join("mdshr/val_first32_f32.npy"));
+    let size = ImageSize::new(SIDE, SIDE).unwrap();
+    let images = values.chunks_exact(3 * size.pixels()).map(|pixels| Image::from_interleaved(size, pixels).unwrap());
+    images.zip(truths(shared, 32)).map(|(image, truth)| (image.clone(), image, truth)).collect()
+}
+
+/// Every eighth picture of the validation set, scored against itself.
+fn png_cases(shared: &Path) -> Vec<Case> {
+    let size = ImageSize::new(SIDE, SIDE).unwrap();
+    let truths = truths(shared, 256);
+    let cases = truths.into_iter().enumerate().step_by(8).map(|(index, truth)| {
+        let picture = image::open(shared.join(format!("mdshr/val/{index:05}.png"))).unwrap().to_rgb8();
+        let values: Vec<f32> = picture.as_raw().iter().map(|&byte| f32::from(byte) / 255.0).collect();
+        let image = Image::from_interleaved(size, &values).unwrap();
+        (image.clone(), image, truth)
+    });
+    cases.collect()
+}
+
+#[test]
+fn own_scenes_with_a_bank() {
+    let (scores, exact) = score(known(), &own_scenes(24));
+    assert_eq!(exact, 24);
+    assert!(scores.mae <= 2e-4 && scores.ssim >= 0.9998 && scores.iou >= 0.9995 && scores.ari >= 0.999, "{scores:?}");
+}
+
+#[test]
+fn own_scenes_from_eight_bits() {
+    let cases: Vec<Case> =
+        own_scenes(24).into_iter().map(|(image, target, truth)| (rounded(&image), target, truth)).collect();
+    let (scores, exact) = score(known(), &cases);
+    assert_eq!(exact, 24);
+    assert!(scores.mae <= 1e-3 && scores.ssim >= 0.9998 && scores.iou >= 0.9995 && scores.ari >= 0.999, "{scores:?}");
+}
+
+#[test]
+fn own_scenes_without_a_bank() {
+    let (scores, exact) = score(FitOptions::default(), &own_scenes(24));
+    assert!(exact >= 23, "{exact}");
+    assert!(scores.mae <= 1e-3 && scores.iou >= 0.993 && scores.ari >= 0.993, "{scores:?}");
+}
+
+#[test]
+fn float_images_of_the_reference() {
+    let Some(shared) = fixture::shared() else { return };
+    let cases = float_cases(&shared);
+    assert_eq!(cases.len(), 32);
+    let (scores, exact) = score(known(), &cases);
+    assert_eq!(exact, 32);
+    assert!(scores.mae <= 2e-4 && scores.ssim >= 0.9998 && scores.iou >= 0.9995 && scores.ari >= 0.999, "{scores:?}");
+    let (scores, exact) = score(FitOptions::default(), &cases);
+    assert_eq!(exact, 32);
+    assert!(scores.mae <= 1e-3 && scores.iou >= 0.993 && scores.ari >= 0.993, "{scores:?}");
+}
+
+#[test]
+fn pictures_of_the_reference() {
+    let Some(shared) = fixture::shared() else { return };
+    let cases = png_cases(&shared);
+    assert_eq!(cases.len(), 32);
+    let (scores, exact) = score(known(), &cases);
+    assert_eq!(exact, 32);
+    // Against the rounded picture: rounding alone is a quarter of a step, 9.8e-4.
+    assert!(scores.mae <= 1.2e-3 && scores.ssim >= 0.9998 && scores.iou >= 0.9995 && scores.ari >= 0.999, "{scores:?}");
+    let (scores, exact) = score(FitOptions::default(), &cases);
+    assert_eq!(exact, 32);
+    assert!(scores.iou >= 0.993 && scores.ari >= 0.993, "{scores:?}");
+}

@@ -1,0 +1,307 @@
+//! Invariants of segment-and-fit.
+
+#![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test with a line number")]
+
+use core::f64::consts::TAU;
+
+use dvp_core::render::contour::ContourRenderer;
+use dvp_core::render::{EdgeProfile, Renderer};
+use dvp_core::shape::{MDSHR_NAMES, OutlineBasis, REFERENCE_VERTICES, mdshr_bank};
+use dvp_core::{Drawing, Image, ImageSize, Object, Pose, Real, Scene};
+use dvp_fit::{Bank, Fit, FitError, FitOptions, FitScratch, Fitter, StopReason, fit_image};
+use proptest::prelude::*;
+
+const SIDE: usize = 128;
+const HARMONICS: usize = 31;
+/// Symmetry orders of heart, square and ellipse.
+const ORDERS: [f64; 3] = [1.0, 4.0, 2.0];
+
+fn bank<T: Real>() -> Bank<T> {
+    let prototypes = mdshr_bank(HARMONICS).prototypes().to_vec();
+    Bank { prototypes: MDSHR_NAMES.iter().map(|name| (*name).to_owned()).zip(prototypes).collect() }
+}
+
+fn known<T: Real>() -> Fitter<T> {
+    Fitter::new(FitOptions { bank: Some(bank()), ..FitOptions::default() }).unwrap()
+}
+
+fn free<T: Real>() -> Fitter<T> {
+    Fitter::new(FitOptions::default()).unwrap()
+}
+
+fn paint<T: Real>(scene: &Scene<T>, size: ImageSize) -> Image<T> {
+    let mut drawing = Drawing::default();
+    scene.draw(&OutlineBasis::new(REFERENCE_VERTICES, HARMONICS).unwrap(), &mut drawing).unwrap();
+    let mut image = Image::zeros(size);
+    let renderer = ContourRenderer::new(scene.edge, scene.compositing);
+    renderer.render(&drawing, image.size(), &mut Default::default(), image.data_mut()).unwrap();
+    image
+}
+
+fn square_size() -> ImageSize {
+    ImageSize::new(SIDE, SIDE).unwrap()
+}
+
+/// One to four objects, one per quarter of the image and wholly inside, whose colors are told from each other's and
+/// from the background's by at least 0.12 in some channel.
+fn apart() -> impl Strategy<Value = Scene<f64>> {
+    let slot = (0_usize..3, prop::array::uniform2(-0.02..0.02), 0.10..0.16_f64, -3.1..3.1_f64);
+    let level = 0_u8..5;
+    (prop::collection::vec((slot, prop::array::uniform3(level.clone())), 1..5), prop::array::uniform3(level))
+        .prop_filter("colors that differ", |(objects, background)| {
+            let colors: Vec<_> = objects.iter().map(|object| object.1).chain([*background]).collect();
+            (0..colors.len()).all(|i| !colors[..i].contains(&colors[i]))
+        })
+        .prop_map(|(slots, background)| {
+            let color = |levels: [u8; 3]| levels.map(|level| 0.06 + 0.21 * f64::from(level));
+            let objects = slots.into_iter().zip([[0.27, 0.27], [0.73, 0.27], [0.27, 0.73], [0.73, 0.73]]);
+            let objects = objects.map(|(((prototype, shift, scale, rotation), levels), center)| Object {
+                pose: Pose { translation: [center[0] + shift[0], center[1] + shift[1]], scale, rotation },
+                color: color(levels),
+                confidence: 1.0,
+                efd: mdshr_bank(HARMONICS).prototypes()[prototype].clone(),
+                prototype: Some(prototype),
+            });
+            Scene { objects: objects.collect(), ..Scene::empty(color(background)) }
+        })
+}
+
+/// The found object at the place of `object`.
+fn at<'a, T: Real>(fit: &'a Fit<T>, object: &Object<f64>) -> Option<&'a Object<T>> {
+    let near = |found: &&Object<T>| {
+        (0..2).all(|c| (found.pose.translation[c].as_f64() - object.pose.translation[c]).abs() < 0.1)
+    };
+    fit.scene.objects.iter().find(near)
+}
+
+/// Whether `fit` tells `truth`: prototypes, poses modulo symmetry, colors.
+fn agrees<T: Real>(fit: &Fit<T>, truth: &Scene<f64>) -> Result<(), TestCaseError> {
+    prop_assert_eq!(fit.scene.objects.len(), truth.objects.len());
+    for object in &truth.objects {
+        let Some(found) = at(fit, object) else {
+            return Err(TestCaseError::fail(format!("nothing at {:?}", object.pose)));
+        };
+        prop_assert_eq!(found.prototype, object.prototype);
+        // A tenth of a pixel, a percent, a degree.
+        for c in 0..2 {
+            let off = found.pose.translation[c].as_f64() - object.pose.translation[c];
+            prop_assert!(off.abs() < 0.1 / 128.0, "{:?} {:?}", found.pose, object.pose);
+        }
+        prop_assert!((found.pose.scale.as_f64() / object.pose.scale - 1.0).abs() < 0.01);
+        let turn = TAU / ORDERS[object.prototype.unwrap()];
+        let off = (found.pose.rotation.as_f64() - object.pose.rotation) / turn;
+        prop_assert!(((off - off.round()) * turn).abs() < 0.02, "{:?} {:?}", found.pose, object.pose);
+        for (a, b) in found.color.iter().zip(object.color) {
+            prop_assert!((a.as_f64() - b).abs() < 1.0 / 255.0, "{:?} {:?}", found.color, object.color);
+        }
+    }
+    for (a, b) in fit.scene.background.iter().zip(truth.background) {
+        prop_assert!((a.as_f64() - b).abs() < 1.0 / 255.0);
+    }
+    Ok(())
+}
+
+fn to_f32(scene: &Scene<f64>) -> Scene<f32> {
+    let objects = scene.objects.iter().map(|object| Object {
+        pose: Pose {
+            translation: object.pose.translation.map(|v| v.as_f32()),
+            scale: object.pose.scale.as_f32(),
+            rotation: object.pose.rotation.as_f32(),
+        },
+        color: object.color.map(|v| v.as_f32()),
+        confidence: 1.0,
+        efd: mdshr_bank(HARMONICS).prototypes()[object.prototype.unwrap()].clone(),
+        prototype: object.prototype,
+    });
+    Scene { objects: objects.collect(), ..Scene::empty(scene.background.map(|v| v.as_f32())) }
+}
+
+/// Images of nothing: noise, stripes, gradients, checkers, single colors, of any proportions.
+fn arbitrary_image() -> impl Strategy<Value = Image<f32>> {
+    (1_usize..40, 1_usize..40, 0_u8..6, any::<u64>()).prop_map(|(width, height, kind, seed)| {
+        let mut state = seed | 1;
+        let mut noise = move || {
+            state ^= state << 13;
+            state ^= state >> 7;
+            state ^= state << 17;
+            (state >> 40) as f32 / 16_777_216.0
+        };
+        let [low, high, period] = [noise(), noise(), 2.0 + 6.0 * noise()];
+        let data = (0..3 * width * height).map(|i| {
+            let (x, y) = ((i % width) as f32, (i / width % height) as f32);
+            match kind {
+                0 => low,
+                1 => noise(),
+                2 => {
+                    if (x / period) as usize % 2 == 0 {
+                        low
+                    } else {
+                        high
+                    }
+                }
+                3 => {
+                    if ((x / period) as usize + (y / period) as usize) % 2 == 0 {
+                        low
+                    } else {
+                        high
+                    }
+                }
+                4 => low + (high - low) * (x + y) / 80.0,
+                // Outside [0, 1], as HDR pictures are.
+                _ => {
+                    if (x - 12.0).hypot(y - 9.0) < period {
+                        7.0 * high
+                    } else {
+                        -low
+                    }
+                }
+            }
+        });
+        Image::from_planar(ImageSize::new(width, height).unwrap(), data.collect()).unwrap()
+    })
+}
+
+/// Everything in a fit that is a number.
+fn numbers(fit: &Fit<f32>) -> Vec<f32> {
+    let objects = fit.scene.objects.iter().flat_map(|object| {
+        let Pose { translation: [x, y], scale, rotation } = object.pose;
+        [x, y, scale, rotation].into_iter().chain(object.color).chain(object.efd.rows().iter().flatten().copied())
+    });
+    let rest = fit.covariance.iter().flatten().copied();
+    [fit.loss, fit.bits.as_f32()].into_iter().chain(fit.scene.background).chain(objects).chain(rest).collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 48, ..ProptestConfig::default() })]
+
+    #[test]
+    fn a_rendered_scene_comes_back(scene in apart()) {
+        let wide = known().fit(paint(&scene, square_size()).view(), &mut FitScratch::default()).unwrap();
+        agrees(&wide, &scene)?;
+        prop_assert!(wide.loss < 5e-4, "{}", wide.loss);
+        // In f32 too.
+        let narrow = known().fit(paint(&to_f32(&scene), square_size()).view(), &mut FitScratch::default()).unwrap();
+        agrees(&narrow, &scene)?;
+    }
+
+    #[test]
+    fn a_rendered_scene_comes_back_without_a_bank(scene in apart()) {
+        let fit = free().fit(paint(&to_f32(&scene), square_size()).view(), &mut FitScratch::default()).unwrap();
+        prop_assert_eq!(fit.scene.objects.len(), scene.objects.len());
+        prop_assert!(fit.loss < 2e-3, "{}", fit.loss);
+        for object in &scene.objects {
+            let Some(found) = at(&fit, object) else { return Err(TestCaseError::fail("an object is missing")) };
+            let area = |size: f64, area: f64| size * size * area.abs();
+            let ours = area(found.pose.scale.as_f64(), found.efd.signed_area().as_f64());
+            let theirs = area(object.pose.scale, object.efd.signed_area());
+            prop_assert!((ours / theirs - 1.0).abs() < 0.02, "{ours} {theirs}");
+        }
+    }
+
+    #[test]
+    fn a_shift_by_whole_pixels_shifts_the_scene(scene in apart(), dx in -6_i8..7, dy in -6_i8..7) {
+        let mut moved = scene.clone();
+        for object in &mut moved.objects {
+            object.pose.translation[0] += f64::from(dx) / 128.0;
+            object.pose.translation[1] += f64::from(dy) / 128.0;
+        }
+        let mut scratch = FitScratch::default();
+        let (fitter, size) = (known(), square_size());
+        let before = fitter.fit(paint(&scene, size).view(), &mut scratch).unwrap();
+        let after = fitter.fit(paint(&moved, size).view(), &mut scratch).unwrap();
+        for (object, shifted) in scene.objects.iter().zip(&moved.objects) {
+            let (Some(a), Some(b)) = (at(&before, object), at(&after, shifted)) else {
+                return Err(TestCaseError::fail("an object is missing"));
+            };
+            for (c, by) in [dx, dy].into_iter().enumerate() {
+                let off = b.pose.translation[c] - a.pose.translation[c] - f64::from(by) / 128.0;
+                // The search starts are shifted too, up to rounding; Gauss-Newton stops within 1e-4 of its cost.
+                prop_assert!(off.abs() < 0.02 / 128.0, "{off}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_order_of_the_objects_is_not_seen(scene in apart()) {
+        let mut turned = scene.clone();
+        turned.objects.reverse();
+        let fitter = known();
+        let fit = |scene: &Scene<f64>| fitter.fit(paint(scene, square_size()).view(), &mut FitScratch::default()).unwrap();
+        let (a, b) = (fit(&scene), fit(&turned));
+        prop_assert_eq!(a.scene.objects.len(), b.scene.objects.len());
+        for (a, b) in a.scene.objects.iter().zip(&b.scene.objects) {
+            prop_assert_eq!(a.prototype, b.prototype);
+            prop_assert!((a.pose.translation[0] - b.pose.translation[0]).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn a_used_scratch_is_as_good_as_a_new_one(scenes in prop::collection::vec(apart(), 3), image in arbitrary_image()) {
+        for fitter in [known::<f32>(), free()] {
+            let mut used = FitScratch::default();
+            for scene in &scenes {
+                let image = paint(&to_f32(scene), square_size());
+                let fit = fitter.fit(image.view(), &mut used).unwrap();
+                let fresh = fitter.fit(image.view(), &mut FitScratch::default()).unwrap();
+                prop_assert_eq!(&fit.scene, &fresh.scene);
+                prop_assert_eq!(numbers(&fit), numbers(&fresh));
+            }
+            fitter.fit(image.view(), &mut used).unwrap();
+        }
+    }
+
+    #[test]
+    fn no_more_objects_than_allowed(scene in apart(), most in 0_usize..5) {
+        for bank in [None, Some(bank())] {
+            let options = FitOptions { bank, max_objects: most, ..FitOptions::default() };
+            let fit = fit_image(paint(&scene, square_size()).view(), &options).unwrap();
+            prop_assert_eq!(fit.scene.objects.len(), scene.objects.len().min(most));
+            prop_assert_eq!(fit.covariance.len(), fit.scene.objects.len());
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 300, ..ProptestConfig::default() })]
+
+    #[test]
+    fn any_image_ends_in_finite_numbers(image in arbitrary_image()) {
+        for fitter in [known(), free()] {
+            let fit = fitter.fit(image.view(), &mut FitScratch::default()).unwrap();
+            prop_assert!(numbers(&fit).iter().all(|value| value.is_finite()), "{fit:?}");
+            prop_assert!(fit.scene.objects.iter().all(|object| object.pose.scale > 0.0));
+        }
+    }
+}
+
+#[test]
+fn one_color_is_no_object() {
+    let image = Image::from_planar(ImageSize::new(20, 10).unwrap(), vec![0.25_f32; 600]).unwrap();
+    for fitter in [known(), free()] {
+        let fit = fitter.fit(image.view(), &mut FitScratch::default()).unwrap();
+        assert_eq!((fit.scene.objects.len(), fit.stop, fit.scene.background), (0, StopReason::Empty, [0.25; 3]));
+        assert!(fit.loss < 1e-7);
+    }
+}
+
+#[test]
+fn bad_input_is_refused() {
+    let mut image = paint::<f32>(&Scene::empty([0.5; 3]), ImageSize::new(16, 16).unwrap());
+    image.data_mut()[300] = f32::NAN;
+    let refused = free().fit(image.view(), &mut FitScratch::default()).unwrap_err();
+    assert_eq!(refused, FitError::NotFinite { index: 300 });
+    let edge = |sigma| Some(EdgeProfile { sigma, ..EdgeProfile::reference() });
+    for options in [
+        FitOptions::<f32> { max_harmonics: 0, ..FitOptions::default() },
+        FitOptions { max_harmonics: 32, ..FitOptions::default() },
+        FitOptions { bank: Some(Bank::default()), ..FitOptions::default() },
+        FitOptions { edge: edge(0.0), ..FitOptions::default() },
+        FitOptions { edge: edge(f32::NAN), ..FitOptions::default() },
+    ] {
+        assert!(matches!(Fitter::new(options).unwrap_err(), FitError::Setting { .. }));
+    }
+    let mut flat = bank::<f32>();
+    flat.prototypes[1].1 = dvp_core::Efd::zeros(2);
+    let refused = Fitter::new(FitOptions { bank: Some(flat), ..FitOptions::default() }).unwrap_err();
+    assert_eq!(refused, FitError::FlatPrototype { index: 1 });
+}

@@ -1,0 +1,134 @@
+//! Invariants of the joint second-order refinement.
+
+#![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test with a line number")]
+
+use dvp_core::render::contour::ContourRenderer;
+use dvp_core::render::{Compositing, Renderer};
+use dvp_core::shape::{OutlineBasis, REFERENCE_VERTICES, mdshr_bank};
+use dvp_core::{Drawing, Efd, Image, ImageSize, Object, Pose, Scene};
+use dvp_fit::refine::{Refine, RefineScratch};
+use dvp_fit::{Ambiguity, FitError};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+const SIDE: usize = 128;
+const HARMONICS: usize = 16;
+
+fn paint(scene: &Scene<f32>) -> Image<f32> {
+    let mut drawing = Drawing::default();
+    scene.draw(&OutlineBasis::new(REFERENCE_VERTICES, HARMONICS).unwrap(), &mut drawing).unwrap();
+    let mut image = Image::zeros(ImageSize::new(SIDE, SIDE).unwrap());
+    let renderer = ContourRenderer::new(scene.edge, scene.compositing);
+    renderer.render(&drawing, image.size(), &mut Default::default(), image.data_mut()).unwrap();
+    image
+}
+
+/// Two to four objects of MDS-HR's shapes, a quarter of the image each, as many colors as objects.
+fn scene(rng: &mut ChaCha8Rng) -> Scene<f32> {
+    let bank = mdshr_bank::<f32>(HARMONICS);
+    let count = rng.random_range(2..=4);
+    let objects = (0..count).map(|k| {
+        let prototype = rng.random_range(0..3);
+        let center = [0.27 + 0.46 * ((k % 2) as f32), 0.27 + 0.46 * ((k / 2) as f32)];
+        let pose = Pose {
+            translation: center.map(|t| t + rng.random_range(-0.05..0.05)),
+            scale: rng.random_range(0.12..0.24),
+            rotation: rng.random_range(-3.0..3.0),
+        };
+        let color = core::array::from_fn(|_| rng.random_range(0.0..1.0));
+        let efd = bank.prototypes()[prototype].clone();
+        Object { pose, color, confidence: 1.0, efd, prototype: Some(prototype) }
+    });
+    Scene { objects: objects.collect(), ..Scene::empty([0.5, 0.45, 0.55]) }
+}
+
+/// Off by N(0, 0.02) in position, N(0, 10 %) in size, N(0, 0.2) in angle, N(0, 0.05) in color.
+fn perturbed(truth: &Scene<f32>, rng: &mut ChaCha8Rng) -> Scene<f32> {
+    // Of variance 1 to two digits: the sum of twelve uniform numbers.
+    let mut normal = |sigma: f32| sigma * ((0..12).map(|_| rng.random::<f32>()).sum::<f32>() - 6.0);
+    let mut scene = truth.clone();
+    for object in &mut scene.objects {
+        object.pose.translation.iter_mut().for_each(|value| *value += normal(0.02));
+        object.pose.scale *= 1.0 + normal(0.1);
+        object.pose.rotation += normal(0.2);
+        object.color.iter_mut().for_each(|value| *value += normal(0.05));
+    }
+    scene.background.iter_mut().for_each(|value| *value += normal(0.05));
+    scene
+}
+
+#[test]
+fn perturbed_truths_are_recovered() {
+    let mut rng = ChaCha8Rng::seed_from_u64(11);
+    let mut scratch = RefineScratch::default();
+    let mut recovered = 0;
+    for _ in 0..60 {
+        let truth = scene(&mut rng);
+        let image = paint(&truth);
+        let fit = Refine::default().fit(image.view(), &perturbed(&truth, &mut rng), &mut scratch).unwrap();
+        recovered += usize::from(fit.loss < 5e-4);
+        assert_eq!(fit.covariance.len(), truth.objects.len());
+        assert!(fit.covariance.iter().flatten().all(|value| value.is_finite()));
+    }
+    assert!(recovered >= 57, "{recovered} of 60");
+}
+
+#[test]
+fn the_truth_stays_and_memory_has_no_effect() {
+    let mut rng = ChaCha8Rng::seed_from_u64(5);
+    let mut used = RefineScratch::default();
+    for compositing in [Compositing::Blend, Compositing::Over] {
+        let truth = Scene { compositing, ..scene(&mut rng) };
+        let image = paint(&truth);
+        let fit = Refine::default().fit(image.view(), &truth, &mut used).unwrap();
+        assert!(fit.loss < 1e-4, "{compositing:?}: {}", fit.loss);
+        let start = perturbed(&truth, &mut rng);
+        let again = Refine::default().fit(image.view(), &start, &mut used).unwrap();
+        let fresh = Refine::default().fit(image.view(), &start, &mut RefineScratch::default()).unwrap();
+        assert_eq!((&again.scene, again.loss.to_bits()), (&fresh.scene, fresh.loss.to_bits()));
+        // Never worse than the start.
+        let none = Refine { max_steps: 0, ..Refine::default() };
+        let before = none.fit(image.view(), &start, &mut used).unwrap();
+        assert_eq!(before.scene, start);
+        assert!(again.loss <= before.loss);
+    }
+}
+
+#[test]
+fn symmetry_and_crop_are_told() {
+    let mut truth = scene(&mut ChaCha8Rng::seed_from_u64(2));
+    truth.objects.truncate(2);
+    truth.objects[0].efd = Efd::new(vec![[1.0, 0.0, 0.0, -0.5]]);
+    truth.objects[1].efd = mdshr_bank(HARMONICS).prototypes()[0].clone();
+    truth.objects[1].pose.translation[0] = 0.98;
+    let image = paint(&truth);
+    let fit = Refine::default().fit(image.view(), &truth, &mut RefineScratch::default()).unwrap();
+    assert_eq!(fit.ambiguity.first(), Some(&Ambiguity::Symmetry { object: 0, order: 2 }));
+    assert!(matches!(fit.ambiguity[1], Ambiguity::Cropped { object: 1, visible } if visible > 0.3 && visible < 0.9));
+    assert_eq!(fit.ambiguity.len(), 2);
+}
+
+#[test]
+fn bad_input_is_refused() {
+    let truth = scene(&mut ChaCha8Rng::seed_from_u64(1));
+    let mut image = paint(&truth);
+    let mut scratch = RefineScratch::default();
+    let mut refuse = |refine: Refine, start: &Scene<f32>| refine.fit(image.view(), start, &mut scratch).unwrap_err();
+    let mut start = truth.clone();
+    start.objects[1].pose.scale = -0.1;
+    assert_eq!(refuse(Refine::default(), &start), FitError::Scale { index: 1 });
+    start.objects[1] = Object { efd: Efd::zeros(3), ..truth.objects[1].clone() };
+    assert_eq!(refuse(Refine::default(), &start), FitError::FlatObject { index: 1 });
+    start.objects[1].pose.rotation = f32::NAN;
+    assert!(matches!(refuse(Refine::default(), &start), FitError::Render(_)));
+    for refine in [
+        Refine { factors: &[], ..Refine::default() },
+        Refine { factors: &[1.0, 0.0], ..Refine::default() },
+        Refine { width: f64::NAN, ..Refine::default() },
+    ] {
+        assert!(matches!(refuse(refine, &truth), FitError::Setting { .. }));
+    }
+    image.data_mut()[70] = f32::INFINITY;
+    let refused = Refine::default().fit(image.view(), &truth, &mut scratch).unwrap_err();
+    assert_eq!(refused, FitError::NotFinite { index: 70 });
+}
