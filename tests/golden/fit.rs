@@ -106,7 +106,8 @@ fn float_cases(shared: &Path) -> Vec<Case> {
     images.zip(truths(shared, 32)).map(|(image, truth)| (image.clone(), image, truth)).collect()
 }
 
-/// Every eighth picture of the validation set, scored against itself.
+/// Every eighth picture of the validation set, scored against our rendering of the truth: rounding to 8 bits would cost more
+/// than the fit (MAE 9.8e-4), the seams that we do not draw cost 1e-4.
 fn png_cases(shared: &Path) -> Vec<Case> {
     let size = ImageSize::new(SIDE, SIDE).unwrap();
     let truths = truths(shared, 256);
@@ -114,7 +115,7 @@ fn png_cases(shared: &Path) -> Vec<Case> {
         let picture = image::open(shared.join(format!("mdshr/val/{index:05}.png"))).unwrap().to_rgb8();
         let values: Vec<f32> = picture.as_raw().iter().map(|&byte| f32::from(byte) / 255.0).collect();
         let image = Image::from_interleaved(size, &values).unwrap();
-        (image.clone(), image, truth)
+        (image, paint(&truth), truth)
     });
     cases.collect()
 }
@@ -162,8 +163,7 @@ fn pictures_of_the_reference() {
     assert_eq!(cases.len(), 32);
     let (scores, exact) = score(known(), &cases);
     assert_eq!(exact, 32);
-    // Against the rounded picture: rounding alone is a quarter of a step, 9.8e-4.
-    assert!(scores.mae <= 1.2e-3 && scores.ssim >= 0.9998 && scores.iou >= 0.9995 && scores.ari >= 0.999, "{scores:?}");
+    assert!(scores.mae <= 1e-3 && scores.ssim >= 0.9998 && scores.iou >= 0.9995 && scores.ari >= 0.999, "{scores:?}");
     let (scores, exact) = score(FitOptions::default(), &cases);
     assert_eq!(exact, 32);
     assert!(scores.iou >= 0.993 && scores.ari >= 0.993, "{scores:?}");

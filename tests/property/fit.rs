@@ -126,30 +126,20 @@ fn arbitrary_image() -> impl Strategy<Value = Image<f32>> {
             state ^= state << 17;
             (state >> 40) as f32 / 16_777_216.0
         };
-        let [low, high, period] = [noise(), noise(), 2.0 + 6.0 * noise()];
+        let [low, high] = [noise(), noise()];
+        let period = 2 + usize::try_from(seed % 6).unwrap();
         let data = (0..3 * width * height).map(|i| {
-            let (x, y) = ((i % width) as f32, (i / width % height) as f32);
+            let (x, y) = (i % width, i / width % height);
+            let value = |even: bool| if even { low } else { high };
             match kind {
                 0 => low,
                 1 => noise(),
-                2 => {
-                    if (x / period) as usize % 2 == 0 {
-                        low
-                    } else {
-                        high
-                    }
-                }
-                3 => {
-                    if ((x / period) as usize + (y / period) as usize) % 2 == 0 {
-                        low
-                    } else {
-                        high
-                    }
-                }
-                4 => low + (high - low) * (x + y) / 80.0,
+                2 => value((x / period).is_multiple_of(2)),
+                3 => value((x / period + y / period).is_multiple_of(2)),
+                4 => low + (high - low) * (x + y) as f32 / 80.0,
                 // Outside [0, 1], as HDR pictures are.
                 _ => {
-                    if (x - 12.0).hypot(y - 9.0) < period {
+                    if x.abs_diff(12).pow(2) + y.abs_diff(9).pow(2) < 4 * period * period {
                         7.0 * high
                     } else {
                         -low
