@@ -6,3 +6,8 @@ pub mod finite_difference;
 pub mod fixture;
 pub mod golden;
 pub mod strategy;
+
+/// The README's example, compiled and run.
+#[cfg(doctest)]
+#[doc = include_str!("../../README.md")]
+pub struct Readme;

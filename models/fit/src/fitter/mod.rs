@@ -122,7 +122,21 @@ impl<T: Real> Fitter<T> {
             return Err(FitError::NotFinite { index });
         }
         let readable = scratch.segmentation.read(&image, &SegmentOptions::default());
-        let kind = self.options.edge.map_or_else(|| scratch.segmentation.edge_kind(), EdgeKind::Profile);
+        let kinds = scratch.segmentation.edge_kinds();
+        let (kind, other) = self.options.edge.map_or(kinds, |edge| (EdgeKind::Profile(edge), None));
+        let fit = self.fit_with(image, kind, readable, scratch)?;
+        // In doubt about the edges both readings are fitted; the shorter description wins.
+        let second = other.map(|kind| self.fit_with(image, kind, readable, scratch)).transpose()?;
+        Ok(second.filter(|second| second.bits < fit.bits).unwrap_or(fit))
+    }
+
+    fn fit_with(
+        &self,
+        image: ImageView<'_, T>,
+        kind: EdgeKind<T>,
+        readable: bool,
+        scratch: &mut FitScratch<T>,
+    ) -> Result<Fit<T>, FitError> {
         scratch.segmentation.gather(image.size(), &kind);
         let edge = kind.profile(T::of_usize(image.size().unit_px()));
         let mut run = Run { fitter: self, image, kind, edge, scratch };

@@ -37,6 +37,8 @@ struct Plan {
     starts: usize,
     /// Starts per prototype that are refined; at most [`MOST_KEPT`].
     keep: usize,
+    /// Steps with wide and with narrow residuals.
+    steps: [usize; 2],
 }
 
 /// A shape ready to be searched for.
@@ -83,9 +85,9 @@ pub(crate) fn search<T: Real>(
     }
     let cropped = segment.border > 0;
     let plan = match (effort, cropped) {
-        (Effort::Usual, false) => Plan { sizes: &CROPPED_SIZES[..1], starts: FULL_TURN_STARTS, keep: 2 },
-        (Effort::Usual, true) => Plan { sizes: &CROPPED_SIZES, starts: FULL_TURN_STARTS, keep: 4 },
-        (Effort::Wide, _) => Plan { sizes: &WIDE_SIZES, starts: 3 * FULL_TURN_STARTS, keep: MOST_KEPT },
+        (Effort::Usual, false) => Plan { sizes: &CROPPED_SIZES[..1], starts: FULL_TURN_STARTS, keep: 2, steps: [4, 5] },
+        (Effort::Usual, true) => Plan { sizes: &CROPPED_SIZES, starts: FULL_TURN_STARTS, keep: 4, steps: [4, 5] },
+        (Effort::Wide, _) => Plan { sizes: &WIDE_SIZES, starts: 3 * FULL_TURN_STARTS, keep: MOST_KEPT, steps: [12, 8] },
     };
     for (index, prototype) in prototypes.iter().enumerate() {
         rough(segment, prototype, index, size, plan, out);
@@ -171,11 +173,11 @@ fn rough<T: Real>(
     let mut leader = out.iter().fold(T::infinity(), |least, candidate| least.min(candidate.cost));
     for (_, pose) in best.into_iter().flatten() {
         let narrow = Robustness { width_px: T::of(1.5), weighted: false, stride };
-        let (pose, wide_cost, first) = pose.refine(field, &segment.samples, wide, 4);
+        let (pose, wide_cost, first) = pose.refine(field, &segment.samples, wide, plan.steps[0]);
         if wide_cost > T::of(HOPELESS) * leader + T::of(0.1) {
             continue;
         }
-        let (pose, cost, second) = pose.refine(field, &segment.samples, narrow, 5);
+        let (pose, cost, second) = pose.refine(field, &segment.samples, narrow, plan.steps[1]);
         leader = leader.min(cost);
         out.push(Candidate { prototype: index, pose, cost, steps: first + second });
     }

@@ -44,19 +44,29 @@ impl CoverageCounts {
         }
     }
 
-    /// The kind that explains the counts; the thresholds lie between the two. At uniform distances the reference profile gives low : middle : high as
-    /// 0.34 : 1 : 0.75, area coverage 0.11 : 1 : 0.11.
-    pub(crate) fn kind<T: Real>(&self) -> EdgeKind<T> {
+    /// The kind that the counts speak for, and another one to try where they leave a doubt.
+    ///
+    /// At uniform distances the reference profile gives low : middle : high as 0.34 : 1 : 0.75, area coverage
+    /// 0.11 : 1 : 0.11; straight edges along the pixel grid stray from that.
+    pub(crate) fn kinds<T: Real>(&self) -> (EdgeKind<T>, Option<EdgeKind<T>>) {
         let soft = self.low + self.middle + self.high;
-        if soft * 20 < self.settled {
-            EdgeKind::Hard
-        } else if 4 * self.high > self.middle && self.high >= self.low {
-            EdgeKind::Profile(EdgeProfile::reference())
+        let reference = EdgeKind::Profile(EdgeProfile::reference());
+        if soft + self.settled < FEW {
+            (reference, None)
+        } else if soft * 20 < self.settled {
+            (EdgeKind::Hard, None)
+        } else if 2 * self.high > self.middle {
+            (reference, None)
+        } else if 10 * self.high > self.middle && soft > FEW {
+            (reference, Some(EdgeKind::Area))
         } else {
-            EdgeKind::Area
+            (EdgeKind::Area, None)
         }
     }
 }
+
+/// Fewer soft pixels than this tell nothing.
+const FEW: usize = 12;
 
 impl<T: Real> EdgeKind<T> {
     /// The profile that renders this kind at `unit_px` pixels per scene unit.

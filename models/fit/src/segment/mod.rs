@@ -114,18 +114,18 @@ impl<T: Real> Segmentation<T> {
         true
     }
 
-    /// The edge kind that the soft pixels between background and objects speak for.
-    pub(crate) fn edge_kind(&self) -> EdgeKind<T> {
+    /// The edge kind that the soft pixels between background and objects speak for, and a second one in doubt.
+    pub(crate) fn edge_kinds(&self) -> (EdgeKind<T>, Option<EdgeKind<T>>) {
         let mut counts = CoverageCounts::default();
         for transition in &self.transitions {
             if let Some(rim) = self.rim(transition)
                 && rim.others == 0
-                && rim.contrast > T::of(0.15)
+                && rim.contrast > T::of(0.06)
             {
                 counts.add(rim.coverage);
             }
         }
-        counts.kind()
+        counts.kinds()
     }
 
     /// Turns soft pixels into samples under the given edge kind.
@@ -133,6 +133,10 @@ impl<T: Real> Segmentation<T> {
         let (own, pixel_noise) = (edge.distance_noise(), T::of(PIXEL_NOISE));
         let unit = T::of_usize(size.unit_px());
         let (one, half) = (T::one(), T::of(0.5));
+        for segment in &mut self.segments {
+            segment.samples.clear();
+            segment.rim.clear();
+        }
         for at in 0..self.transitions.len() {
             let transition = self.transitions[at];
             let Some(rim) = self.rim(&transition) else { continue };
