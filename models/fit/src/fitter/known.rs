@@ -11,10 +11,8 @@ use crate::pose::gauss_newton::Frame;
 use crate::pose::search::{Candidate, Effort, search};
 use crate::{FitError, StopReason};
 
-/// An object whose rendering misses the image by this much in some channel ...
-const VISIBLE_ERROR: f64 = 0.03;
-/// ... in more than this many pixels is searched for again, with more starts.
-const VISIBLE_PIXELS: usize = 4;
+/// An object with more visibly missed pixels around is searched for again.
+const MISSED_PIXELS: usize = 4;
 /// Candidates of the wide search that are rendered.
 const RENDERED_CANDIDATES: usize = 8;
 /// Mean absolute error from which a joint refinement is worth its time: four times the seams of the reference renderer.
@@ -45,7 +43,7 @@ impl<T: Real> Run<'_, T> {
         }
         let mut loss = self.compare(&posed)?;
         for (at, source) in sources.iter_mut().enumerate() {
-            if self.misses(&posed, at) {
+            if self.misses_object(&posed, at) {
                 loss = self.search_again(&mut posed, at, source, loss)?;
             }
         }
@@ -104,13 +102,11 @@ impl<T: Real> Run<'_, T> {
     }
 
     /// Whether the last rendering visibly misses the image around an object.
-    fn misses(&self, posed: &JointScene<T>, at: usize) -> bool {
+    fn misses_object(&self, posed: &JointScene<T>, at: usize) -> bool {
         let object = &posed.objects[at];
         let radius = self.fitter.prototypes[object.shape].field.radius;
         let reach = object.pose.log_scale.exp() * radius + T::of(2.0);
-        let center = object.pose.translation;
-        let residual = &self.scratch.residual;
-        residual.count_above(self.image.size(), center, reach, T::of(VISIBLE_ERROR)) > VISIBLE_PIXELS
+        self.missed_pixels(object.pose.translation, reach) > MISSED_PIXELS
     }
 
     /// Looks harder for one object; rendered candidates compete, the best stays. Returns the loss.

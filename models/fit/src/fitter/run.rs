@@ -43,6 +43,8 @@ pub(super) struct FoundObject<T> {
     pub(super) twin: Option<(usize, f64)>,
 }
 
+/// A rendering that misses a pixel by this much in some channel does so visibly.
+const VISIBLE_ERROR: f64 = 0.03;
 /// Objects of fewer flat pixels, or of less contrast, must show that they pay for their description.
 const SURE_PIXELS: usize = 12;
 const SURE_CONTRAST: f64 = 0.03;
@@ -68,6 +70,11 @@ impl<T: Real> Run<'_, T> {
         let renderer = ContourRenderer::new(self.edge, self.fitter.options.compositing);
         renderer.render(&scratch.drawing, self.image.size(), &mut scratch.render, &mut scratch.pixels)?;
         Ok(scratch.residual.measure(&self.image, &scratch.pixels))
+    }
+
+    /// Pixels within `reach_px` of a point that the last rendering visibly misses.
+    pub(super) fn missed_pixels(&self, center_px: [T; 2], reach_px: T) -> usize {
+        self.scratch.residual.count_above(self.image.size(), center_px, reach_px, T::of(VISIBLE_ERROR))
     }
 
     /// Cuts to the number of objects allowed, refines colors, drops what does not pay, and adds the doubt.
@@ -99,7 +106,7 @@ impl<T: Real> Run<'_, T> {
         Ok(Fit { scene, loss, steps: found.steps, stop, covariance, ambiguity, bits })
     }
 
-    fn scene_of(&self, found: &Found<T>) -> Scene<T> {
+    pub(super) fn scene_of(&self, found: &Found<T>) -> Scene<T> {
         Scene {
             background: found.background,
             objects: found.objects.iter().map(|part| part.object.clone()).collect(),

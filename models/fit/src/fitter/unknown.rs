@@ -7,9 +7,14 @@ use dvp_core::shape::REFERENCE_VERTICES;
 use dvp_core::{Efd, Object, Real};
 
 use super::run::{Found, FoundObject, Run};
-use crate::free::grow::{Grown, grow, hold_outside};
+use crate::free::grow::{Freedom, Grown, grow, hold_outside};
 use crate::free::start::{shrink, trace};
 use crate::{FitError, StopReason};
+
+/// An outline with more visibly missed pixels around may have folded; a corner that is cut misses fewer.
+const MISSED_PIXELS: usize = 16;
+/// An outline with less freedom has more harmonics: it must miss clearly less.
+const CLEARLY_LESS: f64 = 0.8;
 
 impl<T: Real> Run<'_, T> {
     /// Fits an outline to every segment.
@@ -17,29 +22,71 @@ impl<T: Real> Run<'_, T> {
         let background = self.scratch.segmentation.background();
         let mut found = Found { background, objects: Vec::new(), steps: 0, stop: StopReason::Converged };
         for segment in 0..self.scratch.segmentation.segments().len() {
-            let Some(grown) = self.outline_of(segment) else { continue };
-            found.steps += grown.steps;
-            // A first harmonic of size 0 has no pose: such an outline encloses nothing.
-            if let Ok(normal) = Efd::new(grown.outline.rows).normalize() {
-                let unit = self.unit_px();
-                let object = Object {
-                    pose: Pose {
-                        translation: grown.outline.center.map(|v| v / unit),
-                        scale: normal.scale / unit,
-                        rotation: normal.rotation,
-                    },
-                    color: self.scratch.segmentation.segments()[segment].color,
-                    confidence: T::one(),
-                    efd: normal.efd,
-                    prototype: None,
-                };
+            if let Some((object, steps)) = self.object_of(segment, Freedom::Full) {
+                found.steps += steps;
                 found.objects.push(FoundObject { object, segment, twin: None });
             }
         }
+        self.try_with_less_freedom(&mut found)?;
         Ok(found)
     }
 
-    fn outline_of(&mut self, segment: usize) -> Option<Grown<T>> {
+    /// Outlines that visibly miss the image have folded: ones with less freedom compete with them.
+    fn try_with_less_freedom(&mut self, found: &mut Found<T>) -> Result<(), FitError> {
+        let mut loss = self.compare_found(found)?;
+        for at in 0..found.objects.len() {
+            let part = &found.objects[at];
+            // The first harmonic has size 1; the others of a sane outline do not reach twice as far.
+            let center = part.object.pose.translation.map(|v| v * self.unit_px());
+            let reach = part.object.pose.scale * self.unit_px() * T::of(2.0);
+            if self.missed_pixels(center, reach) <= MISSED_PIXELS {
+                continue;
+            }
+            let segment = part.segment;
+            let mut best = part.object.clone();
+            for freedom in [Freedom::Normals, Freedom::None] {
+                if let Some((object, steps)) = self.object_of(segment, freedom) {
+                    found.steps += steps;
+                    found.objects[at].object = object;
+                    let tried = self.compare_found(found)?;
+                    if tried < T::of(CLEARLY_LESS) * loss {
+                        loss = tried;
+                        best = found.objects[at].object.clone();
+                    }
+                }
+            }
+            found.objects[at].object = best;
+            loss = self.compare_found(found)?;
+        }
+        Ok(())
+    }
+
+    fn compare_found(&mut self, found: &Found<T>) -> Result<T, FitError> {
+        self.scene_of(found).draw(&self.fitter.outlines, &mut self.scratch.drawing)?;
+        self.compare_drawing()
+    }
+
+    /// The object of a segment, and the steps it took; none if it encloses nothing.
+    fn object_of(&mut self, segment: usize, freedom: Freedom) -> Option<(Object<T>, usize)> {
+        let grown = self.outline_of(segment, freedom)?;
+        // A first harmonic of size 0 has no pose.
+        let normal = Efd::new(grown.outline.rows).normalize().ok()?;
+        let unit = self.unit_px();
+        let object = Object {
+            pose: Pose {
+                translation: grown.outline.center.map(|v| v / unit),
+                scale: normal.scale / unit,
+                rotation: normal.rotation,
+            },
+            color: self.scratch.segmentation.segments()[segment].color,
+            confidence: T::one(),
+            efd: normal.efd,
+            prototype: None,
+        };
+        Some((object, grown.steps))
+    }
+
+    fn outline_of(&mut self, segment: usize, freedom: Freedom) -> Option<Grown<T>> {
         let size = self.image.size();
         let half_coverage_px = self.edge.offset.max(T::zero()).sqrt() * self.unit_px() * T::of(0.5);
         let scratch = &mut *self.scratch;
@@ -53,6 +100,7 @@ impl<T: Real> Run<'_, T> {
             hold_outside(&contour, T::of_usize(size.width()), T::of_usize(size.height()), &mut scratch.samples);
         }
         let most = self.fitter.options.max_harmonics;
-        grow(&contour, &scratch.samples, &self.fitter.basis, REFERENCE_VERTICES, most, &mut scratch.free)
+        let basis = &self.fitter.basis;
+        grow(&contour, &scratch.samples, basis, REFERENCE_VERTICES, most, freedom, &mut scratch.free)
     }
 }

@@ -25,6 +25,17 @@ pub(crate) struct Grown<T> {
     pub(crate) steps: usize,
 }
 
+/// What of a traced outline may move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Freedom {
+    /// Vertices along their normals, then coefficients; harmonics that do not pay are dropped.
+    Full,
+    /// Vertices along their normals.
+    Normals,
+    /// Nothing: the outline as traced.
+    None,
+}
+
 /// Memory of [`grow`].
 #[derive(Clone, Debug, Default)]
 pub(crate) struct GrowScratch<T> {
@@ -44,9 +55,18 @@ pub(crate) fn grow<T: Real>(
     basis: &Basis<T>,
     vertex_count: usize,
     max_harmonics: usize,
+    freedom: Freedom,
     scratch: &mut GrowScratch<T>,
 ) -> Option<Grown<T>> {
     let noise = T::of(PIXEL_NOISE);
+    if freedom != Freedom::Full {
+        let GrowScratch { polygon, vertices, .. } = scratch;
+        take_vertices(contour, vertex_count, vertices)?;
+        let steps = if freedom == Freedom::Normals { 2 } else { 0 };
+        let cost = move_vertices(vertices, samples, T::one(), noise, steps, polygon);
+        let outline = transform(vertices, basis, max_harmonics);
+        return Some(Grown { outline, bits: price::<T>(max_harmonics) + cost * misfit_bits(), steps });
+    }
     let mut steps = 0;
     let mut fit = |start: &FreeOutline<T>, harmonics: usize, widths: &[f64], scratch: &mut OutlineScratch<T>| {
         let mut outline = FreeOutline { center: start.center, rows: start.rows[..harmonics].to_vec() };
@@ -65,9 +85,7 @@ pub(crate) fn grow<T: Real>(
     // More harmonics cannot pay for themselves if what is missed costs less than the second one.
     if max_harmonics > 1 && best.bits >= price(2) {
         let GrowScratch { outline: outline_scratch, polygon, vertices } = scratch;
-        vertices.clear();
-        vertices.extend(resample(contour, vertex_count - 1));
-        vertices.push(*vertices.first()?);
+        take_vertices(contour, vertex_count, vertices)?;
         move_vertices(vertices, samples, T::of(2.0), noise, 2, polygon);
         let cost = move_vertices(vertices, samples, T::of(0.5), noise, POLYGON_STEPS, polygon);
         let outline = transform(vertices, basis, max_harmonics);
@@ -82,6 +100,14 @@ pub(crate) fn grow<T: Real>(
     }
     best.steps = steps;
     Some(best)
+}
+
+/// Vertices at equal distances along the contour, the last one the first again.
+fn take_vertices<T: Real>(contour: &[[T; 2]], vertex_count: usize, vertices: &mut Vec<[T; 2]>) -> Option<()> {
+    vertices.clear();
+    vertices.extend(resample(contour, vertex_count - 1));
+    vertices.push(*vertices.first()?);
+    Some(())
 }
 
 fn price<T: Real>(harmonics: usize) -> T {

@@ -139,7 +139,10 @@ impl<T: Real> Segmentation<T> {
         }
         for at in 0..self.transitions.len() {
             let transition = self.transitions[at];
-            let Some(rim) = self.rim(&transition) else { continue };
+            let Some(rim) = self.rim(&transition) else {
+                self.share_between(&transition);
+                continue;
+            };
             let segment = &mut self.segments[rim.object];
             segment.rim.push((transition.pixel, rim.coverage));
             let Some((distance, slope)) = edge.distance(rim.coverage, unit) else { continue };
@@ -150,6 +153,21 @@ impl<T: Real> Segmentation<T> {
             let from_pixel = pixel_noise / (rim.contrast * slope * share).max(T::of(1e-6));
             let weight = pixel_noise / (from_pixel * from_pixel + own * own).sqrt();
             segment.samples.push(EdgeSample { point: [x, y], distance, weight });
+        }
+    }
+
+    /// A soft pixel from one object to another, without their overlap between: it belongs to each in part. That is good
+    /// enough to trace outlines by, but tells no distance.
+    fn share_between(&mut self, transition: &transition::Transition<T>) {
+        let covers = transition.pair.map(|i| self.reading.covers[i as usize]);
+        if covers.iter().all(|cover| cover.known) {
+            for (own, other, share) in [(0, 1, T::one() - transition.weight), (1, 0, transition.weight)] {
+                for &object in covers[own].members() {
+                    if !covers[other].members().contains(&object) {
+                        self.segments[object as usize].rim.push((transition.pixel, share));
+                    }
+                }
+            }
         }
     }
 

@@ -172,11 +172,15 @@ fn the_edge_kind_follows_the_counts() {
         counts.add(coverage);
     }
     assert_eq!(counts, CoverageCounts { settled: 2, low: 1, middle: 2, high: 1 });
-    let kind = |settled, low, middle, high| CoverageCounts { settled, low, middle, high }.kind::<f64>();
-    assert_eq!(kind(0, 34, 100, 75), EdgeKind::Profile(EdgeProfile::reference()));
-    assert_eq!(kind(0, 11, 100, 11), EdgeKind::Area);
-    assert_eq!(kind(100, 2, 0, 2), EdgeKind::Hard);
-    assert_eq!(kind(100, 3, 1, 1), EdgeKind::Area);
+    let kind = |settled, low, middle, high| CoverageCounts { settled, low, middle, high }.kinds::<f64>();
+    let reference = EdgeKind::Profile(EdgeProfile::reference());
+    assert_eq!(kind(0, 34, 100, 75), (reference, None));
+    // Between the two: both are to be tried.
+    assert_eq!(kind(0, 15, 139, 34), (reference, Some(EdgeKind::Area)));
+    assert_eq!(kind(0, 9, 100, 9), (EdgeKind::Area, None));
+    assert_eq!(kind(100, 2, 0, 2), (EdgeKind::Hard, None));
+    // Nothing to go by.
+    assert_eq!(kind(3, 1, 1, 1), (reference, None));
 }
 
 #[test]
