@@ -3,7 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
 
 use dvp_core::render::{Compositing, ContourRenderer, EdgeProfile, RenderError, Renderer};
-use dvp_core::{Drawing, Image, ImageSize};
+use dvp_core::{Drawing, Image, ImageSize, Real};
 use dvp_tests::strategy;
 use proptest::prelude::*;
 
@@ -62,8 +62,8 @@ proptest! {
         objects.iter_mut().for_each(|object| object.2 = 0.0);
         let size = ImageSize::new(24, 24).unwrap();
         let image = render(&renderer(compositing), &drawing(&objects, 24.0, [0.0; 2]), size);
-        for (channel, b) in [0.2, 0.4, 0.6].into_iter().enumerate() {
-            prop_assert!(image.view().channel(channel).iter().all(|&v| v == b));
+        for (channel, b) in [0.2_f64, 0.4, 0.6].into_iter().enumerate() {
+            prop_assert!(image.view().channel(channel).iter().all(|&v| v.to_bits() == b.to_bits()));
         }
     }
 
@@ -122,11 +122,11 @@ proptest! {
         let drawing = drawing(&objects, 24.0, [0.0; 2]);
         let reference = render(&renderer(compositing), &drawing, size);
         let single = Drawing {
-            background: drawing.background.map(|v| v as f32),
-            vertices: drawing.vertices.iter().map(|v| v.map(|x| x as f32)).collect(),
+            background: drawing.background.map(f32::of),
+            vertices: drawing.vertices.iter().map(|v| v.map(f32::of)).collect(),
             starts: drawing.starts.clone(),
-            colors: drawing.colors.iter().map(|c| c.map(|v| v as f32)).collect(),
-            confidences: drawing.confidences.iter().map(|&f| f as f32).collect(),
+            colors: drawing.colors.iter().map(|c| c.map(f32::of)).collect(),
+            confidences: drawing.confidences.iter().map(|&f| f32::of(f)).collect(),
         };
         let edge = EdgeProfile { offset: 0.012, sigma: 0.003, cut: 0.03 };
         let mut image = Image::zeros(size);
