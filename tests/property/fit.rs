@@ -264,6 +264,17 @@ proptest! {
     }
 }
 
+/// A square along the pixel grid: its soft pixels lie at few distances, so that they tell little about the edge profile.
+#[test]
+fn the_edge_profile_is_told_from_few_distances() {
+    let pose = Pose { translation: [0.27, 0.27], scale: 0.140_684_555_482_555_57, rotation: -2.370_352_172_958_677 };
+    let efd = mdshr_bank(HARMONICS).prototypes()[1].clone();
+    let object = Object { pose, color: [0.06; 3], confidence: 1.0, efd, prototype: Some(1) };
+    let scene = Scene { objects: vec![object], ..Scene::empty([0.06, 0.06, 0.27]) };
+    let fit = known().fit(paint(&scene, square_size()).view(), &mut FitScratch::default()).unwrap();
+    agrees(&fit, &scene).unwrap();
+}
+
 #[test]
 fn one_color_is_no_object() {
     let image = Image::from_planar(ImageSize::new(20, 10).unwrap(), vec![0.25_f32; 600]).unwrap();
