@@ -13,6 +13,8 @@ use crate::{FitError, StopReason};
 
 /// An object with more visibly missed pixels around is searched for again.
 const MISSED_PIXELS: usize = 4;
+/// Mean squared distance error (px^2) below which an outline is where it should be, whatever is missed around it.
+const SURE_COST: f64 = 1e-3;
 /// Candidates of the wide search that are rendered.
 const RENDERED_CANDIDATES: usize = 8;
 /// Mean absolute error from which a joint refinement is worth its time: four times the seams of the reference renderer.
@@ -25,6 +27,8 @@ const JOINT_WIDTH: f64 = 0.05;
 struct Source {
     segment: usize,
     twin: Option<(usize, f64)>,
+    /// Whether the outline lies where the samples have it.
+    sure: bool,
 }
 
 impl<T: Real> Run<'_, T> {
@@ -38,12 +42,13 @@ impl<T: Real> Run<'_, T> {
             self.search(segment, Effort::Usual);
             let Some(&best) = self.scratch.candidates.first() else { continue };
             steps += best.steps;
-            sources.push(Source { segment, twin: twin(&self.scratch.candidates) });
+            let sure = best.cost < T::of(SURE_COST);
+            sources.push(Source { segment, twin: twin(&self.scratch.candidates), sure });
             posed.objects.push(self.posed(&best, segment));
         }
         let mut loss = self.compare(&posed)?;
         for (at, source) in sources.iter_mut().enumerate() {
-            if self.misses_object(&posed, at) {
+            if !source.sure && self.misses_object(&posed, at) {
                 loss = self.search_again(&mut posed, at, source, loss)?;
             }
         }

@@ -24,12 +24,16 @@ pub(crate) struct FreeOutline<T> {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct OutlineScratch<T> {
     vertices: Vec<[T; 2]>,
-    hessian: Vec<T>,
-    pub(super) gradient: Vec<T>,
-    damped: Vec<T>,
-    mix: Vec<T>,
-    tried: FreeOutline<T>,
     edges: EdgeLanes<T>,
+    /// Normal equations of the vertices: blocks (xx, xy, yy) of each vertex with itself and with the next one, and the
+    /// gradient.
+    own: Vec<[T; 3]>,
+    next: Vec<[T; 3]>,
+    pull: Vec<[T; 2]>,
+    pub(super) hessian: Vec<T>,
+    pub(super) gradient: Vec<T>,
+    mix: [Vec<T>; 3],
+    tried: FreeOutline<T>,
 }
 
 /// Settings of one refinement.
@@ -100,26 +104,24 @@ fn steps<T: Real>(
     settings: &OutlineSettings<T>,
     scratch: &mut OutlineScratch<T>,
 ) -> T {
-    let harmonics = outline.rows.len();
-    let half = 1 + 2 * harmonics;
+    let half = 1 + 2 * outline.rows.len();
     let n = 2 * half;
-    let mut cost = assemble(outline, samples, basis, vertex_count, settings, scratch);
+    let mut cost = gather(outline, samples, basis, vertex_count, settings, scratch);
     // Weaker damping lets vertices slide along the outline and fold it.
     let weakest = T::of(1e-3);
     let mut damping = T::of(4e-3);
     for _ in 0..settings.max_steps {
-        scratch.damped.clear();
-        scratch.damped.extend_from_slice(&scratch.hessian);
+        expand(outline, basis, settings, scratch);
         let trace = (0..n).map(|i| scratch.hessian[packed(i, i)]).sum::<T>() / T::of_usize(n);
         for i in 0..n {
-            scratch.damped[packed(i, i)] += damping * trace;
+            scratch.hessian[packed(i, i)] += damping * trace;
         }
-        if !factor(&mut scratch.damped, n) {
+        if !factor(&mut scratch.hessian, n) {
             damping *= T::of(10.0);
             continue;
         }
-        let mut step = core::mem::take(&mut scratch.gradient);
-        solve(&scratch.damped, n, &mut step);
+        solve(&scratch.hessian, n, &mut scratch.gradient);
+        let step = &scratch.gradient;
         let mut tried = core::mem::take(&mut scratch.tried);
         tried.center = [outline.center[0] - step[0], outline.center[1] - step[half]];
         tried.rows.clear();
@@ -127,8 +129,7 @@ fn steps<T: Real>(
             let (x, y) = (1 + 2 * k, half + 1 + 2 * k);
             [a - step[x], b - step[x + 1], c - step[y], d - step[y + 1]]
         }));
-        scratch.gradient = step;
-        let next = assemble(&tried, samples, basis, vertex_count, settings, scratch);
+        let next = gather(&tried, samples, basis, vertex_count, settings, scratch);
         let better = next < cost;
         if better {
             core::mem::swap(outline, &mut tried);
@@ -146,15 +147,18 @@ fn steps<T: Real>(
             if damping > T::of(10.0) {
                 break;
             }
-            cost = assemble(outline, samples, basis, vertex_count, settings, scratch);
+            gather(outline, samples, basis, vertex_count, settings, scratch);
         }
     }
     cost
 }
 
-/// Fills hessian (packed) and gradient at `outline`; returns the robust cost.
+/// Sums the samples into what they say of the vertices; returns the robust cost.
+///
+/// A sample moves with the two vertices of its nearest edge, so the normal equations of the vertices are a band, and
+/// small; [`expand`] carries them over to the coefficients.
 #[inline(always)]
-pub(super) fn assemble<T: Real>(
+pub(super) fn gather<T: Real>(
     outline: &FreeOutline<T>,
     samples: &[EdgeSample<T>],
     basis: &Basis<T>,
@@ -162,67 +166,110 @@ pub(super) fn assemble<T: Real>(
     settings: &OutlineSettings<T>,
     scratch: &mut OutlineScratch<T>,
 ) -> T {
-    let harmonics = outline.rows.len();
-    let half = 1 + 2 * harmonics;
-    let n = 2 * half;
-    let mut vertices = core::mem::take(&mut scratch.vertices);
-    outline.write_vertices(basis, vertex_count, &mut vertices);
-    scratch.hessian.clear();
-    scratch.hessian.resize(packed(n, 0), T::zero());
-    scratch.gradient.clear();
-    scratch.gradient.resize(n, T::zero());
-    scratch.mix.resize(half, T::zero());
-    scratch.edges.set(&vertices);
+    let edges = vertex_count - 1;
+    let OutlineScratch { vertices, edges: lanes, own, next, pull, .. } = scratch;
+    outline.write_vertices(basis, vertex_count, vertices);
+    lanes.set(vertices);
+    for blocks in [&mut *own, &mut *next] {
+        blocks.clear();
+        blocks.resize(edges, [T::zero(); 3]);
+    }
+    pull.clear();
+    pull.resize(edges, [T::zero(); 2]);
     let inverse = T::one() / (settings.width_px * settings.width_px);
     let noise = T::one() / (settings.pixel_noise * settings.pixel_noise);
     let mut cost = T::zero();
     for sample in samples {
-        let foot = foot(&vertices, &mut scratch.edges, sample.point);
-        let (at, u, direction) = (foot.edge, foot.share, foot.direction);
+        let foot = foot(vertices, lanes, sample.point);
         let residual = foot.distance - sample.distance;
         let squared = residual * residual;
         let base = sample.weight * sample.weight * noise;
         let falloff = T::one() / (T::one() + squared * inverse);
         cost += base * squared * falloff;
         let weight = base * falloff * falloff;
-        // Row of the Jacobian: -(direction) x mix of the basis rows of the two vertices.
-        let (row_a, row_b) = (basis.row(at, harmonics), basis.row(at + 1, harmonics));
-        for ((m, &p), &q) in scratch.mix.iter_mut().zip(row_a).zip(row_b) {
-            *m = p + u * (q - p);
+        // The distance falls by (1 - u) n and u n as the vertices move.
+        let [nx, ny] = foot.direction;
+        let outer = [weight * nx * nx, weight * nx * ny, weight * ny * ny];
+        let (i, j) = (foot.edge, if foot.edge + 1 == edges { 0 } else { foot.edge + 1 });
+        let (p, q) = (T::one() - foot.share, foot.share);
+        for c in 0..3 {
+            own[i][c] += outer[c] * p * p;
+            own[j][c] += outer[c] * q * q;
+            next[i][c] += outer[c] * p * q;
         }
-        let [nx, ny] = direction;
-        let pull = -weight * residual;
-        let (wxx, wxy, wyy) = (weight * nx * nx, weight * nx * ny, weight * ny * ny);
-        for i in 0..half {
-            let m = scratch.mix[i];
-            scratch.gradient[i] += pull * nx * m;
-            scratch.gradient[half + i] += pull * ny * m;
-            let (xx, xy, yy) = (wxx * m, wxy * m, wyy * m);
-            let row = &mut scratch.hessian[packed(i, 0)..=packed(i, i)];
-            for (h, &k) in row.iter_mut().zip(&scratch.mix) {
-                *h += xx * k;
+        for (c, n) in [nx, ny].into_iter().enumerate() {
+            pull[i][c] -= weight * residual * n * p;
+            pull[j][c] -= weight * residual * n * q;
+        }
+    }
+    for (k, row) in outline.rows.iter().enumerate().skip(1) {
+        let pull = stiffness(k, settings);
+        cost += row.iter().map(|&value| pull * value * value).sum::<T>();
+    }
+    cost
+}
+
+/// Pull of row `k` (harmonic k + 1) towards 0.
+#[inline(always)]
+fn stiffness<T: Real>(k: usize, settings: &OutlineSettings<T>) -> T {
+    let order = T::of_usize(k + 1);
+    settings.smoothness * order * order * order * order
+}
+
+/// Fills hessian (packed) and gradient of the coefficients from what [`gather`] left.
+#[inline(always)]
+pub(super) fn expand<T: Real>(
+    outline: &FreeOutline<T>,
+    basis: &Basis<T>,
+    settings: &OutlineSettings<T>,
+    scratch: &mut OutlineScratch<T>,
+) {
+    let harmonics = outline.rows.len();
+    let half = 1 + 2 * harmonics;
+    let n = 2 * half;
+    let OutlineScratch { hessian, gradient, mix, own, next, pull, .. } = scratch;
+    hessian.clear();
+    hessian.resize(packed(n, 0), T::zero());
+    gradient.clear();
+    gradient.resize(n, T::zero());
+    for part in mix.iter_mut() {
+        part.resize(half, T::zero());
+    }
+    let edges = own.len();
+    for i in 0..edges {
+        let (before, after) = (if i == 0 { edges - 1 } else { i - 1 }, if i + 1 == edges { 0 } else { i + 1 });
+        let [row, row_before, row_after] = [i, before, after].map(|v| basis.row(v, harmonics));
+        // Row i of the vertices' equations times the basis: one mixture per component xx, xy, yy.
+        for (c, part) in mix.iter_mut().enumerate() {
+            let (here, back, ahead) = (own[i][c], next[before][c], next[i][c]);
+            for (m, ((&p, &q), &r)) in part.iter_mut().zip(row.iter().zip(row_before).zip(row_after)) {
+                *m = here * p + back * q + ahead * r;
             }
-            let row = &mut scratch.hessian[packed(half + i, 0)..=packed(half + i, half + i)];
-            let (cross, own) = row.split_at_mut(half);
-            for (h, &k) in cross.iter_mut().zip(&scratch.mix) {
-                *h += xy * k;
+        }
+        let [xx, xy, yy] = &*mix;
+        for (k, &value) in row.iter().enumerate() {
+            gradient[k] += pull[i][0] * value;
+            gradient[half + k] += pull[i][1] * value;
+            let line = &mut hessian[packed(k, 0)..=packed(k, k)];
+            for (h, &m) in line.iter_mut().zip(xx) {
+                *h += value * m;
             }
-            for (h, &k) in own.iter_mut().zip(&scratch.mix) {
-                *h += yy * k;
+            let line = &mut hessian[packed(half + k, 0)..=packed(half + k, half + k)];
+            let (cross, same) = line.split_at_mut(half);
+            for (h, &m) in cross.iter_mut().zip(xy) {
+                *h += value * m;
+            }
+            for (h, &m) in same.iter_mut().zip(yy) {
+                *h += value * m;
             }
         }
     }
-    // Smoothness: sum over harmonics of n^4 |row|^2.
     for (k, row) in outline.rows.iter().enumerate().skip(1) {
-        let order = T::of_usize(k + 1);
-        let pull = settings.smoothness * order * order * order * order;
+        let pull = stiffness(k, settings);
         for (c, &value) in row.iter().enumerate() {
             let i = if c < 2 { 1 + 2 * k + c } else { half + 1 + 2 * k + c - 2 };
-            scratch.hessian[packed(i, i)] += pull;
-            scratch.gradient[i] += pull * value;
-            cost += pull * value * value;
+            hessian[packed(i, i)] += pull;
+            gradient[i] += pull * value;
         }
     }
-    scratch.vertices = vertices;
-    cost
 }

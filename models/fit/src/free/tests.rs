@@ -2,7 +2,7 @@ use alloc::vec::Vec;
 
 use super::basis::Basis;
 use super::grow::{Freedom, GrowScratch, grow};
-use super::outline_fit::{FreeOutline, OutlineScratch, OutlineSettings, assemble};
+use super::outline_fit::{FreeOutline, OutlineScratch, OutlineSettings, expand, gather};
 use crate::segment::EdgeSample;
 
 const VERTICES: usize = 64;
@@ -39,7 +39,8 @@ fn the_gradient_is_that_of_half_the_cost() {
     let start = outline();
     let samples = samples(&start, &basis);
     let mut scratch = OutlineScratch::default();
-    assemble(&start, &samples, &basis, VERTICES, &SETTINGS, &mut scratch);
+    gather(&start, &samples, &basis, VERTICES, &SETTINGS, &mut scratch);
+    expand(&start, &basis, &SETTINGS, &mut scratch);
     let gradient = scratch.gradient.clone();
     // x of the center, (a, b) per harmonic, then y of the center, (c, d) per harmonic.
     assert_eq!(gradient.len(), 14);
@@ -52,7 +53,7 @@ fn the_gradient_is_that_of_half_the_cost() {
             } else {
                 moved.rows[(at - 1) / 2][2 * axis + (at - 1) % 2] += by;
             }
-            assemble(&moved, &samples, &basis, VERTICES, &SETTINGS, &mut scratch)
+            gather(&moved, &samples, &basis, VERTICES, &SETTINGS, &mut scratch)
         };
         let numeric = 0.5 * (cost(1e-6) - cost(-1e-6)) / 2e-6;
         assert!((analytic - numeric).abs() < 1e-5 * (1.0 + numeric.abs()), "lane {lane}: {analytic} {numeric}");

@@ -9,7 +9,9 @@ use super::gauss_newton::{Frame, PosePx, Robustness};
 use crate::segment::{Segment, Segmentation};
 
 /// Samples used while searching; all are used at the end.
-const SEARCH_SAMPLES: usize = 40;
+const SEARCH_SAMPLES: usize = 32;
+/// Samples of the last steps but two.
+const FINISH_SAMPLES: usize = 80;
 /// Start angles over a full turn.
 const FULL_TURN_STARTS: usize = 12;
 /// Sizes tried for an object that leaves the image, relative to its visible part.
@@ -86,7 +88,7 @@ pub(crate) fn search<T: Real>(
     let cropped = segment.border > 0;
     let plan = match (effort, cropped) {
         (Effort::Usual, false) => Plan { sizes: &CROPPED_SIZES[..1], starts: FULL_TURN_STARTS, keep: 2, steps: [4, 5] },
-        (Effort::Usual, true) => Plan { sizes: &CROPPED_SIZES, starts: FULL_TURN_STARTS, keep: 4, steps: [4, 5] },
+        (Effort::Usual, true) => Plan { sizes: &CROPPED_SIZES, starts: FULL_TURN_STARTS, keep: 3, steps: [4, 5] },
         (Effort::Wide, _) => Plan { sizes: &WIDE_SIZES, starts: 3 * FULL_TURN_STARTS, keep: MOST_KEPT, steps: [12, 8] },
     };
     for (index, prototype) in prototypes.iter().enumerate() {
@@ -225,7 +227,11 @@ fn finish<T: Real>(
 ) -> Candidate<T> {
     let prototype = &prototypes[candidate.prototype];
     let field = &prototype.field;
-    let (mut pose, mut cost, mut steps) = candidate.pose.refine(field, &segment.samples, fine(), 8);
+    // A part of the samples brings the pose within reach of the last two steps.
+    let part = Robustness { stride: 1 + segment.samples.len() / FINISH_SAMPLES, ..fine() };
+    let (pose, _, first) = candidate.pose.refine(field, &segment.samples, part, 6);
+    let (mut pose, mut cost, second) = pose.refine(field, &segment.samples, fine(), 3);
+    let mut steps = first + second;
     let turn = T::of(2.0 * core::f64::consts::PI) / T::of_usize(prototype.symmetry.max(1));
     let base = pose;
     let mut turned = false;
