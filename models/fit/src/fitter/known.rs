@@ -17,8 +17,9 @@ const MISSED_PIXELS: usize = 4;
 const SURE_COST: f64 = 1e-3;
 /// Candidates of the wide search that are rendered.
 const RENDERED_CANDIDATES: usize = 8;
-/// Mean absolute error from which a joint refinement is worth its time: four times the seams of the reference renderer.
-const JOINT_LOSS: f64 = 4e-4;
+/// A joint refinement is worth its time if more pixels of the image are visibly missed. Its mean error would not tell:
+/// that of a perfect fit depends on rounding and on the seams of whoever drew the picture.
+const JOINT_PIXELS: usize = 8;
 /// Residual at which a pixel loses most of its say in the joint refinement.
 const JOINT_WIDTH: f64 = 0.05;
 
@@ -53,7 +54,9 @@ impl<T: Real> Run<'_, T> {
             }
         }
         let mut stop = StopReason::Converged;
-        if self.fitter.options.max_steps > 0 && loss > T::of(JOINT_LOSS) {
+        let everywhere = T::of_usize(self.image.size().width().max(self.image.size().height()));
+        let missed = self.missed_pixels([T::zero(); 2], everywhere);
+        if self.fitter.options.max_steps > 0 && missed > JOINT_PIXELS {
             let problem = JointProblem {
                 image: self.image,
                 shapes: &self.fitter.prototypes,
