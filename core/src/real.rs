@@ -49,7 +49,15 @@ pub trait Real:
     fn xy(vector: Self::Vec2) -> [Self; 2];
     /// e^x by a polynomial, without branches or calls, so that loops over it vectorize. The argument is clamped to
     /// [-87, 87] (f32) or [-708, 708] (f64), so that the reciprocal is a normal number too; relative error below 2e-7 (f32) or 1e-14 (f64).
-    fn exp_lanes(self) -> Self;
+    /// For `FUSED` see [`Self::times_plus`].
+    fn exp_lanes<const FUSED: bool>(self) -> Self;
+
+    /// self x factor + term, rounded once if `FUSED`. That takes one instruction where the instruction set has it (see
+    /// [`Kernel::run_fused`](crate::simd::Kernel::run_fused)), and a slow call elsewhere.
+    #[inline(always)]
+    fn times_plus<const FUSED: bool>(self, factor: Self, term: Self) -> Self {
+        if FUSED { self.mul_add(factor, term) } else { self * factor + term }
+    }
 }
 
 impl Real for f32 {
@@ -87,21 +95,22 @@ impl Real for f32 {
         vector.to_array()
     }
     #[inline(always)]
-    fn exp_lanes(self) -> Self {
+    fn exp_lanes<const FUSED: bool>(self) -> Self {
         // x = k ln 2 + r, |r| <= h = ln 2 / 2; e^r by its Taylor polynomial, economized to degree 5: the terms of degree 6
         // and 7 are replaced by the polynomials closest to them on [-h, h] (off by h^6 / (32 6!) = 8e-8). Adding
         // 1.5 * 2^23 rounds to an integer that then stands in the low mantissa bits.
         const MAGIC: f32 = 12_582_912.0;
         let x = self.clamp(-87.0, 87.0);
-        let shifted = x * core::f32::consts::LOG2_E + MAGIC;
+        let shifted = x.times_plus::<FUSED>(core::f32::consts::LOG2_E, MAGIC);
         let k = shifted - MAGIC;
-        let r = (x - k * 0.693_359_4) - k * -2.121_944_4e-4;
+        let r = k.times_plus::<FUSED>(-0.693_359_4, x);
+        let r = k.times_plus::<FUSED>(2.121_944_4e-4, r);
         let p = 0.008_375_039;
-        let p = p * r + 0.041_916_903;
-        let p = p * r + 0.166_664_17;
-        let p = p * r + 0.499_988_73;
-        let p = p * r + 1.0;
-        let p = p * r + 1.0;
+        let p = p.times_plus::<FUSED>(r, 0.041_916_903);
+        let p = p.times_plus::<FUSED>(r, 0.166_664_17);
+        let p = p.times_plus::<FUSED>(r, 0.499_988_73);
+        let p = p.times_plus::<FUSED>(r, 1.0);
+        let p = p.times_plus::<FUSED>(r, 1.0);
         let scale = f32::from_bits(shifted.to_bits().wrapping_add(127) << 23);
         p * scale
     }
@@ -142,7 +151,7 @@ impl Real for f64 {
         vector.to_array()
     }
     #[inline(always)]
-    fn exp_lanes(self) -> Self {
+    fn exp_lanes<const FUSED: bool>(self) -> Self {
         // As for f32, with degree 12 (next term 1.7e-16 relative) and the magic number 1.5 * 2^52.
         const MAGIC: f64 = 6_755_399_441_055_744.0;
         const TERMS: [f64; 13] = [
@@ -161,12 +170,13 @@ impl Real for f64 {
             1.0,
         ];
         let x = self.clamp(-708.0, 708.0);
-        let shifted = x * core::f64::consts::LOG2_E + MAGIC;
+        let shifted = x.times_plus::<FUSED>(core::f64::consts::LOG2_E, MAGIC);
         let k = shifted - MAGIC;
-        let r = (x - k * 0.693_147_180_369_123_8) - k * 1.908_214_929_270_587_7e-10;
+        let r = k.times_plus::<FUSED>(-0.693_147_180_369_123_8, x);
+        let r = k.times_plus::<FUSED>(-1.908_214_929_270_587_7e-10, r);
         let mut p = TERMS[0];
         for &term in &TERMS[1..] {
-            p = p * r + term;
+            p = p.times_plus::<FUSED>(r, term);
         }
         let scale = f64::from_bits(shifted.to_bits().wrapping_add(1023) << 52);
         p * scale
@@ -179,13 +189,18 @@ mod tests {
 
     #[test]
     fn exp_lanes_follows_exp() {
+        follow_exp::<false>();
+        follow_exp::<true>();
+    }
+
+    fn follow_exp<const FUSED: bool>() {
         for i in -8600..=8700 {
             let x = f64::from(i) / 100.0;
             let exact = libm::exp(x);
-            assert!((x.exp_lanes() - exact).abs() <= 1e-14 * exact, "f64 at {x}");
+            assert!((x.exp_lanes::<FUSED>() - exact).abs() <= 1e-14 * exact, "f64 at {x}");
             let y = f32::of(x);
             let exact = libm::exp(f64::from(y));
-            assert!((f64::from(y.exp_lanes()) - exact).abs() <= 3e-7 * exact, "f32 at {x}");
+            assert!((f64::from(y.exp_lanes::<FUSED>()) - exact).abs() <= 3e-7 * exact, "f32 at {x}");
         }
     }
 }

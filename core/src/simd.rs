@@ -13,6 +13,16 @@ pub trait Kernel {
 
     /// Does the work. Implementations mark it `#[inline(always)]`.
     fn run(self) -> Self::Output;
+
+    /// As [`Self::run`], called instead of it where the instruction set has fused multiply-adds: there
+    /// [`Real::times_plus`](crate::Real::times_plus) may fuse. Implementations mark it `#[inline(always)]`.
+    #[inline(always)]
+    fn run_fused(self) -> Self::Output
+    where
+        Self: Sized,
+    {
+        self.run()
+    }
 }
 
 /// Runs `kernel` with the best instruction set of this processor.
@@ -21,8 +31,8 @@ pub trait Kernel {
 pub fn dispatch<K: Kernel>(kernel: K) -> K::Output {
     static ARCH: std::sync::OnceLock<pulp::Arch> = std::sync::OnceLock::new();
 
-    struct Dispatched<K>(K);
-    impl<K: Kernel> pulp::NullaryFnOnce for Dispatched<K> {
+    struct Plain<K>(K);
+    impl<K: Kernel> pulp::NullaryFnOnce for Plain<K> {
         type Output = K::Output;
 
         #[inline(always)]
@@ -31,7 +41,27 @@ pub fn dispatch<K: Kernel>(kernel: K) -> K::Output {
         }
     }
 
-    ARCH.get_or_init(pulp::Arch::new).dispatch(Dispatched(kernel))
+    let arch = *ARCH.get_or_init(pulp::Arch::new);
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    {
+        struct Fused<K>(K);
+        impl<K: Kernel> pulp::NullaryFnOnce for Fused<K> {
+            type Output = K::Output;
+
+            #[inline(always)]
+            fn call(self) -> K::Output {
+                self.0.run_fused()
+            }
+        }
+
+        match arch {
+            pulp::Arch::V3(level) => pulp::Simd::vectorize(level, Fused(kernel)),
+            pulp::Arch::V4(level) => pulp::Simd::vectorize(level, Fused(kernel)),
+            _ => arch.dispatch(Plain(kernel)),
+        }
+    }
+    #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+    arch.dispatch(Plain(kernel))
 }
 
 /// Runs `kernel` with the instruction set of the compile-time target.

@@ -6,6 +6,7 @@ use num_traits::Float;
 
 use super::ShapeError;
 use crate::real::Real;
+use crate::simd::{Kernel, dispatch, lanes};
 
 /// Numbers side by side in the tables: one AVX-512 register of f64, half of one of f32.
 pub(super) const LANES: usize = 8;
@@ -75,18 +76,22 @@ impl<T: Real> OutlineBasis<T> {
     #[inline]
     pub fn outline(&self, rows: &[[T; 4]], vertices: &mut [[T; 2]]) -> Result<(), ShapeError> {
         self.check(rows.len(), vertices.len())?;
+        dispatch(Trace { basis: self, rows, vertices });
+        Ok(())
+    }
+
+    #[inline(always)]
+    fn trace<const FUSED: bool>(&self, rows: &[[T; 4]], vertices: &mut [[T; 2]]) {
         let half = self.half();
         let last = self.vertex_count - 1;
         for (block, entries) in self.by_vertex.chunks_exact(self.harmonic_count).enumerate() {
             let zero = [T::zero(); LANES];
             let (mut x_even, mut x_odd, mut y_even, mut y_odd) = (zero, zero, zero, zero);
             for ([cos, sin], &[a, b, c, d]) in entries.iter().zip(rows) {
-                for lane in 0..LANES {
-                    x_even[lane] += a * cos[lane];
-                    x_odd[lane] += b * sin[lane];
-                    y_even[lane] += c * cos[lane];
-                    y_odd[lane] += d * sin[lane];
-                }
+                x_even = lanes(|i| cos[i].times_plus::<FUSED>(a, x_even[i]));
+                x_odd = lanes(|i| sin[i].times_plus::<FUSED>(b, x_odd[i]));
+                y_even = lanes(|i| cos[i].times_plus::<FUSED>(c, y_even[i]));
+                y_odd = lanes(|i| sin[i].times_plus::<FUSED>(d, y_odd[i]));
             }
             let first = block * LANES;
             for lane in 0..LANES.min(half - first) {
@@ -94,7 +99,6 @@ impl<T: Real> OutlineBasis<T> {
                 vertices[first + lane] = [x_even[lane] + x_odd[lane], y_even[lane] + y_odd[lane]];
             }
         }
-        Ok(())
     }
 
     pub(super) fn check(&self, harmonic_count: usize, vertex_count: usize) -> Result<(), ShapeError> {
@@ -110,6 +114,27 @@ impl<T: Real> OutlineBasis<T> {
     /// Vertices in the tables: half of them, the middle one included.
     pub(super) fn half(&self) -> usize {
         self.vertex_count.div_ceil(2)
+    }
+}
+
+/// The kernel of [`OutlineBasis::outline`].
+struct Trace<'a, T> {
+    basis: &'a OutlineBasis<T>,
+    rows: &'a [[T; 4]],
+    vertices: &'a mut [[T; 2]],
+}
+
+impl<T: Real> Kernel for Trace<'_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        self.basis.trace::<false>(self.rows, self.vertices);
+    }
+
+    #[inline(always)]
+    fn run_fused(self) {
+        self.basis.trace::<true>(self.rows, self.vertices);
     }
 }
 

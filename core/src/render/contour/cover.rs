@@ -29,8 +29,8 @@ pub struct ContourRecord<T> {
     squared: Vec<T>,
 }
 
-/// The forward kernel.
-pub(super) struct Cover<'a, T> {
+/// The forward kernel; fills `record.closest` only if `BACKWARD`.
+pub(super) struct Cover<'a, T, const BACKWARD: bool> {
     pub(super) band: Band<T>,
     pub(super) outline_px: &'a [[T; 2]],
     pub(super) size: ImageSize,
@@ -38,29 +38,41 @@ pub(super) struct Cover<'a, T> {
     pub(super) record: &'a mut ContourRecord<T>,
 }
 
-impl<T: Real> Kernel for Cover<'_, T> {
+impl<T: Real, const BACKWARD: bool> Kernel for Cover<'_, T, BACKWARD> {
     type Output = ();
 
     #[inline(always)]
-    fn run(mut self) {
+    fn run(self) {
+        self.cover::<false>();
+    }
+
+    #[inline(always)]
+    fn run_fused(self) {
+        self.cover::<true>();
+    }
+}
+
+impl<T: Real, const BACKWARD: bool> Cover<'_, T, BACKWARD> {
+    #[inline(always)]
+    fn cover<const FUSED: bool>(mut self) {
         let window = self.tile.window();
         let (chunks, reserved) = (window.chunks * window.rows, reserved_chunks(self.size));
         let record = &mut *self.record;
-        grow(&mut record.closest, chunks * LANES, reserved * LANES);
+        if BACKWARD {
+            grow(&mut record.closest, chunks * LANES, reserved * LANES);
+        }
         grow(&mut record.inside, chunks, reserved);
         record.inside[..chunks].fill(0);
         grow(&mut record.squared, chunks * LANES, reserved * LANES);
         record.squared[..chunks * LANES].fill(T::of(UNSEEN));
         self.prepare_edges();
         for index in 0..self.record.edges.len() {
-            self.near_edge(index);
+            self.near_edge::<FUSED>(index);
         }
         self.find_sides();
-        self.finish();
+        self.finish::<FUSED>();
     }
-}
 
-impl<T: Real> Cover<'_, T> {
     /// Lists the edges, and flips a bit where a row meets one: what stands to the right changes sides.
     #[inline(always)]
     fn prepare_edges(&mut self) {
@@ -98,7 +110,7 @@ impl<T: Real> Cover<'_, T> {
 
     /// Lowers the distance of the pixels within reach of an edge.
     #[inline(always)]
-    fn near_edge(&mut self, index: usize) {
+    fn near_edge<const FUSED: bool>(&mut self, index: usize) {
         let record = &mut *self.record;
         let edge = record.edges[index];
         let name = T::of_usize(index);
@@ -110,24 +122,25 @@ impl<T: Real> Cover<'_, T> {
             let Some((top, bottom)) = edge.rows(block, self.band.reach, window) else { continue };
             let first_chunk = column.max(near.first) / LANES;
             let last_chunk = (column + BLOCK - 1).min(near.last) / LANES;
-            for row in top..=bottom {
+            let mut y = T::of_usize(top);
+            for row in top..bottom + 1 {
                 self.tile.states[row * window.chunks + first_chunk] = ChunkState::Mixed;
                 self.tile.states[row * window.chunks + last_chunk] = ChunkState::Mixed;
-            }
-            let mut y = T::of_usize(top);
-            for row in top..=bottom {
                 let start = row * window.width() + column;
                 let Some(squared) = record.squared[start..].first_chunk_mut::<BLOCK>() else { return };
-                let Some(closest) = record.closest[start..].first_chunk_mut::<BLOCK>() else { return };
-                let (ex, ey, _) = edge.offsets(&columns, y);
+                let (ex, ey, _) = edge.offsets::<FUSED>(&columns, y);
                 y += T::one();
-                let d2: [T; BLOCK] = lanes(|i| ex[i] * ex[i] + ey[i] * ey[i]);
-                let (old, names) = (*squared, *closest);
+                let d2: [T; BLOCK] = lanes(|i| ex[i].times_plus::<FUSED>(ex[i], ey[i] * ey[i]));
+                let old = *squared;
                 let least: [T; BLOCK] = lanes(|i| if d2[i] < old[i] { d2[i] } else { old[i] });
-                let change: [T; BLOCK] = lanes(|i| if d2[i] < old[i] { name - names[i] } else { T::zero() });
                 // Stored as they are, choices would become masked stores, which are slow on some processors.
                 *squared = lanes(|i| if least[i] > T::zero() { least[i] } else { T::zero() });
-                *closest = lanes(|i| names[i] + change[i]);
+                if BACKWARD {
+                    let Some(closest) = record.closest[start..].first_chunk_mut::<BLOCK>() else { return };
+                    let names = *closest;
+                    let change: [T; BLOCK] = lanes(|i| if d2[i] < old[i] { name - names[i] } else { T::zero() });
+                    *closest = lanes(|i| names[i] + change[i]);
+                }
             }
         }
     }
@@ -162,7 +175,7 @@ impl<T: Real> Cover<'_, T> {
 
     /// Turns distances into coverage.
     #[inline(always)]
-    fn finish(&mut self) {
+    fn finish<const FUSED: bool>(&mut self) {
         let Band { offset, sharpness, cut, full, .. } = self.band;
         let (one, zero) = (T::one(), T::zero());
         for &chunk in &self.record.mixed {
@@ -170,7 +183,7 @@ impl<T: Real> Cover<'_, T> {
             let Some(squared) = self.record.squared[chunk * LANES..].first_chunk::<LANES>() else { return };
             let d2: Lanes<T> = lanes(|i| if (inside >> i) & 1 == 1 { -squared[i] } else { squared[i] });
             let steps: Lanes<T> = lanes(|i| (d2[i] - offset) * sharpness);
-            let powers: Lanes<T> = lanes(|i| steps[i].exp_lanes());
+            let powers: Lanes<T> = lanes(|i| steps[i].exp_lanes::<FUSED>());
             let p: Lanes<T> = lanes(|i| one / (powers[i] + one));
             let p: Lanes<T> = lanes(|i| if d2[i] < full { one } else { p[i] });
             self.tile.coverage[chunk] = lanes(|i| if d2[i] > cut { zero } else { p[i] });

@@ -22,15 +22,25 @@ impl<T: Real> Kernel for CoverVjp<'_, T> {
     type Output = ();
 
     #[inline(always)]
-    fn run(mut self) {
-        self.scale_to_squared();
-        for index in 0..self.record.edges.len() {
-            self.sum_to_vertices(index);
-        }
+    fn run(self) {
+        self.pull_back::<false>();
+    }
+
+    #[inline(always)]
+    fn run_fused(self) {
+        self.pull_back::<true>();
     }
 }
 
 impl<T: Real> CoverVjp<'_, T> {
+    #[inline(always)]
+    fn pull_back<const FUSED: bool>(mut self) {
+        self.scale_to_squared();
+        for index in 0..self.record.edges.len() {
+            self.sum_to_vertices::<FUSED>(index);
+        }
+    }
+
     /// Replaces the gradient of coverage by that of the unsigned squared distance, times -2 for [`Self::sum_to_vertices`].
     #[inline(always)]
     fn scale_to_squared(&mut self) {
@@ -46,7 +56,7 @@ impl<T: Real> CoverVjp<'_, T> {
 
     /// Sums over the pixels closest to an edge.
     #[inline(always)]
-    fn sum_to_vertices(&mut self, index: usize) {
+    fn sum_to_vertices<const FUSED: bool>(&mut self, index: usize) {
         let edge = self.record.edges[index];
         let name = T::of_usize(index);
         let window = self.tile.window();
@@ -64,7 +74,7 @@ impl<T: Real> CoverVjp<'_, T> {
                 let Some(grad) = grad[start..].first_chunk::<BLOCK>() else { return };
                 let Some(closest) = closest[start..].first_chunk::<BLOCK>() else { return };
                 let (grad, closest) = (*grad, *closest);
-                let (ex, ey, position) = edge.offsets(&columns, y);
+                let (ex, ey, position) = edge.offsets::<FUSED>(&columns, y);
                 y += T::one();
                 let g: [T; BLOCK] = lanes(|i| if closest[i] == name { grad[i] } else { T::zero() });
                 let gx: [T; BLOCK] = lanes(|i| g[i] * ex[i]);
@@ -72,8 +82,8 @@ impl<T: Real> CoverVjp<'_, T> {
                 let [sx, sy, ux, uy] = &mut sums[row % 2];
                 *sx = lanes(|i| sx[i] + gx[i]);
                 *sy = lanes(|i| sy[i] + gy[i]);
-                *ux = lanes(|i| ux[i] + position[i] * gx[i]);
-                *uy = lanes(|i| uy[i] + position[i] * gy[i]);
+                *ux = lanes(|i| position[i].times_plus::<FUSED>(gx[i], ux[i]));
+                *uy = lanes(|i| position[i].times_plus::<FUSED>(gy[i], uy[i]));
             }
         }
         let [even, odd] = sums;

@@ -99,7 +99,11 @@ impl<T: Real> Edge<T> {
     /// Offsets from the closest points of the edge to a block of pixels, and the closest points' positions along the edge,
     /// in \[0, 1\].
     #[inline(always)]
-    pub(super) fn offsets(&self, columns: &Columns<T>, row: T) -> ([T; BLOCK], [T; BLOCK], [T; BLOCK]) {
+    pub(super) fn offsets<const FUSED: bool>(
+        &self,
+        columns: &Columns<T>,
+        row: T,
+    ) -> ([T; BLOCK], [T; BLOCK], [T; BLOCK]) {
         let (zero, one) = (T::zero(), T::one());
         let [dx, dy] = self.along;
         let y = row - self.start[1];
@@ -108,8 +112,8 @@ impl<T: Real> Edge<T> {
         let position: [T; BLOCK] = lanes(|i| columns.share[i] + row_share);
         let position: [T; BLOCK] = lanes(|i| if position[i] > zero { position[i] } else { zero });
         let position: [T; BLOCK] = lanes(|i| if position[i] < one { position[i] } else { one });
-        let ex = lanes(|i| columns.x[i] - position[i] * dx);
-        let ey = lanes(|i| y - position[i] * dy);
+        let ex = lanes(|i| position[i].times_plus::<FUSED>(-dx, columns.x[i]));
+        let ey = lanes(|i| position[i].times_plus::<FUSED>(-dy, y));
         (ex, ey, position)
     }
 }

@@ -127,9 +127,14 @@ impl<T: Real> CoverageModel<T> for ContourDistance<T> {
         size: ImageSize,
         tile: &mut Tile<T>,
         record: &mut ContourRecord<T>,
+        backward: bool,
     ) -> Result<(), RenderError> {
         let band = self.band(T::of_usize(size.unit_px()));
-        dispatch(cover::Cover { band, outline_px, size, tile, record });
+        if backward {
+            dispatch(cover::Cover::<T, true> { band, outline_px, size, tile, record });
+        } else {
+            dispatch(cover::Cover::<T, false> { band, outline_px, size, tile, record });
+        }
         Ok(())
     }
 

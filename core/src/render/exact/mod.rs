@@ -71,6 +71,7 @@ impl<T: Real> CoverageModel<T> for ExactArea {
         size: ImageSize,
         tile: &mut Tile<T>,
         record: &mut ExactRecord<T>,
+        _backward: bool,
     ) -> Result<(), RenderError> {
         dispatch(Cover { outline_px, size, tile, record });
         Ok(())

@@ -14,7 +14,7 @@ fn cover(outline: &[[f64; 2]], width: usize, height: usize) -> (Vec<f64>, Vec<[f
     let Some(window) = Window::around(&outline_px, 0.5, size) else { return (coverage, grad) };
     let (mut tile, mut record) = (Tile::default(), ExactRecord::default());
     tile.reset(window, size);
-    ExactArea.cover(&outline_px, size, &mut tile, &mut record).unwrap();
+    ExactArea.cover(&outline_px, size, &mut tile, &mut record, false).unwrap();
     for chunk in 0..window.rows * window.chunks {
         for lane in 0..LANES {
             let column = window.left() + chunk % window.chunks * LANES + lane;

@@ -61,6 +61,7 @@ impl<T: Real> CoverageModel<T> for HardMask {
         size: ImageSize,
         tile: &mut Tile<T>,
         record: &mut HardRecord,
+        _backward: bool,
     ) -> Result<(), RenderError> {
         dispatch(Cover { outline_px, size, tile, record });
         Ok(())

@@ -30,7 +30,7 @@ pub trait CoverageModel<T: Real> {
     fn smallest_coverage(&self) -> T;
 
     /// Writes coverage of `outline_px` into `tile`: the state of each chunk (all are empty before) and the coverage of
-    /// mixed ones. `record` may come from any earlier outline.
+    /// mixed ones. `record` may come from any earlier outline; [`Self::cover_vjp`] may follow only if `backward` is set.
     ///
     /// # Errors
     /// [`RenderError`] if the model cannot cover such an outline.
@@ -40,6 +40,7 @@ pub trait CoverageModel<T: Real> {
         size: ImageSize,
         tile: &mut Tile<T>,
         record: &mut Self::Record,
+        backward: bool,
     ) -> Result<(), RenderError>;
 
     /// Adds to `grad_outline_px` the gradient of sum(`tile.grad` x coverage) over the mixed chunks. Tile and record are as

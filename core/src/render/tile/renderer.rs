@@ -66,7 +66,7 @@ impl<C> TileRenderer<C> {
         if coverage.len() != expected {
             return Err(RenderError::Length { what: "coverage", expected, len: coverage.len() });
         }
-        self.cover_all(drawing, size, scratch)?;
+        self.cover_all(drawing, size, scratch, false)?;
         coverage.fill(T::zero());
         for (tile, plane) in scratch.tiles.iter().zip(coverage.chunks_exact_mut(size.pixels())) {
             let window = tile.window();
@@ -84,12 +84,14 @@ impl<C> TileRenderer<C> {
         Ok(())
     }
 
-    /// Checks everything, then covers a tile per object; objects outside the view get an empty window.
+    /// Checks everything, then covers a tile per object; objects outside the view get an empty window. `backward`: whether
+    /// [`Self::pull_back`] is to follow.
     fn cover_all<T: Real>(
         &self,
         drawing: &Drawing<T>,
         size: ImageSize,
         scratch: &mut TileScratch<T, C::Record>,
+        backward: bool,
     ) -> Result<(), RenderError>
     where
         C: CoverageModel<T>,
@@ -109,7 +111,7 @@ impl<C> TileRenderer<C> {
             match Window::around(outline_px, reach_px, size) {
                 Some(window) => {
                     tile.reset(window, size);
-                    self.coverage.cover(outline_px, size, tile, record)?;
+                    self.coverage.cover(outline_px, size, tile, record, backward)?;
                 }
                 None => tile.reset(Window::default(), size),
             }
@@ -169,7 +171,7 @@ impl<T: Real, C: CoverageModel<T>> Renderer<T> for TileRenderer<C> {
         image: &mut [T],
     ) -> Result<(), RenderError> {
         check_image("image", image, size)?;
-        self.cover_all(drawing, size, scratch)?;
+        self.cover_all(drawing, size, scratch, false)?;
         let composition = self.composition(drawing, size, &mut scratch.tiles[..drawing.object_count()]);
         composition.run(&mut scratch.composite, Forward { image });
         Ok(())
@@ -186,7 +188,7 @@ impl<T: Real, C: CoverageModel<T>> Renderer<T> for TileRenderer<C> {
         check_image("grad_image", grad_image, size)?;
         check_finite("grad_image", grad_image)?;
         check_grad(drawing, grad)?;
-        self.cover_all(drawing, size, scratch)?;
+        self.cover_all(drawing, size, scratch, true)?;
         let composition = self.composition(drawing, size, &mut scratch.tiles[..drawing.object_count()]);
         composition.run(&mut scratch.composite, Pull { grad_image });
         self.pull_back(drawing, size, scratch, grad);
@@ -203,7 +205,7 @@ impl<T: Real, C: CoverageModel<T>> Renderer<T> for TileRenderer<C> {
     ) -> Result<T, RenderError> {
         check_grad(drawing, grad)?;
         let size = target.size();
-        self.cover_all(drawing, size, scratch)?;
+        self.cover_all(drawing, size, scratch, true)?;
         let composition = self.composition(drawing, size, &mut scratch.tiles[..drawing.object_count()]);
         let target = target.data();
         let value = match loss {

@@ -86,6 +86,7 @@ impl<T: Real, F: Triangulate> CoverageModel<T> for SoftTriangles<T, F> {
         size: ImageSize,
         tile: &mut Tile<T>,
         record: &mut TriangleRecord<T>,
+        _backward: bool,
     ) -> Result<(), RenderError> {
         self.faces.triangulate(outline_px, &mut record.faces);
         if let Some(&vertex) = record.faces.as_flattened().iter().find(|&&vertex| vertex >= outline_px.len()) {

@@ -37,7 +37,7 @@ impl<T: Real> PixelProfile<T> {
     /// Coverage at a signed squared distance: logistic((offset - d2) / sigma), 0 beyond the cut.
     #[inline(always)]
     pub(super) fn coverage(&self, d2: T) -> T {
-        let odds = ((d2 - self.offset) * self.sharpness).exp_lanes();
+        let odds = ((d2 - self.offset) * self.sharpness).exp_lanes::<false>();
         let p = (T::one() + odds).recip();
         if d2 <= self.cut { p } else { T::zero() }
     }
@@ -45,7 +45,7 @@ impl<T: Real> PixelProfile<T> {
     /// Derivative of [`Self::coverage`] by d2; 0 beyond the cut.
     #[inline(always)]
     pub(super) fn slope(&self, d2: T) -> T {
-        let odds = ((d2 - self.offset) * self.sharpness).exp_lanes();
+        let odds = ((d2 - self.offset) * self.sharpness).exp_lanes::<false>();
         let p = (T::one() + odds).recip();
         if d2 <= self.cut { -p * (odds * p) * self.sharpness } else { T::zero() }
     }

@@ -311,7 +311,7 @@ impl<T: Real> Profile<T> {
         if squared > self.cut {
             return (T::zero(), T::zero());
         }
-        let coverage = T::one() / (T::one() + ((squared - self.offset) * self.inverse_sigma).exp_lanes());
+        let coverage = T::one() / (T::one() + ((squared - self.offset) * self.inverse_sigma).exp_lanes::<false>());
         let change = -coverage * (T::one() - coverage) * self.inverse_sigma * T::of(2.0) * distance.abs();
         (coverage, change)
     }
