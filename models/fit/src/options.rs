@@ -27,20 +27,13 @@ pub struct FitOptions<T> {
     pub max_steps: usize,
     /// Edge profile of the picture; none: the reference renderer's or area coverage, whichever the soft pixels speak for.
     pub edge: Option<EdgeProfile<T>>,
-    /// How overlapping objects mix.
-    pub compositing: Compositing,
+    /// How overlapping objects mix; none: as the picture shows.
+    pub compositing: Option<Compositing>,
 }
 
 impl<T: Real> Default for FitOptions<T> {
     fn default() -> Self {
-        Self {
-            bank: None,
-            max_objects: 256,
-            max_harmonics: 31,
-            max_steps: 10,
-            edge: None,
-            compositing: Compositing::Blend,
-        }
+        Self { bank: None, max_objects: 256, max_harmonics: 31, max_steps: 10, edge: None, compositing: None }
     }
 }
 

@@ -23,3 +23,8 @@ pub(crate) fn scene_bits<T: Real>(scene: &Scene<T>, bank: usize) -> f64 {
     let parts = objects.map(|o| COLOR_BITS + POSE_BITS + shape(o.efd.harmonic_count(), o.prototype.is_some()));
     COLOR_BITS + parts.sum::<f64>()
 }
+
+/// Bits per unit of the robust cost: half a squared residual in units of the noise, in base 2.
+pub(crate) fn misfit_bits<T: Real>() -> T {
+    T::of(0.5 * core::f64::consts::LOG2_E)
+}

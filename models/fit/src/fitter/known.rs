@@ -39,11 +39,12 @@ impl<T: Real> Run<'_, T> {
         let mut posed = JointScene { background, objects: Vec::new() };
         let mut sources = Vec::new();
         let mut steps = 0;
-        for segment in 0..self.scratch.segmentation.segments().len() {
+        for segment in self.painting_order() {
             self.search(segment, Effort::Usual);
             let Some(&best) = self.scratch.candidates.first() else { continue };
             steps += best.steps;
             let sure = best.cost < T::of(SURE_COST);
+            let segment = segment as usize;
             sources.push(Source { segment, twin: twin(&self.scratch.candidates), sure });
             posed.objects.push(self.posed(&best, segment));
         }
@@ -61,7 +62,7 @@ impl<T: Real> Run<'_, T> {
                 image: self.image,
                 shapes: &self.fitter.prototypes,
                 edge: self.edge,
-                compositing: self.fitter.options.compositing,
+                compositing: self.compositing,
                 colors: false,
                 coarse: false,
                 width: T::of(JOINT_WIDTH),
@@ -80,17 +81,17 @@ impl<T: Real> Run<'_, T> {
     }
 
     /// Fills the candidates of the scratch.
-    fn search(&mut self, segment: usize, effort: Effort) {
+    pub(super) fn search(&mut self, segment: u32, effort: Effort) {
         let scratch = &mut *self.scratch;
-        let segments = scratch.segmentation.segments();
         let prototypes = &self.fitter.prototypes;
         let size = self.image.size();
-        search(&segments[segment], prototypes, size, &scratch.segmentation, effort, &mut scratch.candidates);
+        search(segment, prototypes, size, &scratch.segmentation, effort, &mut scratch.candidates);
     }
 
     fn posed(&self, candidate: &Candidate<T>, segment: usize) -> JointObject<T> {
-        let color = self.scratch.segmentation.segments()[segment].color;
-        JointObject { shape: candidate.prototype, pose: candidate.pose, color, confidence: T::one() }
+        let part = &self.scratch.segmentation.segments()[segment];
+        let (color, confidence) = (part.color, part.confidence);
+        JointObject { shape: candidate.prototype, pose: candidate.pose, color, confidence }
     }
 
     /// Renders and keeps the residual; returns the mean absolute error.
@@ -125,7 +126,7 @@ impl<T: Real> Run<'_, T> {
         source: &mut Source,
         loss: T,
     ) -> Result<T, FitError> {
-        self.search(source.segment, Effort::Wide);
+        self.search(u32::try_from(source.segment).unwrap_or(u32::MAX), Effort::Wide);
         let mut best = (loss, posed.objects[at]);
         let count = self.scratch.candidates.len().min(RENDERED_CANDIDATES);
         for i in 0..count {

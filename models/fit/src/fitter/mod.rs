@@ -1,16 +1,17 @@
 //! Segment-and-fit: the pipeline from an image to a [`Fit`].
 //!
-//! `known` poses the prototypes of a bank, `unknown` fits free outlines; `run` is what both share: rendering, colors,
+//! `order` decides which objects are in front, `known` poses the prototypes of a bank, `unknown` fits free outlines; `run` is what both share: rendering, colors,
 //! pruning, and the doubt that goes with the result.
 
 mod known;
+mod order;
 mod run;
 mod unknown;
 
 use alloc::vec::Vec;
 
-use dvp_core::render::Renderer;
 use dvp_core::render::contour::ContourRenderer;
+use dvp_core::render::{Compositing, EdgeProfile, Renderer};
 use dvp_core::shape::{OutlineBasis, REFERENCE_VERTICES, SYMMETRY_TOLERANCE, Symmetry};
 use dvp_core::{Drawing, Efd, ImageView, Real};
 
@@ -122,34 +123,72 @@ impl<T: Real> Fitter<T> {
             return Err(FitError::NotFinite { index });
         }
         let readable = scratch.segmentation.read(&image, &SegmentOptions::default());
-        let kinds = scratch.segmentation.edge_kinds();
-        let (kind, other) = self.options.edge.map_or(kinds, |edge| (EdgeKind::Profile(edge), None));
-        let fit = self.fit_with(image, kind, readable, scratch)?;
-        // In doubt about the edges both readings are fitted; the shorter description wins.
-        let second = other.map(|kind| self.fit_with(image, kind, readable, scratch)).transpose()?;
-        Ok(second.filter(|second| second.bits < fit.bits).unwrap_or(fit))
+        if !readable {
+            let edge = self.options.edge.unwrap_or_else(EdgeProfile::reference);
+            let compositing = self.options.compositing.unwrap_or_default();
+            let run = Run { fitter: self, image, kind: EdgeKind::Profile(edge), edge, compositing, scratch };
+            let found = run.nothing();
+            return run.finish(found);
+        }
+        scratch.segmentation.interpret(self.options.compositing.unwrap_or_default());
+        let (kind, other) =
+            self.options.edge.map_or(scratch.segmentation.edge_kinds(), |edge| (EdgeKind::Profile(edge), None));
+        let (compositing, second) = self.compositings(&scratch.segmentation, &kind);
+        if compositing != self.options.compositing.unwrap_or_default() {
+            scratch.segmentation.interpret(compositing);
+        }
+        let mut fit = self.fit_with(image, kind, compositing, scratch)?;
+        // In doubt both readings are fitted; the shorter description wins.
+        if let Some(kind) = other {
+            fit = shorter(fit, self.fit_with(image, kind, compositing, scratch)?);
+        }
+        if let Some(compositing) = second {
+            scratch.segmentation.interpret(compositing);
+            fit = shorter(fit, self.fit_with(image, kind, compositing, scratch)?);
+        }
+        Ok(fit)
+    }
+
+    /// How the objects seem to be composited, and a second way to try in doubt.
+    fn compositings(&self, segmentation: &Segmentation<T>, kind: &EdgeKind<T>) -> (Compositing, Option<Compositing>) {
+        if let Some(known) = self.options.compositing {
+            return (known, None);
+        }
+        let evidence = segmentation.evidence();
+        let reference = *kind == EdgeKind::Profile(EdgeProfile::reference());
+        if evidence.direct >= DIRECT_PIXELS {
+            if evidence.mean > 0 { (Compositing::Blend, Some(Compositing::Over)) } else { (Compositing::Over, None) }
+        } else if evidence.mean == 0 && evidence.inside > 0 && !reference {
+            // Drawings show one thing on another; only the reference renderer's data mixes their colors.
+            (Compositing::Over, None)
+        } else {
+            (Compositing::Blend, None)
+        }
     }
 
     fn fit_with(
         &self,
         image: ImageView<'_, T>,
         kind: EdgeKind<T>,
-        readable: bool,
+        compositing: Compositing,
         scratch: &mut FitScratch<T>,
     ) -> Result<Fit<T>, FitError> {
-        scratch.segmentation.gather(image.size(), &kind);
         let edge = kind.profile(T::of_usize(image.size().unit_px()));
-        let mut run = Run { fitter: self, image, kind, edge, scratch };
-        let found = if !readable {
-            run.nothing()
-        } else if self.prototypes.is_empty() {
-            run.unknown_shapes()?
-        } else {
-            run.known_shapes()?
-        };
+        let mut run = Run { fitter: self, image, kind, edge, compositing, scratch };
+        run.decide_order();
+        run.scratch.segmentation.gather(image.size(), &kind);
+        let found = if self.prototypes.is_empty() { run.unknown_shapes()? } else { run.known_shapes()? };
         run.finish(found)
     }
 }
+
+fn shorter<T>(first: Fit<T>, second: Fit<T>) -> Fit<T> {
+    if second.bits < first.bits { second } else { first }
+}
+
+/// So many soft pixels between two objects without their mean color between speak for one hiding the other; objects that
+/// merely touch have fewer.
+const DIRECT_PIXELS: u32 = 8;
 
 /// Harmonics that 64 vertices, two of them in one place, can carry.
 const MAX_HARMONICS: usize = 31;

@@ -21,6 +21,7 @@ pub(super) struct Run<'a, T: Real> {
     pub(super) kind: EdgeKind<T>,
     /// The profile that renders this kind.
     pub(super) edge: EdgeProfile<T>,
+    pub(super) compositing: Compositing,
     pub(super) scratch: &'a mut FitScratch<T>,
 }
 
@@ -67,7 +68,7 @@ impl<T: Real> Run<'_, T> {
     pub(super) fn compare_drawing(&mut self) -> Result<T, FitError> {
         let scratch = &mut *self.scratch;
         scratch.pixels.resize(self.image.data().len(), T::zero());
-        let renderer = ContourRenderer::new(self.edge, self.fitter.options.compositing);
+        let renderer = ContourRenderer::new(self.edge, self.compositing);
         renderer.render(&scratch.drawing, self.image.size(), &mut scratch.render, &mut scratch.pixels)?;
         Ok(scratch.residual.measure(&self.image, &scratch.pixels))
     }
@@ -111,7 +112,7 @@ impl<T: Real> Run<'_, T> {
             background: found.background,
             objects: found.objects.iter().map(|part| part.object.clone()).collect(),
             edge: self.edge,
-            compositing: self.fitter.options.compositing,
+            compositing: self.compositing,
         }
     }
 
@@ -126,8 +127,12 @@ impl<T: Real> Run<'_, T> {
             let pixels = T::of_usize(self.scratch.segmentation.segments()[part.segment].pixels);
             pixels * (0..3).map(|c| (part.object.color[c] - background[c]).powi(2)).sum::<T>()
         };
-        found.objects.sort_by(|a, b| gain(b).partial_cmp(&gain(a)).unwrap_or(core::cmp::Ordering::Equal));
-        found.objects.truncate(most);
+        let gains: Vec<T> = found.objects.iter().map(gain).collect();
+        let mut ranked: Vec<usize> = (0..gains.len()).collect();
+        ranked.sort_by(|&a, &b| gains[b].partial_cmp(&gains[a]).unwrap_or(core::cmp::Ordering::Equal));
+        // The order in which they are painted stays.
+        let mut at = 0..;
+        found.objects.retain(|_| at.next().is_some_and(|index| ranked[..most].contains(&index)));
     }
 
     /// Gives the colors of a rounded image back their fractions of a step.

@@ -21,7 +21,8 @@ impl<T: Real> Run<'_, T> {
     pub(super) fn unknown_shapes(&mut self) -> Result<Found<T>, FitError> {
         let background = self.scratch.segmentation.background();
         let mut found = Found { background, objects: Vec::new(), steps: 0, stop: StopReason::Converged };
-        for segment in 0..self.scratch.segmentation.segments().len() {
+        for segment in self.painting_order() {
+            let segment = segment as usize;
             if let Some((object, steps)) = self.object_of(segment, Freedom::Full) {
                 found.steps += steps;
                 found.objects.push(FoundObject { object, segment, twin: None });
@@ -79,14 +80,14 @@ impl<T: Real> Run<'_, T> {
                 rotation: normal.rotation,
             },
             color: self.scratch.segmentation.segments()[segment].color,
-            confidence: T::one(),
+            confidence: self.scratch.segmentation.segments()[segment].confidence,
             efd: normal.efd,
             prototype: None,
         };
         Some((object, grown.steps))
     }
 
-    fn outline_of(&mut self, segment: usize, freedom: Freedom) -> Option<Grown<T>> {
+    pub(super) fn outline_of(&mut self, segment: usize, freedom: Freedom) -> Option<Grown<T>> {
         let size = self.image.size();
         let half_coverage_px = self.edge.offset.max(T::zero()).sqrt() * self.unit_px() * T::of(0.5);
         let scratch = &mut *self.scratch;

@@ -8,7 +8,7 @@ use dvp_core::{Efd, Real};
 use super::basis::Basis;
 use super::outline_fit::{FreeOutline, OutlineScratch, OutlineSettings, refine};
 use super::polygon_fit::{PolygonScratch, move_vertices, transform};
-use crate::price::COEFFICIENT_BITS;
+use crate::price::{COEFFICIENT_BITS, misfit_bits};
 use crate::segment::{EdgeSample, PIXEL_NOISE};
 
 /// Numbers of harmonics an outline is cut to.
@@ -112,11 +112,6 @@ fn take_vertices<T: Real>(contour: &[[T; 2]], vertex_count: usize, vertices: &mu
 
 fn price<T: Real>(harmonics: usize) -> T {
     T::of(4.0 * COEFFICIENT_BITS) * T::of_usize(harmonics)
-}
-
-/// Bits per unit of the robust cost: half a squared residual in units of the noise, in base 2.
-fn misfit_bits<T: Real>() -> T {
-    T::of(0.5 * core::f64::consts::LOG2_E)
 }
 
 /// The number of harmonics with the shortest foretold description.

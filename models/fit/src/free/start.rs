@@ -16,6 +16,8 @@ const MARGIN: usize = 3;
 pub(crate) struct StartScratch<T> {
     field: Vec<T>,
     filled: Vec<T>,
+    left: Vec<[T; 2]>,
+    right: Vec<[T; 2]>,
 }
 
 /// The traced outline (px), largest loop; none if the object has no inside.
@@ -41,6 +43,10 @@ pub(crate) fn trace<T: Real>(
                 line[x - low_x + MARGIN] = if inside { T::one() } else { T::zero() };
             }
         }
+    }
+    let hidden = |x: usize, y: usize| segmentation.may_be_hidden(y * size.width() + x, object);
+    if segmentation.borders().iter().any(|border| border.front != Some(object) && border.objects.contains(&object)) {
+        fill_hidden(field, columns, [low_x, low_y], [high_x, high_y], hidden, &mut scratch.left, &mut scratch.right);
     }
     for &([x, y], coverage) in &segment.rim {
         let (x, y) = (x as usize, y as usize);
@@ -79,6 +85,62 @@ pub(crate) fn shrink<T: Real>(contour: &[[T; 2]], offset: T) -> Vec<[T; 2]> {
             [points[i][0] + y * step, points[i][1] - x * step]
         })
         .collect()
+}
+
+/// Takes hidden pixels in the convex hull of the visible ones for covered: a straight line is the simplest way to go on.
+fn fill_hidden<T: Real>(
+    field: &mut [T],
+    columns: usize,
+    low: [usize; 2],
+    high: [usize; 2],
+    hidden: impl Fn(usize, usize) -> bool,
+    left: &mut Vec<[T; 2]>,
+    right: &mut Vec<[T; 2]>,
+) {
+    left.clear();
+    right.clear();
+    for y in low[1]..high[1] {
+        let row = (y - low[1] + MARGIN) * columns;
+        let covered = |&x: &usize| field[row + x - low[0] + MARGIN] == T::one();
+        if let (Some(first), Some(last)) = ((low[0]..high[0]).find(covered), (low[0]..high[0]).rfind(covered)) {
+            // Mirrored on the right, so that both chains bulge to the same side.
+            push_hull(left, [T::of_usize(first), T::of_usize(y)]);
+            push_hull(right, [-T::of_usize(last), T::of_usize(y)]);
+        }
+    }
+    for y in low[1]..high[1] {
+        let (Some(from), Some(to)) = (at_row(left, y), at_row(right, y).map(|x| -x)) else { continue };
+        let row = (y - low[1] + MARGIN) * columns;
+        for x in from.ceil().to_count().max(low[0])..(to.floor().to_count() + 1).min(high[0]) {
+            let value = &mut field[row + x - low[0] + MARGIN];
+            if value.is_nan() && hidden(x, y) {
+                *value = T::one();
+            }
+        }
+    }
+}
+
+/// Adds a point, one row further down, to the left chain of a convex hull.
+fn push_hull<T: Real>(chain: &mut Vec<[T; 2]>, point: [T; 2]) {
+    while let [.., a, b] = chain[..] {
+        let turn = (b[0] - a[0]) * (point[1] - a[1]) - (b[1] - a[1]) * (point[0] - a[0]);
+        if turn < T::zero() {
+            break;
+        }
+        chain.pop();
+    }
+    chain.push(point);
+}
+
+/// Where the chain crosses the middle of a row.
+fn at_row<T: Real>(chain: &[[T; 2]], row: usize) -> Option<T> {
+    let y = T::of_usize(row);
+    let next = chain.partition_point(|point| point[1] < y);
+    let &[x, below] = chain.get(next)?;
+    let Some(&[before, above]) = next.checked_sub(1).and_then(|i| chain.get(i)) else {
+        return (below <= y).then_some(x);
+    };
+    Some(before + (x - before) * (y - above) / (below - above))
 }
 
 /// Gives soft pixels without a sample the mean of their known neighbors, ring by ring.

@@ -72,9 +72,9 @@ pub(crate) enum Effort {
     Wide,
 }
 
-/// Poses of every prototype that could explain `segment`, best first; empty if it has too few samples.
+/// Poses of every prototype that could explain segment `object`, best first; empty if it has too few samples.
 pub(crate) fn search<T: Real>(
-    segment: &Segment<T>,
+    object: u32,
     prototypes: &[Prototype<T>],
     size: ImageSize,
     segmentation: &Segmentation<T>,
@@ -82,6 +82,7 @@ pub(crate) fn search<T: Real>(
     out: &mut Vec<Candidate<T>>,
 ) {
     out.clear();
+    let Some(segment) = segmentation.segments().get(object as usize) else { return };
     if segment.samples.len() < 4 || segment.pixels == 0 {
         return;
     }
@@ -109,7 +110,7 @@ pub(crate) fn search<T: Real>(
         let refined = if hopeless {
             Candidate { cost: now, ..out[i] }
         } else {
-            finish(out[i], segment, prototypes, size, segmentation)
+            finish(out[i], object, prototypes, size, segmentation)
         };
         leader = leader.min(refined.cost);
         // Two starts that ended in one pose are one candidate.
@@ -220,11 +221,12 @@ fn start<T: Real>(
 /// exactly symmetric.
 fn finish<T: Real>(
     candidate: Candidate<T>,
-    segment: &Segment<T>,
+    object: u32,
     prototypes: &[Prototype<T>],
     size: ImageSize,
     segmentation: &Segmentation<T>,
 ) -> Candidate<T> {
+    let segment = &segmentation.segments()[object as usize];
     let prototype = &prototypes[candidate.prototype];
     let field = &prototype.field;
     // A part of the samples brings the pose within reach of the last two steps.
@@ -246,7 +248,7 @@ fn finish<T: Real>(
         let (refined, refined_cost, more) = pose.refine(field, &segment.samples, fine(), 4);
         (pose, cost, steps) = (refined, refined_cost, steps + more);
     }
-    let surplus = outline_over_flat(&pose, prototype, size, segmentation);
+    let surplus = outline_over_flat(&pose, prototype, object, size, segmentation);
     Candidate {
         prototype: candidate.prototype,
         pose,
@@ -255,10 +257,11 @@ fn finish<T: Real>(
     }
 }
 
-/// Share of the visible outline that runs through flat pixels, where no outline can be.
+/// Share of the outline in sight that runs through flat pixels, where no outline can be.
 fn outline_over_flat<T: Real>(
     pose: &PosePx<T>,
     prototype: &Prototype<T>,
+    object: u32,
     size: ImageSize,
     segmentation: &Segmentation<T>,
 ) -> T {
@@ -274,7 +277,7 @@ fn outline_over_flat<T: Real>(
             continue;
         }
         visible += 1;
-        flat += usize::from(segmentation.is_flat(y * size.width() + x));
+        flat += usize::from(segmentation.covers(y * size.width() + x, object).is_some());
     }
     if visible == 0 { T::zero() } else { T::of_usize(flat) / T::of_usize(visible) }
 }

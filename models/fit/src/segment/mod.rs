@@ -15,10 +15,12 @@ mod transition;
 
 use alloc::vec::Vec;
 
+use dvp_core::render::Compositing;
 use dvp_core::{ImageSize, ImageView, Real};
 
 use edge_kind::CoverageCounts;
 pub(crate) use edge_kind::EdgeKind;
+pub(crate) use interpret::{Border, Evidence};
 
 /// Signed distance from a pixel center to the outline of an object, read from the pixel's color.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,6 +40,8 @@ pub(crate) const PIXEL_NOISE: f64 = 0.003;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Segment<T> {
     pub(crate) color: [T; 3],
+    /// Below 1 for translucent objects.
+    pub(crate) confidence: T,
     pub(crate) samples: Vec<EdgeSample<T>>,
     /// Coverage of each soft pixel at its rim: column, row, share.
     pub(crate) rim: Vec<([u32; 2], T)>,
@@ -94,24 +98,36 @@ pub(crate) struct Segmentation<T> {
 }
 
 impl<T: Real> Segmentation<T> {
-    /// Segments `image`; false if no pixel is flat. [`Self::gather`] must follow.
+    /// Segments `image`; false if no pixel is flat. [`Self::interpret`] and [`Self::gather`] must follow.
     pub(crate) fn read(&mut self, image: &ImageView<'_, T>, options: &SegmentOptions<T>) -> bool {
         self.count = 0;
         self.map.label(image, options.flat_tolerance, options.min_pixels);
         region::measure(image, &self.map, &mut self.regions, &mut self.region_scratch);
         let tolerance = options.line_tolerance;
         transition::find(image, &self.map, &self.regions, tolerance, &mut self.soft, &mut self.transitions);
-        if !self.reading.read(&self.regions, &self.transitions) {
-            return false;
+        self.reading.prepare(&self.regions, &self.transitions)
+    }
+
+    /// Which objects cover which region, if objects overlap in the given way.
+    pub(crate) fn interpret(&mut self, compositing: Compositing) {
+        match compositing {
+            Compositing::Blend => self.reading.read_blend(&self.regions),
+            Compositing::Over => self.reading.read_over(&self.regions),
         }
         self.count = self.reading.colors.len();
         self.segments.resize_with(self.segments.len().max(self.count), Segment::default);
-        for (segment, &color) in self.segments.iter_mut().zip(&self.reading.colors) {
+        let objects = self.reading.colors.iter().zip(&self.reading.confidences);
+        for (segment, (&color, &confidence)) in self.segments.iter_mut().zip(objects) {
             segment.clear();
             segment.color = color;
+            segment.confidence = confidence;
         }
         self.gather_moments();
-        true
+    }
+
+    /// What the regions say of compositing; to be asked after interpreting them as blended.
+    pub(crate) fn evidence(&self) -> Evidence {
+        self.reading.evidence(&self.regions)
     }
 
     /// The edge kind that the soft pixels between background and objects speak for, and a second one in doubt.
@@ -128,11 +144,47 @@ impl<T: Real> Segmentation<T> {
         counts.kinds()
     }
 
+    /// Whether the object may go on behind what is seen at the pixel.
+    pub(crate) fn may_be_hidden(&self, index: usize, object: u32) -> bool {
+        let label = self.map.labels.get(index).copied().unwrap_or(0);
+        let cover = (label as usize).checked_sub(1).and_then(|region| self.reading.covers.get(region));
+        cover.is_some_and(|cover| {
+            cover.known && !cover.members().contains(&object) && self.covers(index, object).is_none()
+        })
+    }
+
+    /// Which objects touch, and which of them are in front.
+    pub(crate) fn borders(&self) -> &[Border] {
+        &self.reading.borders
+    }
+
+    /// Decides a border, or leaves it open.
+    pub(crate) fn set_front(&mut self, border: usize, front: Option<u32>) {
+        if let Some(border) = self.reading.borders.get_mut(border) {
+            border.front = front;
+        }
+    }
+
+    /// Turns soft pixels into samples of one object under the given edge kind.
+    pub(crate) fn gather_object(&mut self, object: u32, size: ImageSize, edge: &EdgeKind<T>) {
+        let mut segment = core::mem::take(&mut self.segments[object as usize]);
+        segment.samples.clear();
+        segment.rim.clear();
+        for transition in &self.transitions {
+            let ours = transition.pair.iter().any(|&i| self.reading.covers[i as usize].members().contains(&object));
+            if ours
+                && let Some(rim) = self.rim(transition)
+                && rim.object == object as usize
+            {
+                segment.rim.push((transition.pixel, rim.coverage));
+                segment.samples.extend(sample(&rim, transition, edge, size));
+            }
+        }
+        self.segments[object as usize] = segment;
+    }
+
     /// Turns soft pixels into samples under the given edge kind.
     pub(crate) fn gather(&mut self, size: ImageSize, edge: &EdgeKind<T>) {
-        let (own, pixel_noise) = (edge.distance_noise(), T::of(PIXEL_NOISE));
-        let unit = T::of_usize(size.unit_px());
-        let (one, half) = (T::one(), T::of(0.5));
         for segment in &mut self.segments {
             segment.samples.clear();
             segment.rim.clear();
@@ -143,22 +195,19 @@ impl<T: Real> Segmentation<T> {
                 self.share_between(&transition);
                 continue;
             };
+            let sample = sample(&rim, &transition, edge, size);
             let segment = &mut self.segments[rim.object];
             segment.rim.push((transition.pixel, rim.coverage));
-            let Some((distance, slope)) = edge.distance(rim.coverage, unit) else { continue };
-            let n = T::of_usize(rim.others);
-            let share = if rim.others == 0 { one } else { n * (n + one) / ((n + rim.coverage) * (n + rim.coverage)) };
-            let [x, y] = transition.pixel.map(|v| T::of_usize(v as usize) + half);
-            // Pixel noise over the slope, and the noise of the distance itself.
-            let from_pixel = pixel_noise / (rim.contrast * slope * share).max(T::of(1e-6));
-            let weight = pixel_noise / (from_pixel * from_pixel + own * own).sqrt();
-            segment.samples.push(EdgeSample { point: [x, y], distance, weight });
+            segment.samples.extend(sample);
         }
     }
 
     /// A soft pixel from one object to another, without their overlap between: it belongs to each in part. That is good
     /// enough to trace outlines by, but tells no distance.
     fn share_between(&mut self, transition: &transition::Transition<T>) {
+        if self.reading.compositing == Compositing::Over {
+            return;
+        }
         let covers = transition.pair.map(|i| self.reading.covers[i as usize]);
         if covers.iter().all(|cover| cover.known) {
             for (own, other, share) in [(0, 1, T::one() - transition.weight), (1, 0, transition.weight)] {
@@ -178,10 +227,17 @@ impl<T: Real> Segmentation<T> {
         let (cover_a, cover_b) = (&self.reading.covers[a], &self.reading.covers[b]);
         let (object, others, along) = if let Some(object) = cover_b.beyond(cover_a) {
             (object, cover_a.members().len(), transition.weight)
+        } else if let Some(object) = cover_a.beyond(cover_b) {
+            (object, cover_b.members().len(), one - transition.weight)
         } else {
-            (cover_a.beyond(cover_b)?, cover_b.members().len(), one - transition.weight)
+            // One object beside the other: the outline is that of the one in front.
+            let ([x], [y]) = (cover_a.members(), cover_b.members()) else { return None };
+            let front = self.border(*x, *y)?.front?;
+            (front, 0, if front == *y { transition.weight } else { one - transition.weight })
         };
-        // Along the line from the mean of n objects to the mean of n + 1, coverage p shows as p (n + 1) / (n + p).
+        // Under `over` coverage is the way from one color to the other. Along the line from the mean of n objects to the
+        // mean of n + 1, coverage p shows as p (n + 1) / (n + p).
+        let others = if self.reading.compositing == Compositing::Over { 0 } else { others };
         let n = T::of_usize(others);
         let coverage = if others == 0 { along } else { along * n / (n + one - along) };
         let (from, to) = (self.regions[a].color, self.regions[b].color);
@@ -210,16 +266,27 @@ impl<T: Real> Segmentation<T> {
         })
     }
 
-    /// Whether the pixel belongs to a flat region.
-    pub(crate) fn is_flat(&self, index: usize) -> bool {
-        self.map.labels.get(index).is_some_and(|&label| label != 0)
-    }
-
-    /// Whether the object covers a flat pixel; none for soft pixels and regions that were not understood.
+    /// Whether the object covers a flat pixel; none for soft pixels, regions that were not understood, and regions of
+    /// objects that it may go on behind.
     pub(crate) fn covers(&self, index: usize, object: u32) -> Option<bool> {
         let label = self.map.labels.get(index).copied().filter(|&label| label != 0)?;
         let cover = self.reading.covers.get(label as usize - 1)?;
-        cover.known.then(|| cover.members().contains(&object))
+        if !cover.known {
+            return None;
+        }
+        let inside = cover.members().contains(&object);
+        (inside || !cover.members().iter().any(|&other| self.may_hide(other, object))).then_some(inside)
+    }
+
+    /// Whether `object` may go on behind `other`.
+    fn may_hide(&self, other: u32, object: u32) -> bool {
+        self.border(other, object).is_some_and(|border| border.front != Some(object))
+    }
+
+    fn border(&self, a: u32, b: u32) -> Option<&Border> {
+        let borders = &self.reading.borders;
+        let at = borders.binary_search_by_key(&[a.min(b), a.max(b)], |border| border.objects).ok()?;
+        borders.get(at)
     }
 
     fn gather_moments(&mut self) {
@@ -237,6 +304,25 @@ impl<T: Real> Segmentation<T> {
             }
         }
     }
+}
+
+/// The distance that a soft pixel tells; none where coverage is too close to 0 or 1.
+fn sample<T: Real>(
+    rim: &Rim<T>,
+    transition: &transition::Transition<T>,
+    edge: &EdgeKind<T>,
+    size: ImageSize,
+) -> Option<EdgeSample<T>> {
+    let (own, pixel_noise) = (edge.distance_noise(), T::of(PIXEL_NOISE));
+    let (one, half) = (T::one(), T::of(0.5));
+    let (distance, slope) = edge.distance(rim.coverage, T::of_usize(size.unit_px()))?;
+    let n = T::of_usize(rim.others);
+    let share = if rim.others == 0 { one } else { n * (n + one) / ((n + rim.coverage) * (n + rim.coverage)) };
+    let [x, y] = transition.pixel.map(|v| T::of_usize(v as usize) + half);
+    // Pixel noise over the slope, and the noise of the distance itself.
+    let from_pixel = pixel_noise / (rim.contrast * slope * share).max(T::of(1e-6));
+    let weight = pixel_noise / (from_pixel * from_pixel + own * own).sqrt();
+    Some(EdgeSample { point: [x, y], distance, weight })
 }
 
 /// A soft pixel as part of an object's rim.

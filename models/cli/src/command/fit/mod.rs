@@ -54,9 +54,9 @@ pub(super) struct Arguments {
     /// Number that random starts are drawn from, for rand-opt-p
     #[arg(long, default_value_t = 1234)]
     seed: u64,
-    /// How overlapping objects mix in the pictures
-    #[arg(long, value_enum, default_value = "blend")]
-    compositing: CompositingName,
+    /// How overlapping objects mix in the pictures [default: as the picture shows]
+    #[arg(long, value_enum)]
+    compositing: Option<CompositingName>,
     /// Largest picture that is read
     #[arg(long, default_value_t = DEFAULT_MAX_PIXELS, value_name = "N")]
     max_pixels: usize,
@@ -80,7 +80,7 @@ impl Arguments {
         let options = FitOptions {
             bank: self.bank.load()?,
             max_objects: self.max_objects.unwrap_or(defaults.max_objects),
-            compositing: Compositing::from(self.compositing),
+            compositing: self.compositing.map(Compositing::from),
             ..defaults
         };
         Solver::new(self.method, options, self.start.clone(), self.objects, self.seed)

@@ -1,0 +1,293 @@
+//! Which objects cover each flat region: background, one object, or the overlap of several.
+//!
+//! There are two ways to read a picture. `blend`: objects mix, and an overlap shows the mean of its colors. `over`: objects
+//! hide what is behind them, so every region shows one object, or a translucent one over others. [`Reading::prepare`] does
+//! what both share and [`Reading::evidence`] tells which of the two the regions speak for.
+
+mod blend;
+mod over;
+
+use alloc::vec::Vec;
+
+use dvp_core::Real;
+use dvp_core::render::Compositing;
+
+use super::region::Region;
+use super::transition::Transition;
+
+/// The most objects one region may be covered by.
+pub(crate) const MAX_COVER: usize = 3;
+
+/// Objects that cover a region, ascending.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Cover {
+    objects: [u32; MAX_COVER],
+    len: u8,
+    /// Whether the region was understood at all.
+    pub(crate) known: bool,
+}
+
+impl Cover {
+    fn of(members: &[u32]) -> Self {
+        let mut cover = Self { known: true, ..Self::default() };
+        for &member in members.iter().take(MAX_COVER) {
+            cover.objects[usize::from(cover.len)] = member;
+            cover.len += 1;
+        }
+        let len = usize::from(cover.len);
+        cover.objects[..len].sort_unstable();
+        cover
+    }
+
+    pub(crate) fn members(&self) -> &[u32] {
+        &self.objects[..usize::from(self.len)]
+    }
+
+    /// The one object in `self` but not in `other`, if `self` is `other` plus one.
+    pub(crate) fn beyond(&self, other: &Self) -> Option<u32> {
+        if !self.known || !other.known || self.len != other.len + 1 {
+            return None;
+        }
+        let mut extra = self.members().iter().filter(|member| !other.members().contains(member));
+        let first = extra.next()?;
+        extra.next().is_none().then_some(*first)
+    }
+}
+
+/// Two objects that touch without mixing: one of them hides a part of the other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Border {
+    /// The lower index first.
+    pub(crate) objects: [u32; 2],
+    /// Soft pixels between the two.
+    pub(crate) pixels: u32,
+    /// Which of the two is in front, once known.
+    pub(crate) front: Option<u32>,
+}
+
+/// Soft pixels that speak for a way to read the picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Evidence {
+    /// Around regions that show the mean of two or three colors beside them.
+    pub(crate) mean: u32,
+    /// Between two objects that have no mean color between them.
+    pub(crate) direct: u32,
+    /// Around regions that lie inside another: both ways of reading explain those.
+    pub(crate) inside: u32,
+}
+
+/// The reading of all regions.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Reading<T> {
+    pub(crate) compositing: Compositing,
+    pub(crate) background: [T; 3],
+    /// Per region.
+    pub(crate) covers: Vec<Cover>,
+    /// Per object.
+    pub(crate) colors: Vec<[T; 3]>,
+    /// Per object; below 1 for translucent ones.
+    pub(crate) confidences: Vec<T>,
+    /// Ascending by objects.
+    pub(crate) borders: Vec<Border>,
+    /// Class of the background.
+    ground: u32,
+    contacts: Vec<([u32; 2], u32)>,
+    classes: Vec<u32>,
+    order: Vec<u32>,
+    overlaps: Vec<Option<([u32; MAX_COVER], u8)>>,
+    parents: Vec<u32>,
+}
+
+/// Colors closer than this in every channel are one color (two rounding errors of 8 bits).
+const SAME_COLOR: f64 = 0.008;
+/// An overlap touches the background at most with this share of its contacts (outlines cross in points).
+const BACKGROUND_CONTACT: f64 = 0.34;
+/// A hole touches the object around it with at least this share of its contacts.
+const HOLE_CONTACT: f64 = 0.6;
+
+fn distance<T: Real>(a: [T; 3], b: [T; 3]) -> T {
+    (a[0] - b[0]).abs().max((a[1] - b[1]).abs()).max((a[2] - b[2]).abs())
+}
+
+fn mean<T: Real>(colors: &[[T; 3]]) -> [T; 3] {
+    let share = T::one() / T::of_usize(colors.len().max(1));
+    core::array::from_fn(|c| colors.iter().map(|color| color[c]).sum::<T>() * share)
+}
+
+/// Whether all channels are in [0, 1], but for two rounding errors of 8 bits.
+fn is_color<T: Real>(color: [T; 3]) -> bool {
+    let slack = T::of(0.006);
+    color.iter().all(|&v| v >= -slack && v <= T::one() + slack)
+}
+
+fn within_unit<T: Real>(color: [T; 3]) -> [T; 3] {
+    color.map(|v| v.max(T::zero()).min(T::one()))
+}
+
+impl<T: Real> Reading<T> {
+    /// Takes in `regions`; false if there is none. [`Self::read_blend`] or [`Self::read_over`] must follow.
+    pub(crate) fn prepare(&mut self, regions: &[Region<T>], transitions: &[Transition<T>]) -> bool {
+        self.covers.clear();
+        self.colors.clear();
+        if regions.is_empty() {
+            return false;
+        }
+        self.count_contacts(transitions);
+        self.classify(regions);
+        self.choose_background(regions);
+        true
+    }
+
+    /// Forgets the objects of an earlier reading.
+    #[expect(clippy::cast_possible_truncation, reason = "an image has at most 2^28 regions")]
+    fn start(&mut self, compositing: Compositing, regions: usize) {
+        self.compositing = compositing;
+        self.covers.clear();
+        self.covers.resize(regions, Cover::default());
+        self.colors.clear();
+        self.confidences.clear();
+        self.borders.clear();
+        self.parents.clear();
+        self.parents.extend(0..regions as u32);
+    }
+
+    /// What the regions say of compositing; to be asked after [`Self::read_blend`].
+    pub(crate) fn evidence(&self, regions: &[Region<T>]) -> Evidence {
+        let mut evidence = Evidence::default();
+        let single = |i: usize| self.classes[i] != self.ground && self.overlaps[i].is_none();
+        for &([a, b], pixels) in &self.contacts {
+            let [a, b] = [a as usize, b as usize];
+            if self.overlaps[a].is_some() || self.overlaps[b].is_some() {
+                evidence.mean += pixels;
+            } else if self.hole(regions, a).is_some() || self.hole(regions, b).is_some() {
+                evidence.direct += pixels;
+            } else if single(a) && single(b) && self.classes[a] != self.classes[b] {
+                if self.lies_inside(regions, a).is_some() || self.lies_inside(regions, b).is_some() {
+                    evidence.inside += pixels;
+                } else if !self.mix_somewhere(a, b) {
+                    evidence.direct += pixels;
+                }
+            }
+        }
+        evidence
+    }
+
+    /// Whether some region shows the mean of the colors of regions `a` and `b`.
+    fn mix_somewhere(&self, a: usize, b: usize) -> bool {
+        let shows = |overlap: &([u32; MAX_COVER], u8), class: u32| {
+            overlap.0[..usize::from(overlap.1)].iter().any(|&member| self.classes[member as usize] == class)
+        };
+        let mut overlaps = self.overlaps.iter().flatten();
+        overlaps.any(|overlap| shows(overlap, self.classes[a]) && shows(overlap, self.classes[b]))
+    }
+
+    /// The region around region `i`, if `i` shows the background through a hole of it.
+    ///
+    /// Other objects may reach into the hole; a gap between objects is no hole of the largest of them.
+    fn hole(&self, regions: &[Region<T>], i: usize) -> Option<usize> {
+        if self.classes[i] != self.ground || regions[i].border > 0 {
+            return None;
+        }
+        let (outer, most) = self.contacts_of(i).max_by_key(|&(_, pixels)| pixels)?;
+        let total: u32 = self.contacts_of(i).map(|(_, pixels)| pixels).sum();
+        let [l, t, r, b] = regions[i].bounds;
+        let [left, top, right, bottom] = regions[outer].bounds;
+        let around = left < l && top < t && right > r && bottom > b;
+        (around && f64::from(most) >= HOLE_CONTACT * f64::from(total)).then_some(outer)
+    }
+
+    /// The one other region that region `i` touches, if it does not touch the border of the image either.
+    fn lies_inside(&self, regions: &[Region<T>], i: usize) -> Option<usize> {
+        let mut contacts = self.contacts_of(i);
+        let (outer, _) = contacts.next()?;
+        (contacts.next().is_none() && regions[i].border == 0).then_some(outer)
+    }
+
+    /// Contacts of region `i`: (other region, number of soft pixels between).
+    fn contacts_of(&self, i: usize) -> impl Iterator<Item = (usize, u32)> + '_ {
+        self.contacts.iter().filter_map(move |&([a, b], n)| {
+            if a as usize == i {
+                Some((b as usize, n))
+            } else if b as usize == i {
+                Some((a as usize, n))
+            } else {
+                None
+            }
+        })
+    }
+
+    fn count_contacts(&mut self, transitions: &[Transition<T>]) {
+        self.contacts.clear();
+        for transition in transitions {
+            // Neighbors in reading order mostly share their pair: the last few entries are looked at first.
+            match self.contacts.iter_mut().rev().find(|(pair, _)| *pair == transition.pair) {
+                Some((_, count)) => *count += 1,
+                None => self.contacts.push((transition.pair, 1)),
+            }
+        }
+    }
+
+    #[expect(clippy::cast_possible_truncation, reason = "an image has at most 2^28 regions")]
+    fn classify(&mut self, regions: &[Region<T>]) {
+        self.order.clear();
+        self.order.extend(0..regions.len() as u32);
+        self.order.sort_unstable_by_key(|&i| core::cmp::Reverse(regions[i as usize].pixels));
+        self.classes.clear();
+        self.classes.resize(regions.len(), 0);
+        // The class of a region is the largest region of that color.
+        for at in 0..self.order.len() {
+            let i = self.order[at] as usize;
+            let same = self.order[..at].iter().copied().find(|&j| {
+                self.classes[j as usize] == j
+                    && distance(regions[j as usize].color, regions[i].color) <= T::of(SAME_COLOR)
+            });
+            self.classes[i] = same.unwrap_or(i as u32);
+        }
+    }
+
+    fn choose_background(&mut self, regions: &[Region<T>]) {
+        let weight = |class: u32| -> usize {
+            let members = regions.iter().zip(&self.classes).filter(|(_, c)| **c == class);
+            members.map(|(region, _)| if region.border > 0 { region.pixels + 4 * region.border } else { 0 }).sum()
+        };
+        let mut best = (0, self.order[0]);
+        for &i in &self.order {
+            if self.classes[i as usize] == i {
+                let score = weight(i);
+                if score > best.0 {
+                    best = (score, i);
+                }
+            }
+        }
+        self.ground = best.1;
+        self.background = regions[best.1 as usize].color;
+    }
+
+    /// Single regions of one color that touch overlap `i` and show one of its `members` are one object.
+    fn join_singles(&mut self, i: usize, members: &[u32]) {
+        for &member in members {
+            for at in 0..self.contacts.len() {
+                let ([a, b], _) = self.contacts[at];
+                let other = if a as usize == i {
+                    b
+                } else if b as usize == i {
+                    a
+                } else {
+                    continue;
+                };
+                let single = self.overlaps[other as usize].is_none();
+                if single && self.classes[other as usize] == self.classes[member as usize] {
+                    let (low, high) = (self.top(other), self.top(member));
+                    self.parents[low.max(high) as usize] = low.min(high);
+                }
+            }
+        }
+    }
+
+    fn top(&self, mut i: u32) -> u32 {
+        while self.parents[i as usize] != i {
+            i = self.parents[i as usize];
+        }
+        i
+    }
+}
