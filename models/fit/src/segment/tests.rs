@@ -1,6 +1,6 @@
 use alloc::vec::Vec;
 
-use dvp_core::render::EdgeProfile;
+use dvp_core::render::{Compositing, EdgeProfile};
 use dvp_core::{Image, ImageSize};
 
 use super::edge_kind::{CoverageCounts, EdgeKind};
@@ -114,6 +114,7 @@ fn blended(side: usize, rectangles: &[Rectangle]) -> Image<f64> {
 fn read(image: &Image<f64>) -> Segmentation<f64> {
     let mut segmentation = Segmentation::default();
     assert!(segmentation.read(&image.view(), &SegmentOptions::default()));
+    segmentation.interpret(Compositing::Blend);
     segmentation
 }
 
