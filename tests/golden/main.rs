@@ -4,6 +4,7 @@ extern crate alloc;
 
 mod efd;
 mod fit;
+mod hard_geometry;
 mod loss;
 mod matching;
 mod metric;

@@ -5,6 +5,7 @@ pub mod draw_svg;
 pub mod finite_difference;
 pub mod fixture;
 pub mod golden;
+pub mod hard_geometry;
 pub mod strategy;
 
 /// The README's example, compiled and run.

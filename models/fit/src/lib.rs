@@ -35,6 +35,7 @@ mod pose;
 mod price;
 mod residual;
 mod segment;
+mod split;
 #[cfg(test)]
 mod tests;
 

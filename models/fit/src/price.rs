@@ -10,14 +10,20 @@ const POSE_BITS: f64 = 4.0 * 12.0;
 /// Bits of one coefficient of a free shape: its precision is about a 200th of the object.
 pub(crate) const COEFFICIENT_BITS: f64 = 8.0;
 
+/// Bits of an object whose shape is one of `bank` prototypes.
+pub(crate) fn known_object_bits(bank: usize) -> f64 {
+    COLOR_BITS + POSE_BITS + choice_bits(bank)
+}
+
+/// Bits of a choice among `bank` shapes.
+fn choice_bits(bank: usize) -> f64 {
+    Float::log2(f64::of_usize(bank.max(1)))
+}
+
 /// Bits of background and objects; a prototype costs the choice among `bank` shapes, a free shape its coefficients.
 pub(crate) fn scene_bits<T: Real>(scene: &Scene<T>, bank: usize) -> f64 {
     let shape = |harmonics: usize, known: bool| {
-        if known {
-            Float::log2(T::of_usize(bank.max(1)).as_f64())
-        } else {
-            4.0 * COEFFICIENT_BITS * T::of_usize(harmonics).as_f64()
-        }
+        if known { choice_bits(bank) } else { 4.0 * COEFFICIENT_BITS * T::of_usize(harmonics).as_f64() }
     };
     let objects = scene.objects.iter();
     let parts = objects.map(|o| COLOR_BITS + POSE_BITS + shape(o.efd.harmonic_count(), o.prototype.is_some()));

@@ -25,11 +25,11 @@ const JOINT_WIDTH: f64 = 0.05;
 
 /// Where a posed object came from.
 #[derive(Clone, Copy, Debug)]
-struct Source {
-    segment: usize,
-    twin: Option<(usize, f64)>,
+pub(super) struct Source {
+    pub(super) segment: usize,
+    pub(super) twin: Option<(usize, f64)>,
     /// Whether the outline lies where the samples have it.
-    sure: bool,
+    pub(super) sure: bool,
 }
 
 impl<T: Real> Run<'_, T> {
@@ -54,6 +54,7 @@ impl<T: Real> Run<'_, T> {
                 loss = self.search_again(&mut posed, at, source, loss)?;
             }
         }
+        loss = self.split_known(&mut posed, &mut sources, loss)?;
         let mut stop = StopReason::Converged;
         let everywhere = T::of_usize(self.image.size().width().max(self.image.size().height()));
         let missed = self.missed_pixels([T::zero(); 2], everywhere);
@@ -95,7 +96,7 @@ impl<T: Real> Run<'_, T> {
     }
 
     /// Renders and keeps the residual; returns the mean absolute error.
-    fn compare(&mut self, posed: &JointScene<T>) -> Result<T, FitError> {
+    pub(super) fn compare(&mut self, posed: &JointScene<T>) -> Result<T, FitError> {
         let unit = self.unit_px();
         let scratch = &mut *self.scratch;
         scratch.drawing.clear();
@@ -111,7 +112,7 @@ impl<T: Real> Run<'_, T> {
     }
 
     /// Whether the last rendering visibly misses the image around an object.
-    fn misses_object(&self, posed: &JointScene<T>, at: usize) -> bool {
+    pub(super) fn misses_object(&self, posed: &JointScene<T>, at: usize) -> bool {
         let object = &posed.objects[at];
         let radius = self.fitter.prototypes[object.shape].field.radius;
         let reach = object.pose.log_scale.exp() * radius + T::of(2.0);

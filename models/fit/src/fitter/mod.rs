@@ -6,6 +6,7 @@
 mod known;
 mod order;
 mod run;
+mod twins;
 mod unknown;
 
 use alloc::vec::Vec;

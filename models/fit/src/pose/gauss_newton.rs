@@ -57,18 +57,30 @@ impl<T: Real> PosePx<T> {
         samples: &[EdgeSample<T>],
         robustness: Robustness<T>,
     ) -> Normal<T> {
+        let inverse = T::one() / (robustness.width_px * robustness.width_px);
+        self.normal_by(field, samples, robustness, |_| inverse)
+    }
+
+    /// As [`Self::normal`], with the inverse squared width of each residual from `inverse_squared_width`.
+    #[inline(always)]
+    pub(crate) fn normal_by(
+        &self,
+        field: &OutlineField<T>,
+        samples: &[EdgeSample<T>],
+        robustness: Robustness<T>,
+        inverse_squared_width: impl Fn(T) -> T,
+    ) -> Normal<T> {
         let frame = Frame::new(self);
         let zero = T::zero();
         let mut normal = Normal { hessian: [[zero; 4]; 4], gradient: [zero; 4], cost: T::infinity() };
         let (mut cost, mut total) = (zero, zero);
-        let inverse = T::one() / (robustness.width_px * robustness.width_px);
         for sample in samples.iter().step_by(robustness.stride.max(1)) {
             let u = frame.to_unit(sample.point);
             let (distance, n) = field.distance(u);
             let residual = frame.scale * distance - sample.distance;
             let squared = residual * residual;
             let base = if robustness.weighted { sample.weight * sample.weight } else { T::one() };
-            let falloff = T::one() / (T::one() + squared * inverse);
+            let falloff = T::one() / (T::one() + squared * inverse_squared_width(residual));
             cost += base * squared * falloff;
             total += base;
             let weight = base * falloff * falloff;
@@ -105,8 +117,14 @@ impl<T: Real> PosePx<T> {
         robustness: Robustness<T>,
         max_steps: usize,
     ) -> (Self, T, usize) {
+        self.descend(max_steps, |pose| pose.normal(field, samples, robustness))
+    }
+
+    /// Damped Gauss-Newton steps on any normal equations of a pose; returns as [`Self::refine`].
+    #[inline(always)]
+    pub(crate) fn descend(self, max_steps: usize, normal_at: impl Fn(&Self) -> Normal<T>) -> (Self, T, usize) {
         let mut pose = self;
-        let mut normal = pose.normal(field, samples, robustness);
+        let mut normal = normal_at(&pose);
         let mut damping = T::of(1e-3);
         for step in 0..max_steps {
             let Some(delta) = solve4(&normal.hessian, &normal.gradient, damping) else {
@@ -114,7 +132,7 @@ impl<T: Real> PosePx<T> {
                 continue;
             };
             let tried = pose.moved(delta);
-            let next = tried.normal(field, samples, robustness);
+            let next = normal_at(&tried);
             if next.cost <= normal.cost {
                 let gain = normal.cost - next.cost;
                 pose = tried;

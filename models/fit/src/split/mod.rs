@@ -1,0 +1,55 @@
+//! One segment that is really several objects of one color: their outlines, each as far as it shows.
+//!
+//! In: the samples of a segment that no single prototype explains. Out: sets of posed prototypes whose union has its
+//! outline at the sampled distances. Inside a union the distance to each part is at least the one sampled: an object may lie
+//! behind the outline, where another one explains the sample, but must not stand out. `partial` finds poses
+//! that explain a part of the samples, `cover` sets of them that explain all, `assign` refines a set with each
+//! sample given to the outline nearest to it.
+
+mod assign;
+mod cover;
+mod partial;
+#[cfg(test)]
+mod tests;
+
+use alloc::vec::Vec;
+
+use dvp_core::Real;
+
+use crate::pose::gauss_newton::PosePx;
+use crate::pose::search::Prototype;
+use crate::segment::Segment;
+
+/// Sets of poses that are handed back.
+const MOST_SETS: usize = 3;
+/// Distance error (px) up to which an outline explains a sample.
+pub(crate) const EXPLAINED_PX: f64 = 0.3;
+
+/// A prototype at a pose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Part<T> {
+    pub(crate) prototype: usize,
+    pub(crate) pose: PosePx<T>,
+}
+
+/// Objects that together explain a segment.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct PartSet<T> {
+    pub(crate) parts: Vec<Part<T>>,
+    /// Robust mean squared distance error (px^2).
+    pub(crate) cost: T,
+}
+
+/// Sets of two or three posed prototypes whose union could be `segment`, best first.
+///
+/// None where no set explains clearly more samples than one prototype does.
+pub(crate) fn split<T: Real>(segment: &Segment<T>, prototypes: &[Prototype<T>]) -> Vec<PartSet<T>> {
+    let candidates = partial::search(segment, prototypes);
+    let mut sets: Vec<PartSet<T>> = cover::sets(&candidates, segment.samples.len())
+        .into_iter()
+        .map(|parts| assign::refine(parts, &segment.samples, prototypes))
+        .collect();
+    sets.sort_by(|a, b| a.cost.partial_cmp(&b.cost).unwrap_or(core::cmp::Ordering::Equal));
+    sets.truncate(MOST_SETS);
+    sets
+}
