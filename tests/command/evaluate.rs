@@ -4,6 +4,11 @@ use std::fs;
 use std::path::Path;
 
 use dvp::format::{DataSet, read_picture};
+use dvp::paint::Painter;
+use dvp_core::render::hard::{HardMask, object_index};
+use dvp_core::render::{Compositing, TileRenderer};
+use dvp_core::{ImageSize, Scene};
+use image::{ImageBuffer, Luma, Rgb, RgbImage, RgbaImage};
 use serde_json::Value;
 
 use crate::runner::{Run, dvp, dvp_done, names, text};
@@ -115,4 +120,61 @@ fn float_pixels_come_from_a_numpy_file() {
     let from_png = figures(&dvp(["evaluate", &predictions, &data, "--json"]));
     assert_eq!((&from_npy["n"], &from_npy["mae"]), (&2.into(), &from_png["mae"]));
     assert!(names(folder.path()).contains(&"float.npy".to_owned()));
+}
+
+/// The topmost object of each pixel, from 1, of a scene of hard-edged objects.
+fn label_map(scene: &Scene<f32>, side: usize) -> Vec<u32> {
+    let drawing = Painter::default().draw(scene).unwrap();
+    let size = ImageSize::new(side, side).unwrap();
+    let mut coverage = vec![0.0; drawing.object_count() * size.pixels()];
+    let renderer = TileRenderer { coverage: HardMask, compositing: Compositing::Over };
+    renderer.object_coverage(&drawing, size, &mut Default::default(), &mut coverage).unwrap();
+    let mut index = vec![0; size.pixels()];
+    object_index(&coverage, &drawing.confidences, &mut index).unwrap();
+    index
+}
+
+#[test]
+fn label_maps_stand_in_for_scenes() {
+    let folder = tempfile::tempdir().unwrap();
+    let (data, predictions) = truth_as_prediction(folder.path(), "multi-dsprites");
+    let set = DataSet::<f32>::open(Path::new(&data)).unwrap();
+    for (k, sample) in set.samples.iter().enumerate() {
+        let (json, place) = sample.scene.as_ref().unwrap();
+        let labels = label_map(&json.to_scene(Some(&set.bank), place).unwrap(), 64);
+        let path = Path::new(&data).join(format!("{}.labels.png", sample.stem));
+        let at = |x: u32, y: u32| labels[usize::try_from(y * 64 + x).unwrap()];
+        // By turns gray of 16 and of 8 bits with labels of all sizes, and colors.
+        match k % 3 {
+            0 => ImageBuffer::from_fn(64, 64, |x, y| Luma([u16::try_from(at(x, y) * 9001).unwrap()])).save(path),
+            1 => ImageBuffer::from_fn(64, 64, |x, y| Luma([u8::try_from(at(x, y) * 40).unwrap()])).save(path),
+            _ => RgbImage::from_fn(64, 64, |x, y| {
+                Rgb([0, 1, u8::try_from(at(x, y)).unwrap()].map(|v| v * u8::from(at(x, y) > 0)))
+            })
+            .save(path),
+        }
+        .unwrap();
+    }
+    fs::remove_file(Path::new(&data).join("scenes.jsonl")).unwrap();
+    let run = dvp(["evaluate", &predictions, &data, "--json"]);
+    let figures = figures(&run);
+    assert_eq!((run.code, &figures["n"]), (0, &6.into()), "{}", run.err);
+    assert_eq!((&figures["iou"], &figures["ari"], &figures["exact_count"]), (&1.0.into(), &1.0.into(), &1.0.into()));
+    // Label maps are no pictures.
+    let out = folder.path().join("out");
+    dvp_done(["fit", &data, "--out", text(&out), "--no-svg", "--no-png"]);
+    assert_eq!(names(&out).len(), 6);
+}
+
+#[test]
+fn bad_label_maps_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let (data, predictions) = truth_as_prediction(folder.path(), "multi-dsprites");
+    RgbaImage::new(64, 64).save(Path::new(&data).join("00001.labels.png")).unwrap();
+    RgbImage::new(64, 32).save(Path::new(&data).join("00003.labels.png")).unwrap();
+    let run = dvp(["evaluate", &predictions, &data, "--json"]);
+    assert_eq!((run.code, &figures(&run)["n"]), (1, &4.into()));
+    for part in ["Rgba8 are no labels", "64 x 32 labels for 64 x 64 pixels"] {
+        assert!(run.err.contains(part), "'{}' lacks '{part}'", run.err);
+    }
 }

@@ -8,5 +8,6 @@ mod generate;
 mod interrupted;
 mod picture_kinds;
 mod pictures;
+mod raw_png;
 mod runner;
 mod svg;

@@ -32,8 +32,8 @@ struct SmallImages {
 
 #[derive(Deserialize)]
 struct SmallLabelings {
-    a: Vec<u8>,
-    b: Vec<u8>,
+    a: Vec<u32>,
+    b: Vec<u32>,
     ari: f64,
 }
 
@@ -124,7 +124,7 @@ fn indices_and_scores_of_the_reference() {
         assert_eq!(owned.len(), indices.len());
         for (owned, index) in owned.iter().zip(&indices) {
             // The reference numbers objects in an order of its own; the background is 0 in both.
-            let index: Vec<u8> = index.iter().map(|&label| u8::try_from(label).unwrap()).collect();
+            let index: Vec<u32> = index.iter().map(|&label| u32::try_from(label).unwrap()).collect();
             assert!(owned.index().iter().zip(&index).all(|(&ours, &theirs)| (ours == 0) == (theirs == 0)));
             let ari = adjusted_rand_index(owned.index(), &index, &mut RandIndexScratch::default()).unwrap();
             assert!((ari - 1.0).abs() < 1e-12);

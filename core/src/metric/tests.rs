@@ -1,6 +1,11 @@
-use super::{MaskOverlap, MetricError, Ownership, RandIndexScratch, Tally, adjusted_rand_index};
+use alloc::vec::Vec;
 
-fn ari(a: &[u8], b: &[u8]) -> f64 {
+use super::{MaskOverlap, MetricError, Ownership, OwnershipRule, RandIndexScratch, Tally, adjusted_rand_index};
+use crate::render::hard::{HardMask, HardScratch};
+use crate::render::{Compositing, TileRenderer};
+use crate::{Drawing, ImageSize};
+
+fn ari(a: &[u32], b: &[u32]) -> f64 {
     adjusted_rand_index(a, b, &mut RandIndexScratch::default()).unwrap()
 }
 
@@ -25,6 +30,54 @@ fn three_owners_are_still_shared() {
     let mut owned = Ownership::default();
     owned.fill(1, &[1.0; 3], &[1.0; 3]).unwrap();
     assert_eq!(owned.index(), [0]);
+}
+
+/// Two unit squares of pixels side by side, a faint one over both, and one below all that the second hides.
+fn squares(compositing: Compositing, rule: OwnershipRule) -> Ownership {
+    let square = |left: f32| [[left, 0.0], [left + 1.0, 0.0], [left + 1.0, 1.0], [left, 1.0]];
+    let mut drawing = Drawing::default();
+    for (left, confidence) in [(1.0, 1.0), (0.0, 1.0), (1.0, 0.4), (2.0, 0.005)] {
+        drawing.push(&square(left), [1.0; 3], confidence);
+    }
+    let renderer = TileRenderer { coverage: HardMask, compositing };
+    let mut owned = Ownership::default();
+    let size = ImageSize::new(4, 1).unwrap();
+    owned.fill_drawing(rule, &renderer, &drawing, size, &mut HardScratch::default()).unwrap();
+    owned
+}
+
+#[test]
+fn the_topmost_object_owns_what_is_seen() {
+    // The third object hides the first; the fourth is too faint to be seen.
+    let owned = squares(Compositing::Over, OwnershipRule::Seen(Compositing::Over));
+    assert_eq!((owned.index(), owned.objects()), (&[2, 3, 0, 0][..], 2));
+    // Mixed, both are there, and their pixel is nobody's.
+    let owned = squares(Compositing::Blend, OwnershipRule::Seen(Compositing::Blend));
+    assert_eq!((owned.index(), owned.objects()), (&[2, 0, 0, 0][..], 3));
+    assert!(owned.union().eq([true, true, false, false]));
+    // By the reference's rule the confidence decides.
+    let owned = squares(Compositing::Over, OwnershipRule::Reached);
+    assert_eq!((owned.index(), owned.objects()), (&[2, 1, 0, 0][..], 2));
+}
+
+#[test]
+fn label_maps_own_what_they_name() {
+    let mut owned = Ownership::default();
+    owned.fill_labels(&[0, 70_000, 3, 3, 0, 70_000]);
+    assert_eq!((owned.index(), owned.objects()), (&[0, 70_000, 3, 3, 0, 70_000][..], 2));
+    assert!(owned.union().eq([false, true, true, true, false, true]));
+}
+
+#[test]
+fn rand_index_of_more_pairs_than_are_kept_at_first() {
+    // 9 000 pixels alternate between 6 000 pairs of labels: the list is merged on the way.
+    let a: Vec<u32> = (0..9000).map(|i| i % 6000).collect();
+    assert!((ari(&a, &a) - 1.0).abs() < 1e-12);
+    // Joining labels by twos: 3 000 pairs of pixels together in a; in b 1 500 groups of 4 and 1 500 of 2.
+    let b: Vec<u32> = a.iter().map(|label| label / 2).collect();
+    let (in_a, in_b, all) = (3000.0, 1500.0 * 6.0 + 1500.0, 9000.0 * 8999.0 / 2.0);
+    let expected = in_a * in_b / all;
+    assert!((ari(&a, &b) - (in_a - expected) / (f64::midpoint(in_a, in_b) - expected)).abs() < 1e-12);
 }
 
 #[test]

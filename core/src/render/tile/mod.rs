@@ -15,12 +15,14 @@
 //! | `model.rs` | the trait of coverage models |
 //! | `check.rs` | the checks at the border |
 //! | `renderer.rs` | [`TileRenderer`]: checks, tiles, compositing, and back |
+//! | `visit.rs` | the coverage of each object by itself |
 
 mod check;
 mod model;
 mod renderer;
 #[cfg(test)]
 mod tests;
+mod visit;
 
 use alloc::vec::Vec;
 

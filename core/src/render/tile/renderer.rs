@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 
 use super::check::{check_drawing, check_finite, check_grad, check_image};
-use super::{ChunkState, CoverageModel, FARTHEST_PX, LANES, Tile, Window};
+use super::{CoverageModel, FARTHEST_PX, Tile, Window};
 use crate::dims::ImageSize;
 use crate::image::ImageView;
 use crate::real::Real;
@@ -27,10 +27,10 @@ pub struct TileRenderer<C> {
 /// Memory of a [`TileRenderer`], kept between calls.
 #[derive(Debug)]
 pub struct TileScratch<T, R> {
-    outline_px: Vec<[T; 2]>,
+    pub(super) outline_px: Vec<[T; 2]>,
     grad_px: Vec<[T; 2]>,
-    tiles: Vec<Tile<T>>,
-    records: Vec<R>,
+    pub(super) tiles: Vec<Tile<T>>,
+    pub(super) records: Vec<R>,
     composite: CompositeScratch<T>,
 }
 
@@ -47,43 +47,6 @@ impl<T: Real, R> Default for TileScratch<T, R> {
 }
 
 impl<C> TileRenderer<C> {
-    /// Writes the coverage of every object, objects x height x width, with no regard to confidence. It is above 0
-    /// exactly on the pixels that the object's fattened outline reaches: the reference's mask.
-    ///
-    /// # Errors
-    /// As [`Renderer::render`].
-    pub fn object_coverage<T: Real>(
-        &self,
-        drawing: &Drawing<T>,
-        size: ImageSize,
-        scratch: &mut TileScratch<T, C::Record>,
-        coverage: &mut [T],
-    ) -> Result<(), RenderError>
-    where
-        C: CoverageModel<T>,
-    {
-        let expected = drawing.object_count() * size.pixels();
-        if coverage.len() != expected {
-            return Err(RenderError::Length { what: "coverage", expected, len: coverage.len() });
-        }
-        self.cover_all(drawing, size, scratch, false)?;
-        coverage.fill(T::zero());
-        for (tile, plane) in scratch.tiles.iter().zip(coverage.chunks_exact_mut(size.pixels())) {
-            let window = tile.window();
-            for i in 0..window.rows * window.chunks {
-                let left = (window.left_chunk + i % window.chunks) * LANES;
-                let start = (window.top + i / window.chunks) * size.width() + left;
-                let pixels = &mut plane[start..start + LANES.min(size.width() - left)];
-                match tile.states[i] {
-                    ChunkState::Empty => {}
-                    ChunkState::Mixed => pixels.copy_from_slice(&tile.coverage[i][..pixels.len()]),
-                    ChunkState::Full => pixels.fill(T::one()),
-                }
-            }
-        }
-        Ok(())
-    }
-
     /// Checks everything, then covers a tile per object; objects outside the view get an empty window. `backward`: whether
     /// [`Self::pull_back`] is to follow.
     fn cover_all<T: Real>(
@@ -218,7 +181,7 @@ impl<T: Real, C: CoverageModel<T>> Renderer<T> for TileRenderer<C> {
 }
 
 /// Scene units to pixels. The bound keeps far vertices from overflowing: their edges still run in their direction.
-fn to_px<T: Real>(v: [T; 2], size: ImageSize) -> [T; 2] {
+pub(super) fn to_px<T: Real>(v: [T; 2], size: ImageSize) -> [T; 2] {
     let unit = T::of_usize(size.unit_px());
     let far = T::of(FARTHEST_PX);
     v.map(|x| (x * unit - T::of(0.5)).max(-far).min(far))

@@ -1,4 +1,4 @@
-//! Data sets: a folder of images, with the scenes they were drawn from where known.
+//! Data sets: a folder of images, with the scenes they were drawn from or label maps where known.
 
 use std::fs::{self, File};
 use std::io::{BufRead, BufReader, Read};
@@ -9,6 +9,7 @@ use dvp_fit::Bank;
 
 use super::bank::{mdshr_bank, read_bank};
 use super::error::{FormatError, Place};
+use super::labels::{is_label_map, labels_beside};
 use super::scene_json::{MAX_TEXT, SceneJson};
 
 /// The file of a data set that holds its scenes, one per line.
@@ -30,6 +31,8 @@ pub struct Sample {
     pub image: PathBuf,
     /// The scene it was drawn from, and where that stands.
     pub scene: Option<(SceneJson, Place)>,
+    /// Its label map, `{stem}.labels.png`, if there is one.
+    pub labels: Option<PathBuf>,
 }
 
 /// A folder of images.
@@ -67,7 +70,7 @@ pub fn bank_near<T: Real>(folder: &Path) -> Result<Bank<T>, FormatError> {
     places.find(|path| path.is_file()).map_or_else(|| Ok(mdshr_bank()), |path| read_bank(&path))
 }
 
-/// The pictures of a folder, by name; not of its sub-folders.
+/// The pictures of a folder, by name; neither label maps nor what lies in sub-folders.
 ///
 /// # Errors
 /// [`FormatError::Read`] if the folder cannot be listed.
@@ -77,7 +80,10 @@ pub fn pictures_of(folder: &Path) -> Result<Vec<PathBuf>, FormatError> {
     for entry in fs::read_dir(folder).map_err(refused)? {
         let path = entry.map_err(refused)?.path();
         let ending = path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
-        if ending.is_some_and(|ending| PICTURE_ENDINGS.contains(&ending.as_str())) && !path.is_dir() {
+        if ending.is_some_and(|ending| PICTURE_ENDINGS.contains(&ending.as_str()))
+            && !is_label_map(&path)
+            && !path.is_dir()
+        {
             pictures.push(path);
         }
     }
@@ -88,6 +94,7 @@ pub fn pictures_of(folder: &Path) -> Result<Vec<PathBuf>, FormatError> {
 fn samples_of_images(folder: &Path) -> Result<Vec<Sample>, FormatError> {
     let samples = pictures_of(folder)?.into_iter().map(|image| Sample {
         stem: image.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned()),
+        labels: labels_beside(&image),
         image,
         scene: None,
     });
@@ -99,7 +106,8 @@ fn samples_of_scenes(folder: &Path, scenes: &Path) -> Result<Vec<Sample>, Format
     for (scene, place) in read_scene_lines(scenes)? {
         let id = scene.id.unwrap_or(samples.len() as u64);
         let stem = format!("{id:05}");
-        samples.push(Sample { image: folder.join(format!("{stem}.png")), stem, scene: Some((scene, place)) });
+        let image = folder.join(format!("{stem}.png"));
+        samples.push(Sample { labels: labels_beside(&image), image, stem, scene: Some((scene, place)) });
     }
     Ok(samples)
 }

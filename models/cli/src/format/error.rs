@@ -118,6 +118,14 @@ pub enum FormatError {
         /// Which value.
         source: dvp_core::image::ImageError,
     },
+    /// A label map whose pixels are no labels.
+    #[error("{path}: pixels of kind {found:?} are no labels; write gray of 8 or 16 bits, or a palette", path = path.display())]
+    Labels {
+        /// The file.
+        path: PathBuf,
+        /// How its pixels are stored.
+        found: image::ColorType,
+    },
     /// The image could not be encoded.
     #[error("the image cannot be encoded as PNG: {source}")]
     Encode {

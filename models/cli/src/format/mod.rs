@@ -7,6 +7,7 @@
 //! | `scene_checks.rs` | [`SceneJson`] | a [`Scene`](dvp_core::Scene) with every number checked, and the way back |
 //! | `bank.rs` | bank JSON, or the name `mdshr` | a [`Bank`](dvp_fit::Bank) |
 //! | `data_set.rs` | a folder | its images and, where known, their scenes |
+//! | `labels.rs` | STEM.labels.png | which object each pixel belongs to |
 //! | `npy.rs` | NumPy arrays of float pixels | images |
 //! | `picture.rs` | PNG, JPEG, BMP, GIF, WebP, PNM, TIFF | an [`Image`](dvp_core::Image); and PNG the other way |
 //! | `atomic.rs` | bytes | a file that is there whole or not at all |
@@ -17,6 +18,7 @@ mod atomic;
 mod bank;
 mod data_set;
 mod error;
+mod labels;
 mod npy;
 mod picture;
 mod scene_checks;
@@ -26,6 +28,7 @@ pub use atomic::write_atomic;
 pub use bank::{bank_to_json, mdshr_bank, read_bank};
 pub use data_set::{DataSet, SCENES_FILE, Sample, bank_near, pictures_of, read_scene_lines};
 pub use error::{FormatError, Place};
+pub use labels::{labels_beside, read_labels};
 pub use npy::read_npy;
 pub use picture::{DEFAULT_MAX_PIXELS, encode_png, read_picture};
 pub use scene_checks::edge_cut;

@@ -24,6 +24,13 @@ const DECODER_BYTES: u64 = 32;
 /// [`FormatError::Read`], [`FormatError::Decode`], [`FormatError::Pixels`], or [`FormatError::Values`] for
 /// floating-point files with NaN.
 pub fn read_picture<T: Real>(path: &Path, max_pixels: usize) -> Result<Image<T>, FormatError> {
+    let (size, picture) = decode(path, max_pixels)?;
+    let pixels = interleaved(&picture);
+    Image::from_interleaved(size, &pixels).map_err(|source| FormatError::Values { path: path.to_path_buf(), source })
+}
+
+/// The pixels as stored, at least one; turned as the orientation tag says.
+pub(super) fn decode(path: &Path, max_pixels: usize) -> Result<(ImageSize, DynamicImage), FormatError> {
     let unreadable = |source| FormatError::Read { path: path.to_path_buf(), source };
     let undecodable = |source| FormatError::Decode { path: path.to_path_buf(), source };
     let mut reader = ImageReader::open(path).map_err(unreadable)?.with_guessed_format().map_err(unreadable)?;
@@ -39,11 +46,10 @@ pub fn read_picture<T: Real>(path: &Path, max_pixels: usize) -> Result<Image<T>,
     let orientation = decoder.orientation().map_err(undecodable)?;
     let mut picture = DynamicImage::from_decoder(decoder).map_err(undecodable)?;
     picture.apply_orientation(orientation);
-    let Ok(size) = ImageSize::new(picture.width() as usize, picture.height() as usize) else {
-        return Err(too_many);
-    };
-    let pixels = interleaved(&picture);
-    Image::from_interleaved(size, &pixels).map_err(|source| FormatError::Values { path: path.to_path_buf(), source })
+    match ImageSize::new(picture.width() as usize, picture.height() as usize) {
+        Ok(size) => Ok((size, picture)),
+        Err(_) => Err(too_many),
+    }
 }
 
 /// r, g, b, r, g, b, ...; transparency over white.

@@ -3,33 +3,37 @@
 mod report;
 mod score;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
-use dvp_core::{Image, Scene};
+use dvp_core::{Image, ImageSize, Scene};
 use rayon::prelude::*;
 
 use self::report::{Row, Totals};
-use self::score::{Score, Scratch, score_images, score_masks};
+use self::score::{Score, Scratch, Truth, score_images, score_masks};
 use super::options::{PaintArguments, with_threads};
 use super::{Console, Outcome, progress};
 use crate::format::{
-    DEFAULT_MAX_PIXELS, DataSet, Place, Sample, SceneJson, read_npy, read_picture, read_scene, write_atomic,
+    DEFAULT_MAX_PIXELS, DataSet, Place, Sample, SceneJson, read_labels, read_npy, read_picture, read_scene,
+    write_atomic,
 };
 use crate::paint::Painter;
 
 /// Scores a folder of predictions (STEM.json, as `dvp fit` writes them) against a data set.
 ///
 /// MAE, MSE and SSIM compare images; IoU (pooled over all images), ARI and the share of exact object counts need the
-/// true scenes (scenes.jsonl). Missing and bad predictions are listed and counted; they are in no mean.
+/// true scenes (scenes.jsonl) or, beside a picture STEM.png, a label map STEM.labels.png: gray of 8 or 16 bits, 0 for the
+/// background and k where object k is seen, or a palette with black for the background. Against true scenes that blend,
+/// objects own what they reach, as in the paper; else the topmost object that covers half a pixel owns it, and objects
+/// count that own one. Missing and bad predictions are listed and counted; they are in no mean.
 #[derive(Debug, Args)]
 #[command(before_help = "Example: dvp evaluate out data\n         \
                          dvp evaluate out data --against float --json")]
 pub(super) struct Arguments {
     /// Folder of predictions
     predictions: PathBuf,
-    /// Folder of a data set: scenes.jsonl and pictures, or pictures alone
+    /// Folder of a data set: scenes.jsonl and pictures, pictures with label maps, or pictures alone
     data: PathBuf,
     /// What reconstructions are compared with
     #[arg(long, value_enum, default_value_t)]
@@ -125,10 +129,21 @@ impl Judge<'_> {
         }
         let painted = self.painter.paint(&found, image.size())?;
         let mut score = score_images(painted.view(), image.view(), scratch)?;
-        if let Some(truth) = &truth {
-            score.masks = Some(score_masks(&self.painter, truth, &found, image.size(), scratch)?);
+        let labels = sample.labels.as_ref().map(|path| self.labels(path, image.size())).transpose()?;
+        let known = labels.as_deref().map(Truth::Labels).or_else(|| truth.as_ref().map(Truth::Scene));
+        if let Some(known) = known {
+            score.masks = Some(score_masks(&self.painter, &known, &found, image.size(), scratch)?);
         }
         Ok(score)
+    }
+
+    fn labels(&self, path: &Path, size: ImageSize) -> Result<Vec<u32>> {
+        let (own, labels) = read_labels(path, self.arguments.max_pixels)?;
+        if own != size {
+            let [own, other] = [own, size].map(|size| format!("{} x {}", size.width(), size.height()));
+            bail!("{}: {own} labels for {other} pixels", path.display());
+        }
+        Ok(labels)
     }
 
     fn prediction(&self, sample: &Sample) -> Result<(SceneJson, Scene<f32>)> {

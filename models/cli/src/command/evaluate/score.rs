@@ -2,9 +2,8 @@
 
 use anyhow::Result;
 use dvp_core::loss::{ImagePair, Loss, Ssim, SsimScratch};
-use dvp_core::metric::{MaskOverlap, Ownership, RandIndexScratch, adjusted_rand_index, visible_object_count};
-use dvp_core::render::tile::TileScratch;
-use dvp_core::render::{ContourRenderer, PixelLoss};
+use dvp_core::metric::{MaskOverlap, Ownership, OwnershipRule, RandIndexScratch, adjusted_rand_index};
+use dvp_core::render::{Compositing, ContourRenderer, PixelLoss, Renderer};
 use dvp_core::{ImageSize, ImageView, Scene};
 
 use crate::paint::Painter;
@@ -15,7 +14,7 @@ pub(super) struct Score {
     pub(super) mae: f64,
     pub(super) mse: f64,
     pub(super) ssim: f64,
-    /// Where the true scene is known.
+    /// Where the true scene or a label map is known.
     pub(super) masks: Option<MaskScore>,
 }
 
@@ -34,7 +33,7 @@ pub(super) struct MaskScore {
 pub(super) struct Scratch {
     ssim: SsimScratch<f32>,
     rand_index: RandIndexScratch,
-    coverage: Vec<f32>,
+    render: <ContourRenderer<f32> as Renderer<f32>>::Scratch,
     found: Ownership,
     truth: Ownership,
 }
@@ -54,39 +53,51 @@ pub(super) fn score_images(
     })
 }
 
-/// Compares the pixels that objects own.
+/// What predicted owners are compared with.
+pub(super) enum Truth<'a> {
+    /// The scene that was painted.
+    Scene(&'a Scene<f32>),
+    /// One label per pixel.
+    Labels(&'a [u32]),
+}
+
+/// Compares the pixels that objects own. The truth decides the rule: the reference's for scenes that `blend`, else what
+/// is seen, of the prediction by its own compositing.
 pub(super) fn score_masks(
     painter: &Painter,
-    truth: &Scene<f32>,
+    truth: &Truth<'_>,
     found: &Scene<f32>,
     size: ImageSize,
     scratch: &mut Scratch,
 ) -> Result<MaskScore> {
-    own(painter, truth, size, &mut scratch.coverage, &mut scratch.truth)?;
-    own(painter, found, size, &mut scratch.coverage, &mut scratch.found)?;
+    let Scratch { rand_index, render, found: found_owned, truth: truly_owned, .. } = scratch;
+    let mut own = |scene: &Scene<f32>, rule, owned: &mut Ownership| -> Result<()> {
+        // The visible edge, whatever renderer painted it.
+        let renderer = ContourRenderer::new(scene.edge, scene.compositing);
+        Ok(owned.fill_drawing(rule, &renderer, &painter.draw(scene)?, size, render)?)
+    };
+    let seen = OwnershipRule::Seen(found.compositing);
+    let rule = match *truth {
+        Truth::Scene(truth) if truth.compositing == Compositing::Blend => {
+            own(truth, OwnershipRule::Reached, truly_owned)?;
+            OwnershipRule::Reached
+        }
+        Truth::Scene(truth) => {
+            own(truth, OwnershipRule::Seen(truth.compositing), truly_owned)?;
+            seen
+        }
+        Truth::Labels(labels) => {
+            truly_owned.fill_labels(labels);
+            seen
+        }
+    };
+    own(found, rule, found_owned)?;
     let mut overlap = MaskOverlap::default();
-    overlap.add(scratch.found.union(), scratch.truth.union());
+    overlap.add(found_owned.union(), truly_owned.union());
     Ok(MaskScore {
         overlap,
-        ari: adjusted_rand_index(scratch.found.index(), scratch.truth.index(), &mut scratch.rand_index)?,
-        true_objects: visible_object_count(truth),
-        found_objects: visible_object_count(found),
+        ari: adjusted_rand_index(found_owned.index(), truly_owned.index(), rand_index)?,
+        true_objects: truly_owned.objects(),
+        found_objects: found_owned.objects(),
     })
-}
-
-/// An object owns what its fattened outline reaches, whatever renderer painted it.
-fn own(
-    painter: &Painter,
-    scene: &Scene<f32>,
-    size: ImageSize,
-    coverage: &mut Vec<f32>,
-    owned: &mut Ownership,
-) -> Result<()> {
-    let drawing = painter.draw(scene)?;
-    coverage.clear();
-    coverage.resize(drawing.object_count() * size.pixels(), 0.0);
-    let renderer = ContourRenderer::new(scene.edge, scene.compositing);
-    renderer.object_coverage(&drawing, size, &mut TileScratch::default(), coverage)?;
-    owned.fill(size.pixels(), coverage, &drawing.confidences)?;
-    Ok(())
 }
