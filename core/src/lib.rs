@@ -25,7 +25,7 @@
 //! |---|---|
 //! | scene coordinates | the *shorter* image side is 1; x right, y down; the pixel (row r, column c) has its center at ((c + 0.5)/m, (r + 0.5)/m), m = min(width, height). A square image spans \[0, 1\] x \[0, 1\] |
 //! | rotation | radians; a point v of the unit outline goes to `s R v + t`, R = \[\[cos a, -sin a\], \[sin a, cos a\]\] |
-//! | [`EdgeProfile`](render::EdgeProfile) `offset`, `sigma`, `cut` | squared length in the *doubled* frame of the reference renderer, where the shorter side is 2 |
+//! | [`EdgeProfile`](render::EdgeProfile) `offset`, `sigma`, `cut` | by its law: squared length or length in the *doubled* frame of the reference renderer, where the shorter side is 2 |
 //! | signed distance | positive outside, negative inside |
 //! | color | linear in the stored values, \[0, 1\] per channel |
 //! | image memory | planar: channel, row, column |

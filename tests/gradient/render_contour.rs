@@ -17,9 +17,23 @@ fn size() -> ImageSize {
     ImageSize::new(27, 22).unwrap()
 }
 
+/// At 22 px a pixel is 1/11 of the doubled frame: the band is about 2 px wide on both sides.
+fn squared() -> EdgeProfile<f64> {
+    EdgeProfile { offset: 0.012, sigma: 0.003, cut: 0.03, ..EdgeProfile::reference() }
+}
+
 fn renderer(compositing: Compositing) -> ContourRenderer<f64> {
-    // At 22 px a pixel is 1/11 of the doubled frame: the band is about 2 px wide on both sides.
-    ContourRenderer::new(EdgeProfile { offset: 0.012, sigma: 0.003, cut: 0.03 }, compositing)
+    ContourRenderer::new(squared(), compositing)
+}
+
+/// Every law; exact areas have tests of their own.
+fn profile() -> impl Strategy<Value = EdgeProfile<f64>> {
+    prop_oneof![
+        Just(squared()),
+        (-0.1..0.1, 0.01..0.08).prop_map(|(offset, sigma)| {
+            EdgeProfile { offset, cut: offset + 7.0 * sigma, ..EdgeProfile::distance(sigma) }
+        })
+    ]
 }
 
 /// Up to four objects that overlap, some of them partly outside.
@@ -116,8 +130,13 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
     #[test]
-    fn vjp_matches_differences(drawing in drawing(), compositing in compositing(), mut cotangent in cotangent()) {
-        let renderer = renderer(compositing);
+    fn vjp_matches_differences(
+        drawing in drawing(),
+        profile in profile(),
+        compositing in compositing(),
+        mut cotangent in cotangent(),
+    ) {
+        let renderer = ContourRenderer::new(profile, compositing);
         let left = leave_out_jumps(&renderer, &drawing, &mut cotangent);
         prop_assert!(left > 500, "only {left} of 594 pixels are left");
         let grad = vjp(&renderer, &drawing, &cotangent);

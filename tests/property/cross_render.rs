@@ -8,7 +8,7 @@ use dvp_core::render::{
 };
 use dvp_core::shape::OutlineBasis;
 use dvp_core::{Drawing, Efd, Image, ImageSize, Object, Pose, Scene};
-use dvp_tests::coverage::{coverage, drawing};
+use dvp_tests::coverage::{coverage, coverage_vjp, drawing};
 use dvp_tests::strategy;
 use proptest::prelude::*;
 
@@ -48,7 +48,7 @@ fn render<C: CoverageModel<f64>>(model: C) -> Vec<f64> {
 /// A profile that is half covered on the outline and as steep there as area coverage is wide.
 fn sharp() -> EdgeProfile<f64> {
     // A pixel is 1/64 of the doubled frame; the squared half pixel is 6.1e-5.
-    EdgeProfile { offset: 0.0, sigma: 2e-5, cut: 4e-4 }
+    EdgeProfile { offset: 0.0, sigma: 2e-5, cut: 4e-4, ..EdgeProfile::reference() }
 }
 
 #[test]
@@ -81,9 +81,12 @@ fn one_scene_against_all_renderers() {
 }
 
 /// Every renderer on one outline in pixels.
-fn each(outline: &[[f64; 2]], size: ImageSize) -> [(&'static str, Result<Vec<f64>, RenderError>); 4] {
+fn each(outline: &[[f64; 2]], size: ImageSize) -> [(&'static str, Result<Vec<f64>, RenderError>); 6] {
+    let blurred = ContourDistance { edge: EdgeProfile::distance(0.1) };
     [
         ("contour", coverage(ContourDistance::default(), outline, size)),
+        ("blurred contour", coverage(blurred, outline, size)),
+        ("area contour", coverage(ContourDistance { edge: EdgeProfile::area() }, outline, size)),
         ("triangles", coverage(SoftTriangles::default(), outline, size)),
         ("exact", coverage(ExactArea, outline, size)),
         ("hard", coverage(HardMask, outline, size)),
@@ -92,9 +95,13 @@ fn each(outline: &[[f64; 2]], size: ImageSize) -> [(&'static str, Result<Vec<f64
 
 proptest! {
     #[test]
-    fn sharp_edges_agree_with_hard(star in strategy::star_px()) {
+    fn sharp_edges_agree_with_hard(star in strategy::star_px(), squared in any::<bool>()) {
         let size = ImageSize::new(24, 24).unwrap();
-        let edge = EdgeProfile { offset: 0.0, sigma: 1e-8, cut: 1e-6 };
+        let edge = if squared {
+            EdgeProfile { offset: 0.0, sigma: 1e-8, cut: 1e-6, ..EdgeProfile::reference() }
+        } else {
+            EdgeProfile::distance(1e-5)
+        };
         let hard = coverage(HardMask, &star, size).unwrap();
         let contour = coverage(ContourDistance { edge }, &star, size).unwrap();
         let triangles = coverage(SoftTriangles { edge, ..SoftTriangles::default() }, &star, size).unwrap();
@@ -105,6 +112,17 @@ proptest! {
                 prop_assert_eq!(triangles[i] >= 0.5, inside > 0.5, "triangles, pixel {}", i);
             }
         }
+    }
+
+    #[test]
+    fn area_profiles_are_painted_exactly(star in strategy::star_px(), cotangent in prop::collection::vec(-1.0..1.0, 576)) {
+        let (size, by_profile) = (ImageSize::new(24, 24).unwrap(), ContourDistance { edge: EdgeProfile::area() });
+        prop_assert_eq!(coverage(by_profile, &star, size).unwrap(), coverage(ExactArea, &star, size).unwrap());
+        let gradients = (
+            coverage_vjp(by_profile, &star, size, &cotangent).unwrap(),
+            coverage_vjp(ExactArea, &star, size, &cotangent).unwrap(),
+        );
+        prop_assert_eq!(gradients.0, gradients.1);
     }
 
     #[test]

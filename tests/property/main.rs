@@ -2,6 +2,7 @@
 
 mod contour;
 mod cross_render;
+mod edge;
 mod efd;
 mod exact;
 mod fit;

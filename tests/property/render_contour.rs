@@ -8,7 +8,10 @@ use dvp_tests::strategy;
 use proptest::prelude::*;
 
 fn renderer(compositing: Compositing) -> ContourRenderer<f64> {
-    ContourRenderer::new(EdgeProfile { offset: 0.012, sigma: 0.003, cut: 0.03 }, compositing)
+    ContourRenderer::new(
+        EdgeProfile { offset: 0.012, sigma: 0.003, cut: 0.03, ..EdgeProfile::reference() },
+        compositing,
+    )
 }
 
 fn compositing() -> impl Strategy<Value = Compositing> {
@@ -128,7 +131,7 @@ proptest! {
             colors: drawing.colors.iter().map(|c| c.map(f32::of)).collect(),
             confidences: drawing.confidences.iter().map(|&f| f32::of(f)).collect(),
         };
-        let edge = EdgeProfile { offset: 0.012, sigma: 0.003, cut: 0.03 };
+        let edge = EdgeProfile { offset: 0.012, sigma: 0.003, cut: 0.03, ..EdgeProfile::reference() };
         let mut image = Image::zeros(size);
         ContourRenderer::new(edge, compositing).render(&single, size, &mut Default::default(), image.data_mut()).unwrap();
         // Rounded coordinates move an edge by 1e-6 px; pixels may cross the cut, where coverage jumps by 0.0025.
@@ -142,7 +145,8 @@ proptest! {
 fn settings_out_of_range_are_refused() {
     let size = ImageSize::new(4, 4).unwrap();
     for (offset, sigma, cut) in [(0.0, 1e-40, 1.0), (0.0, -1.0, 1.0), (f64::NAN, 1.0, 1.0), (0.0, 1.0, f64::INFINITY)] {
-        let renderer = ContourRenderer::new(EdgeProfile { offset, sigma, cut }, Compositing::Blend);
+        let renderer =
+            ContourRenderer::new(EdgeProfile { offset, sigma, cut, ..EdgeProfile::reference() }, Compositing::Blend);
         let refused = renderer.render(&Drawing::default(), size, &mut Default::default(), &mut [0.0; 48]);
         assert!(matches!(refused, Err(RenderError::Setting { .. })), "{refused:?}");
     }

@@ -5,7 +5,7 @@
 //! | `mod.rs` | the contract: the trait [`Renderer`], errors; the settings are the scene's |
 //! | [`tile`] | coverage tiles per object, the trait of coverage models, and the renderer over any of them |
 //! | `composite` | one pass over the image: mixing, loss, gradients with respect to colors, confidences and coverage |
-//! | [`contour`] | coverage by the distance to the outline: the default renderer |
+//! | [`contour`] | coverage by the scene's edge profile, without the reference's seams: the default renderer |
 //! | [`exact`] | coverage by the area of pixel and outline in common |
 //! | [`hard`] | coverage 0 or 1: masks |
 //! | `triangles` | coverage by the distance to triangles, the reference's; with the feature of that name |
@@ -31,7 +31,7 @@ use crate::image::ImageView;
 use crate::real::Real;
 use crate::scene::{Drawing, DrawingGrad};
 
-pub use crate::scene::{Compositing, EdgeProfile};
+pub use crate::scene::{Compositing, EdgeLaw, EdgeProfile};
 
 /// A loss that is a mean over pixels and channels, fused into the backward pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]

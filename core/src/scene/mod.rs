@@ -3,12 +3,14 @@
 //! | file | forward | backward |
 //! |---|---|---|
 //! | `pose` | unit outline to scene units, [`Pose::transform`]; (sin, cos) pair to angle | `pose_vjp` |
-//! | `painting` | the settings, [`EdgeProfile`] and [`Compositing`] | |
+//! | `edge` | how coverage falls off, [`EdgeProfile`] | |
+//! | `compositing` | how objects mix, [`Compositing`] | |
 //! | `draw` | scene to drawing, [`Scene::draw`] | `draw_vjp`, [`Scene::draw_vjp`] |
 
+mod compositing;
 mod draw;
 mod draw_vjp;
-mod painting;
+mod edge;
 mod pose;
 mod pose_vjp;
 #[cfg(test)]
@@ -19,7 +21,8 @@ use alloc::vec::Vec;
 use crate::real::Real;
 use crate::shape::Efd;
 
-pub use painting::{Compositing, EdgeProfile};
+pub use compositing::Compositing;
+pub use edge::{EdgeLaw, EdgeProfile, PixelProfile};
 pub use pose::rotation_from_pair;
 pub use pose_vjp::{PoseGrad, rotation_from_pair_vjp};
 

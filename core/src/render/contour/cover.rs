@@ -6,7 +6,9 @@ use super::Band;
 use super::edge::{BLOCK, Edge, Near, SHORTEST_SQUARED};
 use crate::dims::ImageSize;
 use crate::real::Real;
+use crate::render::exact::ExactRecord;
 use crate::render::tile::{ChunkState, LANES, Lanes, Tile, grow, reserved_chunks};
+use crate::scene::PixelProfile;
 use crate::simd::{Kernel, lanes};
 
 /// Squared distance of pixels that no edge looked at, px^2.
@@ -26,7 +28,9 @@ pub struct ContourRecord<T> {
     /// Chunks that the band may reach.
     pub(super) mixed: Vec<usize>,
     /// Squared distance per pixel, px^2.
-    squared: Vec<T>,
+    pub(super) squared: Vec<T>,
+    /// Of area coverage, which needs none of the others.
+    pub(super) exact: ExactRecord<T>,
 }
 
 /// The forward kernel; fills `record.closest` only if `BACKWARD`.
@@ -70,7 +74,11 @@ impl<T: Real, const BACKWARD: bool> Cover<'_, T, BACKWARD> {
             self.near_edge::<FUSED>(index);
         }
         self.find_sides();
-        self.finish::<FUSED>();
+        if self.band.profile.squared {
+            self.finish::<FUSED, true>();
+        } else {
+            self.finish::<FUSED, false>();
+        }
     }
 
     /// Lists the edges, and flips a bit where a row meets one: what stands to the right changes sides.
@@ -175,18 +183,19 @@ impl<T: Real, const BACKWARD: bool> Cover<'_, T, BACKWARD> {
 
     /// Turns distances into coverage.
     #[inline(always)]
-    fn finish<const FUSED: bool>(&mut self) {
-        let Band { offset, sharpness, cut, full, .. } = self.band;
+    fn finish<const FUSED: bool, const SQUARED: bool>(&mut self) {
+        let Band { profile: PixelProfile { offset, sharpness, cut, .. }, full, .. } = self.band;
         let (one, zero) = (T::one(), T::zero());
         for &chunk in &self.record.mixed {
             let inside = self.record.inside[chunk];
             let Some(squared) = self.record.squared[chunk * LANES..].first_chunk::<LANES>() else { return };
-            let d2: Lanes<T> = lanes(|i| if (inside >> i) & 1 == 1 { -squared[i] } else { squared[i] });
-            let steps: Lanes<T> = lanes(|i| (d2[i] - offset) * sharpness);
+            let far: Lanes<T> = if SQUARED { *squared } else { lanes(|i| squared[i].sqrt()) };
+            let d: Lanes<T> = lanes(|i| if (inside >> i) & 1 == 1 { -far[i] } else { far[i] });
+            let steps: Lanes<T> = lanes(|i| (d[i] - offset) * sharpness);
             let powers: Lanes<T> = lanes(|i| steps[i].exp_lanes::<FUSED>());
             let p: Lanes<T> = lanes(|i| one / (powers[i] + one));
-            let p: Lanes<T> = lanes(|i| if d2[i] < full { one } else { p[i] });
-            self.tile.coverage[chunk] = lanes(|i| if d2[i] > cut { zero } else { p[i] });
+            let p: Lanes<T> = lanes(|i| if d[i] < full { one } else { p[i] });
+            self.tile.coverage[chunk] = lanes(|i| if d[i] > cut { zero } else { p[i] });
         }
     }
 }

@@ -7,7 +7,7 @@ use super::Band;
 use super::cover::ContourRecord;
 use super::edge::BLOCK;
 use crate::real::Real;
-use crate::render::tile::{Lanes, Tile};
+use crate::render::tile::{LANES, Lanes, Tile};
 use crate::simd::{Kernel, lanes};
 
 /// The backward kernel.
@@ -44,13 +44,20 @@ impl<T: Real> CoverVjp<'_, T> {
     /// Replaces the gradient of coverage by that of the unsigned squared distance, times -2 for [`Self::sum_to_vertices`].
     #[inline(always)]
     fn scale_to_squared(&mut self) {
-        let scale = T::of(2.0) * self.band.sharpness;
+        let (one, profile) = (T::one(), self.band.profile);
+        let scale = if profile.squared { T::of(2.0) * profile.sharpness } else { profile.sharpness };
         for &chunk in &self.record.mixed {
             let (p, grad) = (&self.tile.coverage[chunk], &mut self.tile.grad[chunk]);
             let inside = self.record.inside[chunk];
-            let slope: Lanes<T> = lanes(|i| p[i] * (T::one() - p[i]));
+            let slope: Lanes<T> = lanes(|i| p[i] * (one - p[i]));
             let side: Lanes<T> = lanes(|i| if (inside >> i) & 1 == 1 { -scale } else { scale });
             *grad = lanes(|i| grad[i] * (slope[i] * side[i]));
+            if !profile.squared {
+                // d(d) = d(d2) / (2 d); on the outline itself there is no direction.
+                let Some(squared) = self.record.squared[chunk * LANES..].first_chunk::<LANES>() else { return };
+                let far: Lanes<T> = lanes(|i| squared[i].sqrt());
+                *grad = lanes(|i| if far[i] > T::zero() { grad[i] / far[i] } else { T::zero() });
+            }
         }
     }
 

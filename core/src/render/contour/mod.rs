@@ -1,8 +1,9 @@
-//! Coverage by the distance to the outline: the reference's images without the seams of its triangles.
+//! Coverage by the scene's edge profile: the reference's images without the seams of its triangles, blur, exact areas.
 //!
-//! With d2 the signed squared distance from the center of a pixel to the outline (doubled frame, negative inside), coverage
-//! is logistic((offset - d2) / sigma), and 0 where d2 > cut. Inside and outside are told apart by the even-odd rule: a
-//! pixel is inside where a ray to the left meets an odd number of edges; self-intersecting outlines have holes.
+//! With d the distance from the center of a pixel to the outline as the profile's law measures it (signed, negative
+//! inside, squared or not), coverage is logistic((offset - d) / sigma), and 0 where d > cut. Inside and outside are told
+//! apart by the even-odd rule: a pixel is inside where a ray to the left meets an odd number of edges; self-intersecting
+//! outlines have holes. Area coverage is left to [`exact`](super::exact).
 //!
 //! Distances are worked out only in a narrow band along the outline: outside up to the cut, inside up to where coverage
 //! is within 1e-6 of 1, which then counts as 1, without gradient.
@@ -25,10 +26,12 @@ mod tests;
 
 pub use cover::ContourRecord;
 
+use super::exact::ExactArea;
 use super::tile::{CoverageModel, Tile, TileRenderer};
-use super::{Compositing, EdgeProfile, RenderError};
+use super::{Compositing, EdgeLaw, EdgeProfile, RenderError};
 use crate::dims::ImageSize;
 use crate::real::Real;
+use crate::scene::PixelProfile;
 use crate::simd::dispatch;
 
 /// Inside, coverage this close to 1 counts as 1.
@@ -37,7 +40,7 @@ const SATURATION: f64 = 1e-6;
 /// Smallest sigma: its reciprocal in pixels stays finite in f32.
 const SOFTNESS_FLOOR: f64 = 1e-30;
 
-/// Paints by the distance to the outline.
+/// Paints by the edge profile.
 pub type ContourRenderer<T> = TileRenderer<ContourDistance<T>>;
 
 impl<T: Real> ContourRenderer<T> {
@@ -48,10 +51,11 @@ impl<T: Real> ContourRenderer<T> {
     }
 }
 
-/// Coverage by the distance to the outline.
+/// Coverage by the distance to the outline, or by area where the profile says so.
 ///
 /// *Derivative*: of coverage with respect to the two vertices of the closest edge. Not differentiable where two edges are
-/// equally close, nor at the cut.
+/// equally close, nor at the cut; by distance that is not squared, pixels whose center lies exactly on the outline are
+/// left out. By area: that of [`ExactArea`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContourDistance<T> {
     /// How coverage falls off.
@@ -67,13 +71,8 @@ impl<T: Real> Default for ContourDistance<T> {
 /// The edge profile in pixels.
 #[derive(Clone, Copy, Debug)]
 struct Band<T> {
-    /// Signed squared distance of half coverage, px^2.
-    offset: T,
-    /// 1 / softness, 1 / px^2.
-    sharpness: T,
-    /// Signed squared distance beyond which coverage is 0, px^2.
-    cut: T,
-    /// Signed squared distance below which coverage is 1, px^2.
+    profile: PixelProfile<T>,
+    /// Distance, as the profile measures it, below which coverage is 1.
     full: T,
     /// Distance within which edges are looked at, px.
     reach: T,
@@ -81,17 +80,9 @@ struct Band<T> {
 
 impl<T: Real> ContourDistance<T> {
     fn band(&self, unit_px: T) -> Band<T> {
-        // A squared length in the doubled frame, where 2 is the shorter side.
-        let square = unit_px * unit_px * T::of(0.25);
-        let EdgeProfile { offset, sigma, cut } = self.edge;
-        let full = offset - sigma * T::of(-libm::log(SATURATION));
-        Band {
-            offset: offset * square,
-            sharpness: (sigma * square).recip(),
-            cut: cut * square,
-            full: full * square,
-            reach: (cut.abs().max(-full) * square).sqrt(),
-        }
+        let profile = self.edge.in_pixels(unit_px);
+        let full = profile.full(SATURATION);
+        Band { profile, full, reach: profile.px(profile.cut.abs().max(-full)) }
     }
 }
 
@@ -99,7 +90,7 @@ impl<T: Real> CoverageModel<T> for ContourDistance<T> {
     type Record = ContourRecord<T>;
 
     fn check(&self) -> Result<(), RenderError> {
-        let EdgeProfile { offset, sigma, cut } = self.edge;
+        let EdgeProfile { offset, sigma, cut, .. } = self.edge;
         let refuse = |what, value: T, must| Err(RenderError::Setting { what, value: value.as_f64(), must });
         if !(sigma >= T::of(SOFTNESS_FLOOR) && sigma.is_finite()) {
             refuse("edge.sigma", sigma, "finite and at least 1e-30")
@@ -113,11 +104,18 @@ impl<T: Real> CoverageModel<T> for ContourDistance<T> {
     }
 
     fn reach_px(&self, unit_px: T) -> T {
-        self.edge.cut.max(T::zero()).sqrt() * unit_px * T::of(0.5)
+        if self.edge.law == EdgeLaw::Area {
+            return ExactArea.reach_px(unit_px);
+        }
+        let profile = self.edge.in_pixels(unit_px);
+        profile.px(profile.cut.max(T::zero()))
     }
 
     fn smallest_coverage(&self) -> T {
-        let EdgeProfile { offset, sigma, cut } = self.edge;
+        if self.edge.law == EdgeLaw::Area {
+            return CoverageModel::<T>::smallest_coverage(&ExactArea);
+        }
+        let EdgeProfile { offset, sigma, cut, .. } = self.edge;
         (((cut - offset) / sigma).exp() + T::one()).recip()
     }
 
@@ -129,6 +127,9 @@ impl<T: Real> CoverageModel<T> for ContourDistance<T> {
         record: &mut ContourRecord<T>,
         backward: bool,
     ) -> Result<(), RenderError> {
+        if self.edge.law == EdgeLaw::Area {
+            return ExactArea.cover(outline_px, size, tile, &mut record.exact, backward);
+        }
         let band = self.band(T::of_usize(size.unit_px()));
         if backward {
             dispatch(cover::Cover::<T, true> { band, outline_px, size, tile, record });
@@ -140,12 +141,15 @@ impl<T: Real> CoverageModel<T> for ContourDistance<T> {
 
     fn cover_vjp(
         &self,
-        _outline_px: &[[T; 2]],
+        outline_px: &[[T; 2]],
         size: ImageSize,
         tile: &mut Tile<T>,
         record: &mut ContourRecord<T>,
         grad_outline_px: &mut [[T; 2]],
     ) {
+        if self.edge.law == EdgeLaw::Area {
+            return ExactArea.cover_vjp(outline_px, size, tile, &mut record.exact, grad_outline_px);
+        }
         let band = self.band(T::of_usize(size.unit_px()));
         dispatch(cover_vjp::CoverVjp { band, tile, record, grad_outline_px });
     }

@@ -3,7 +3,7 @@ use alloc::vec::Vec;
 
 use super::ContourRenderer;
 use crate::dims::ImageSize;
-use crate::render::{Compositing, EdgeProfile};
+use crate::render::{Compositing, EdgeLaw, EdgeProfile};
 use crate::scene::Drawing;
 
 /// Coverage pixel by pixel and edge by edge, from the definition.
@@ -24,8 +24,9 @@ fn by_definition(outline: &[[f64; 2]], edge: EdgeProfile<f64>, size: ImageSize) 
             // The doubled frame: lengths twice those of the scene.
             nearest = nearest.min(4.0 * (ex * ex + ey * ey));
         }
-        let d2 = if inside { -nearest } else { nearest };
-        if d2 > edge.cut { 0.0 } else { 1.0 / (1.0 + ((d2 - edge.offset) / edge.sigma).exp()) }
+        let far = if edge.law == EdgeLaw::SquaredDistance { nearest } else { nearest.sqrt() };
+        let d = if inside { -far } else { far };
+        if d > edge.cut { 0.0 } else { 1.0 / (1.0 + ((d - edge.offset) / edge.sigma).exp()) }
     });
     coverage.collect()
 }
@@ -59,9 +60,13 @@ fn coverage_is_that_of_the_definition() {
     let edges = [
         EdgeProfile::reference(),
         // A wide ramp, one that is half covered on the outline, and one inside of it: half covered 0.1 inward.
-        EdgeProfile { offset: 0.01, sigma: 0.004, cut: 0.03 },
-        EdgeProfile { offset: 0.0, sigma: 1e-4, cut: 6e-4 },
-        EdgeProfile { offset: -0.01, sigma: 1e-3, cut: -0.004 },
+        EdgeProfile { offset: 0.01, sigma: 0.004, cut: 0.03, ..EdgeProfile::reference() },
+        EdgeProfile { offset: 0.0, sigma: 1e-4, cut: 6e-4, ..EdgeProfile::reference() },
+        EdgeProfile { offset: -0.01, sigma: 1e-3, cut: -0.004, ..EdgeProfile::reference() },
+        // At 101 px the doubled frame has 50.5 px per unit: blur of a Gaussian of 1.7 and of 0.34 px, and one fattened.
+        EdgeProfile::distance(0.02),
+        EdgeProfile::distance(0.004),
+        EdgeProfile { offset: 0.03, ..EdgeProfile::distance(0.01) },
     ];
     for edge in edges {
         for outline in [pentagram([0.7, 0.5], 0.45), pentagram([0.05, 0.95], 0.4), pentagram([0.5, 0.5], 3.0)] {
@@ -74,7 +79,7 @@ fn coverage_is_that_of_the_definition() {
 fn thin_outlines_in_small_images_are_covered() {
     for (width, height) in [(1, 1), (1, 40), (40, 1), (16, 16), (17, 33)] {
         let size = ImageSize::new(width, height).unwrap();
-        let edge = EdgeProfile { offset: 0.02, sigma: 0.004, cut: 0.04 };
+        let edge = EdgeProfile { offset: 0.02, sigma: 0.004, cut: 0.04, ..EdgeProfile::reference() };
         assert_by_definition(&[[0.1, 0.2], [0.9, 0.25], [0.5, 0.3]], edge, size);
     }
 }

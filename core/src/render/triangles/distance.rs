@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 use core::array;
 
-use super::profile::PixelProfile;
+use super::profile::SquaredProfile;
 use super::triangulate::Face;
 use crate::dims::ImageSize;
 use crate::real::Real;
@@ -25,7 +25,7 @@ pub struct TriangleRecord<T> {
 
 /// Covers one outline whose faces stand in the record.
 pub(super) struct Cover<'a, T> {
-    pub(super) profile: PixelProfile<T>,
+    pub(super) profile: SquaredProfile<T>,
     pub(super) outline_px: &'a [[T; 2]],
     pub(super) size: ImageSize,
     pub(super) tile: &'a mut Tile<T>,

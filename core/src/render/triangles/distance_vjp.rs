@@ -1,7 +1,7 @@
 //! Backward: how coverage follows the corners of the winning triangle.
 
 use super::distance::TriangleRecord;
-use super::profile::PixelProfile;
+use super::profile::SquaredProfile;
 use crate::real::Real;
 use crate::render::tile::{ChunkState, LANES, Tile};
 use crate::simd::Kernel;
@@ -12,7 +12,7 @@ use crate::simd::Kernel;
 /// e = x - q, the derivative of |e|^2 is -2 (1 - u) e by a and -2 u e by b (u itself needs none, it minimizes); inside
 /// the triangle the sign is turned. Nothing flows to the other edges, the other triangles, or the choice of triangulation.
 pub(super) struct CoverVjp<'a, T> {
-    pub(super) profile: PixelProfile<T>,
+    pub(super) profile: SquaredProfile<T>,
     pub(super) tile: &'a Tile<T>,
     pub(super) record: &'a TriangleRecord<T>,
     pub(super) grad_outline: &'a mut [[T; 2]],

@@ -3,8 +3,8 @@
 //! In: one closed outline in pixels. Out: coverage per pixel, and backward the gradient of the vertices. The outline is
 //! cut into triangles; with d2 the signed squared distance from a pixel center to a triangle (doubled frame, negative
 //! inside), the triangle covers the pixel by logistic((offset - d2) / sigma), 0 where d2 > cut, and the object by the
-//! largest of its triangles. Inside an object, on the edges that two triangles share, d2 is 0: coverage dips to 0.993
-//! there (reference profile). [`contour`](super::contour) has no such seams and is faster; this one is for comparison
+//! largest of its triangles; profiles in distance are painted as well, area coverage as the nearest of them. Inside an object, on the edges that two triangles share, d2 is 0: coverage dips to 0.993
+//! there (reference profile), and to 1/2 where the offset is 0. [`contour`](super::contour) has no such seams and is faster; this one is for comparison
 //! with the reference.
 //!
 //! | file | holds |
@@ -32,7 +32,7 @@ pub use triangulate::{Delaunay, Face, Triangulate, TriangulationReport};
 
 use self::distance::Cover;
 use self::distance_vjp::CoverVjp;
-use self::profile::PixelProfile;
+use self::profile::SquaredProfile;
 use super::tile::{CoverageModel, Tile, TileRenderer, TileScratch};
 use super::{ContourDistance, EdgeProfile, RenderError};
 use crate::dims::ImageSize;
@@ -96,7 +96,7 @@ impl<T: Real, F: Triangulate> CoverageModel<T> for SoftTriangles<T, F> {
                 must: "a vertex of its outline",
             });
         }
-        let profile = PixelProfile::new(&self.edge, T::of_usize(size.unit_px()));
+        let profile = SquaredProfile::new(&self.edge, T::of_usize(size.unit_px()));
         dispatch(Cover { profile, outline_px, size, tile, record });
         Ok(())
     }
@@ -109,7 +109,7 @@ impl<T: Real, F: Triangulate> CoverageModel<T> for SoftTriangles<T, F> {
         record: &mut TriangleRecord<T>,
         grad_outline_px: &mut [[T; 2]],
     ) {
-        let profile = PixelProfile::new(&self.edge, T::of_usize(size.unit_px()));
+        let profile = SquaredProfile::new(&self.edge, T::of_usize(size.unit_px()));
         dispatch(CoverVjp { profile, tile, record, grad_outline: grad_outline_px });
     }
 }

@@ -73,7 +73,7 @@ fn coverage(outline: &[[f64; 2]]) -> Result<Vec<f64>, RenderError> {
     let mut drawing = Drawing::default();
     drawing.push(outline, [1.0; 3], 1.0);
     // One doubled unit is 4 px: squares of distances are 16 times larger in pixels.
-    let edge = EdgeProfile { offset: 0.0, sigma: 1.0 / 16.0, cut: 1.0 / 4.0 };
+    let edge = EdgeProfile { offset: 0.0, sigma: 1.0 / 16.0, cut: 1.0 / 4.0, ..EdgeProfile::reference() };
     let renderer = TileRenderer { coverage: SoftTriangles { edge, faces: Halves }, compositing: Compositing::Blend };
     let mut coverage = vec![0.0; 64];
     renderer.object_coverage(&drawing, size, &mut TriangleScratch::default(), &mut coverage)?;

@@ -124,7 +124,7 @@ impl Arguments {
             edge.offset = self.edge_offset.unwrap_or(edge.offset);
             edge.sigma = self.edge_sigma.unwrap_or(edge.sigma);
             #[expect(clippy::cast_possible_truncation, reason = "rounding is what is asked for")]
-            let cut = edge_cut(f64::from(edge.offset), f64::from(edge.sigma)) as f32;
+            let cut = edge_cut(edge.law, f64::from(edge.offset), f64::from(edge.sigma)) as f32;
             edge.cut = cut;
         }
         settings.compositing = self.compositing.map_or(settings.compositing, Into::into);

@@ -1,12 +1,12 @@
 //! From the text's structure to a scene with every number checked, and back.
 
-use dvp_core::render::{Compositing, EdgeProfile};
+use dvp_core::render::{Compositing, EdgeLaw, EdgeProfile};
 use dvp_core::shape::{SYMMETRY_TOLERANCE, Symmetry};
 use dvp_core::{Efd, ImageSize, Object, Pose, Real, Scene};
 use dvp_fit::Bank;
 
 use super::error::{FormatError, Place};
-use super::scene_json::{CompositingJson, EdgeJson, ObjectJson, SceneJson};
+use super::scene_json::{CompositingJson, EdgeJson, EdgeLawJson, ObjectJson, SceneJson};
 
 /// Most objects of a scene.
 const MAX_OBJECTS: usize = 10_000;
@@ -17,11 +17,14 @@ const MAX_COORDINATE: f64 = 1e3;
 /// ln(1e4 - 1) - 5: the reference cuts at d2 = ln(1e4 - 1) sigma, which is its offset plus this many sigma.
 const CUT_SIGMAS: f64 = 4.210_240_366_975_849;
 
-/// The distance beyond which coverage is 0, for a profile that does not say: where coverage falls to 0.0146, as in the
-/// reference profile.
+/// Where coverage becomes 0, for a profile that does not say: where it falls to 0.0146, as in the reference profile, and in
+/// distance to 0.001.
 #[must_use]
-pub fn edge_cut(offset: f64, sigma: f64) -> f64 {
-    offset + CUT_SIGMAS * sigma
+pub fn edge_cut(law: EdgeLaw, offset: f64, sigma: f64) -> f64 {
+    match law {
+        EdgeLaw::SquaredDistance => offset + CUT_SIGMAS * sigma,
+        _ => offset + EdgeProfile::distance(sigma).cut,
+    }
 }
 
 /// Checks values and says where a bad one stands.
@@ -129,10 +132,24 @@ impl Checker<'_> {
     }
 
     fn edge<T: Real>(&self, edge: EdgeJson) -> Result<EdgeProfile<T>, FormatError> {
-        let offset = self.within("edge.offset", edge.offset, [-4.0, 4.0])?;
-        let sigma = self.above_zero("edge.sigma", edge.sigma, 4.0)?;
-        let cut = edge.cut.unwrap_or_else(|| edge_cut(edge.offset, edge.sigma));
-        Ok(EdgeProfile { offset, sigma, cut: self.within("edge.cut", cut, [edge.offset, 64.0])? })
+        let law = match edge.law {
+            EdgeLawJson::SquaredDistance => EdgeLaw::SquaredDistance,
+            EdgeLawJson::Distance => EdgeLaw::Distance,
+            EdgeLawJson::Area if edge == (EdgeJson { law: edge.law, ..EdgeJson::default() }) => {
+                return Ok(EdgeProfile::area());
+            }
+            EdgeLawJson::Area => return self.wrong("edge.law", "is \"area\", which has no offset, sigma or cut"),
+        };
+        let (Some(offset), Some(sigma)) = (edge.offset, edge.sigma) else {
+            return self.wrong("edge", "needs offset and sigma; only \"law\":\"area\" has none");
+        };
+        let cut = edge.cut.unwrap_or_else(|| edge_cut(law, offset, sigma));
+        Ok(EdgeProfile {
+            law,
+            offset: self.within("edge.offset", offset, [-4.0, 4.0])?,
+            sigma: self.above_zero("edge.sigma", sigma, 4.0)?,
+            cut: self.within("edge.cut", cut, [offset, 64.0])?,
+        })
     }
 }
 
@@ -182,24 +199,36 @@ impl SceneJson {
     /// rounding; numbers are written as short as `T` allows.
     #[must_use]
     pub fn from_scene<T: Real>(scene: &Scene<T>, size: ImageSize) -> Self {
-        let edge = scene.edge;
-        let cut = shortest(edge.cut);
-        let (offset, sigma) = (shortest(edge.offset), shortest(edge.sigma));
-        // The default cut is left out; equal up to the rounding of `T`.
-        let is_default = (cut - edge_cut(offset, sigma)).abs() <= 1e-6 * cut.abs();
+        let edge = EdgeJson::from_profile(&scene.edge);
         Self {
-            version: 1,
+            version: if edge.law == EdgeLawJson::SquaredDistance { 1 } else { 2 },
             id: None,
             width: Some(size.width()),
             height: Some(size.height()),
             background: shortest_color(scene.background),
             objects: scene.objects.iter().map(ObjectJson::from_object).collect(),
-            edge: Some(EdgeJson { offset, sigma, cut: (!is_default).then_some(cut) }),
+            edge: Some(edge),
             compositing: match scene.compositing {
                 Compositing::Blend => CompositingJson::Blend,
                 Compositing::Over => CompositingJson::Over,
             },
         }
+    }
+}
+
+impl EdgeJson {
+    /// The text's structure of an edge profile.
+    #[must_use]
+    pub fn from_profile<T: Real>(edge: &EdgeProfile<T>) -> Self {
+        let law = match edge.law {
+            EdgeLaw::SquaredDistance => EdgeLawJson::SquaredDistance,
+            EdgeLaw::Distance => EdgeLawJson::Distance,
+            EdgeLaw::Area => return Self { law: EdgeLawJson::Area, ..Self::default() },
+        };
+        let [offset, sigma, cut] = [edge.offset, edge.sigma, edge.cut].map(shortest);
+        // The default cut is left out; equal up to the rounding of `T`.
+        let is_default = (cut - edge_cut(edge.law, offset, sigma)).abs() <= 1e-6 * cut.abs();
+        Self { law, offset: Some(offset), sigma: Some(sigma), cut: (!is_default).then_some(cut) }
     }
 }
 

@@ -1,4 +1,6 @@
-//! The text of a scene: one JSON object, version 1, unknown fields refused.
+//! The text of a scene: one JSON object, version 1 or 2, unknown fields refused.
+//!
+//! Version 2 names the law of the edge; scenes in the law of version 1 are still written as version 1.
 
 use std::fs::File;
 use std::io::Read;
@@ -18,7 +20,7 @@ pub(super) const MAX_TEXT: u64 = 64 << 20;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SceneJson {
-    /// Of the format; 1.
+    /// Of the format; 1, or 2 where the edge names its law.
     #[serde(default = "version_one")]
     pub version: u64,
     /// Number in a data set; its image is `{id:05}.png`.
@@ -76,16 +78,41 @@ pub struct ObjectJson {
 }
 
 /// An edge profile as it stands in a file.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct EdgeJson {
-    /// Signed squared distance of half coverage, doubled frame (the shorter image side is 2).
-    pub offset: f64,
-    /// Softness, doubled frame squared; above 0.
-    pub sigma: f64,
-    /// Signed squared distance beyond which coverage is 0; `offset + 4.21 sigma` if missing.
+    /// What coverage is measured by.
+    #[serde(default, skip_serializing_if = "EdgeLawJson::is_squared_distance")]
+    pub law: EdgeLawJson,
+    /// Where coverage is 1/2: signed squared distance or signed distance, doubled frame (the shorter image side is 2).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub offset: Option<f64>,
+    /// Softness, in the same unit; above 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sigma: Option<f64>,
+    /// Beyond it coverage is 0, in the same unit; if missing `offset + 4.21 sigma`, or `offset + 6.91 sigma` in distance.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub cut: Option<f64>,
+}
+
+/// What coverage at an edge is measured by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum EdgeLawJson {
+    /// Signed squared distance, the reference renderer's; version 1 knows no other.
+    #[default]
+    SquaredDistance,
+    /// Signed distance: blur.
+    Distance,
+    /// The pixel's area inside the outline; there are no numbers.
+    Area,
+}
+
+impl EdgeLawJson {
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
+    fn is_squared_distance(&self) -> bool {
+        *self == Self::SquaredDistance
+    }
 }
 
 /// `blend` or `over`.
@@ -123,7 +150,7 @@ impl SceneJson {
             Ok(scene) => scene.version,
             Err(_) => serde_json::from_slice::<VersionOnly>(text).map_or(1, |v| v.version),
         };
-        if version != 1 {
+        if !(1..=2).contains(&version) {
             return Err(FormatError::Version { place: place.clone(), version });
         }
         parsed.map_err(|source| FormatError::Json { place: place.clone(), expected: "a scene", source })

@@ -29,6 +29,10 @@ fn object_with(fields: &str) -> String {
     format!(r#"{{"background":[0,0,0],"objects":[{{"translation":[0.5,0.5],"color":[1,1,1],{fields}}}]}}"#)
 }
 
+fn with_edge(edge: &str) -> String {
+    format!(r#"{{"background":[0,0,0],"objects":[],"edge":{edge}}}"#)
+}
+
 #[test]
 fn a_scene_comes_back_bit_for_bit() {
     let place = Place::file(Path::new("a.json"));
@@ -43,6 +47,25 @@ fn a_scene_comes_back_bit_for_bit() {
     assert!((back.edge.cut - scene().edge.cut).abs() < 1e-9);
     back.edge.cut = scene().edge.cut;
     assert_eq!(back, scene());
+}
+
+#[test]
+fn every_edge_comes_back() {
+    let place = Place::file(Path::new("a.json"));
+    let size = ImageSize::new(64, 48).unwrap();
+    let thin = EdgeProfile { offset: 0.01, sigma: 0.125, cut: 0.5, ..EdgeProfile::distance(1.0) };
+    for (edge, version, text) in [
+        (EdgeProfile::reference(), 1, r#""edge":{"offset":0.0005,"sigma":0.0001}"#),
+        (EdgeProfile::area(), 2, r#""edge":{"law":"area"}"#),
+        (EdgeProfile::distance(0.125_f32), 2, r#""edge":{"law":"distance","offset":0.0,"sigma":0.125}"#),
+        (thin, 2, r#""edge":{"law":"distance","offset":0.01,"sigma":0.125,"cut":0.5}"#),
+    ] {
+        let written = SceneJson::from_scene(&Scene { edge, ..scene() }, size).to_line(&place).unwrap();
+        assert!(written.contains(text) && written.contains(&format!("\"version\":{version}")), "{written}");
+        let back: Scene<f32> = SceneJson::parse(written.as_bytes(), &place).unwrap().to_scene(None, &place).unwrap();
+        assert_eq!((back.edge.law, back.edge.offset, back.edge.sigma), (edge.law, edge.offset, edge.sigma));
+        assert!((back.edge.cut - edge.cut).abs() <= 1e-6 * edge.cut);
+    }
 }
 
 #[test]
@@ -69,7 +92,11 @@ fn errors_name_line_field_and_remedy() {
         (object_with(&format!(r#""scale":1,"rotation":0,"wings":2,{efd}"#)), ["line 3", "unknown field", "wings"]),
         (object_with(&format!(r#""scale":NaN,"rotation":0,{efd}"#)), ["line 3", "not a scene", "column"]),
         (object_with(&format!(r#""scale":1e999,"rotation":0,{efd}"#)), ["line 3", "not a scene", "out of range"]),
-        (r#"{"version":2,"what":1}"#.to_owned(), ["line 3", "format version 2", "newer dvp"]),
+        (r#"{"version":3,"what":1}"#.to_owned(), ["line 3", "format version 3", "newer dvp"]),
+        (with_edge(r#"{"law":"area","sigma":1}"#), ["line 3", "edge.law", "has no offset"]),
+        (with_edge(r#"{"law":"distance","sigma":1}"#), ["line 3", "edge needs offset", "area"]),
+        (with_edge(r#"{"law":"cubed","offset":0,"sigma":1}"#), ["line 3", "unknown variant", "squared_distance"]),
+        (with_edge(r#"{"law":"distance","offset":0,"sigma":-1}"#), ["line 3", "edge.sigma is -1", "above 0"]),
         (r#"{"background":[0,0,2],"objects":[]}"#.to_owned(), ["line 3", "background is 2", "from 0 to 1"]),
         ("{}".to_owned(), ["line 3", "not a scene", "missing field"]),
         ("[1, 2".to_owned(), ["line 3", "not a scene", "column"]),

@@ -5,8 +5,6 @@ use core::str::FromStr;
 
 use dvp_core::render::{Compositing, EdgeProfile};
 
-use crate::format::edge_cut;
-
 /// A closed range, written `0.1..0.3`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
@@ -92,9 +90,6 @@ impl SceneSettings {
     /// edges that hide each other.
     #[must_use]
     pub fn multi_dsprites() -> Self {
-        // A ramp of 1e-4 px at 64 px: every pixel is inside or outside.
-        let sigma = 1e-11_f32;
-        let cut = edge_cut(0.0, f64::from(sigma));
         Self {
             fewest: 2,
             most: 5,
@@ -102,8 +97,8 @@ impl SceneSettings {
             placements: 1,
             margin: 0.1,
             scale: Range::new(0.08, 0.2),
-            #[expect(clippy::cast_possible_truncation, reason = "rounding is what is asked for")]
-            edge: EdgeProfile { offset: 0.0, sigma, cut: cut as f32 },
+            // Squared, a ramp of 1e-4 px at 64 px: every pixel is inside or outside.
+            edge: EdgeProfile { offset: 0.0, sigma: 1e-11, cut: 5.21e-11, ..EdgeProfile::reference() },
             compositing: Compositing::Over,
             ..Self::mds_hr()
         }

@@ -31,8 +31,7 @@ struct Shape {
 pub fn to_svg<T: Real>(scene: &Scene<T>, size: ImageSize) -> Result<String, ShapeError> {
     let unit = T::of_usize(size.unit_px()).as_f64();
     let [width, height] = [size.width(), size.height()].map(|n| T::of_usize(n).as_f64());
-    // d2 = offset in the doubled frame is a distance of sqrt(offset)/2 scene units.
-    let reach = scene.edge.offset.as_f64().max(0.0).sqrt() / 2.0 * unit;
+    let reach = scene.edge.half_coverage().as_f64().max(0.0) * unit;
     let harmonics = scene.objects.iter().map(|object| object.efd.harmonic_count()).max().unwrap_or(1);
     let basis = OutlineBasis::new(REFERENCE_VERTICES, harmonics.max(1))?;
     let mut shapes = Vec::new();

@@ -127,13 +127,13 @@ impl<T: Real> Fitter<T> {
         if !readable {
             let edge = self.options.edge.unwrap_or_else(EdgeProfile::reference);
             let compositing = self.options.compositing.unwrap_or_default();
-            let run = Run { fitter: self, image, kind: EdgeKind::Profile(edge), edge, compositing, scratch };
+            let run = Run { fitter: self, image, kind: EdgeKind::of(edge), edge, compositing, scratch };
             let found = run.nothing();
             return run.finish(found);
         }
         scratch.segmentation.interpret(self.options.compositing.unwrap_or_default());
         let (kind, other) =
-            self.options.edge.map_or(scratch.segmentation.edge_kinds(), |edge| (EdgeKind::Profile(edge), None));
+            self.options.edge.map_or(scratch.segmentation.edge_kinds(), |edge| (EdgeKind::of(edge), None));
         let (compositing, second) = self.compositings(&scratch.segmentation, &kind);
         if compositing != self.options.compositing.unwrap_or_default() {
             scratch.segmentation.interpret(compositing);

@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 
 use dvp_core::render::contour::ContourRenderer;
-use dvp_core::render::{Compositing, EdgeProfile, Renderer};
+use dvp_core::render::{Compositing, EdgeLaw, EdgeProfile, Renderer};
 use dvp_core::shape::REFERENCE_VERTICES;
 use dvp_core::{ImageView, Object, Real, Scene};
 
@@ -141,7 +141,7 @@ impl<T: Real> Run<'_, T> {
         let values = scene.objects.len() * self.image.size().pixels();
         let rounded = is_rounded(scratch.segmentation.region_colors().flatten());
         // Proportions must be known to a part of a step: only where the edge profile is exact.
-        let known = matches!(self.kind, EdgeKind::Profile(_)) && scene.compositing == Compositing::Blend;
+        let known = self.edge.law == EdgeLaw::SquaredDistance && scene.compositing == Compositing::Blend;
         if !known || !rounded || values > MAX_COVERAGE_VALUES || scene.objects.is_empty() {
             return Ok(());
         }

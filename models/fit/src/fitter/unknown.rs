@@ -89,7 +89,7 @@ impl<T: Real> Run<'_, T> {
 
     pub(super) fn outline_of(&mut self, segment: usize, freedom: Freedom) -> Option<Grown<T>> {
         let size = self.image.size();
-        let half_coverage_px = self.edge.offset.max(T::zero()).sqrt() * self.unit_px() * T::of(0.5);
+        let half_coverage_px = self.edge.half_coverage().max(T::zero()) * self.unit_px();
         let scratch = &mut *self.scratch;
         let part = &scratch.segmentation.segments()[segment];
         let object = u32::try_from(segment).ok()?;

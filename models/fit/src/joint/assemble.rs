@@ -4,6 +4,7 @@ use alloc::vec::Vec;
 
 use dvp_core::Real;
 use dvp_core::render::Compositing;
+use dvp_core::scene::PixelProfile;
 
 use super::{JointProblem, JointScene, PER_OBJECT};
 use crate::cholesky::packed;
@@ -11,6 +12,8 @@ use crate::pose::gauss_newton::Frame;
 
 /// Every how many rows and columns a pixel away from all outlines is looked at, for the colors.
 const INTERIOR_STRIDE: usize = 4;
+/// Coverage this close to 1 counts as 1.
+const SATURATION: f64 = 1e-4;
 
 /// Memory of the refinement, with the equations in it.
 #[derive(Clone, Debug, Default)]
@@ -42,10 +45,8 @@ struct Cover<T> {
 
 /// The edge profile in pixels.
 #[derive(Clone, Copy, Debug)]
-struct Profile<T> {
-    offset: T,
-    inverse_sigma: T,
-    cut: T,
+struct Band<T> {
+    profile: PixelProfile<T>,
     /// Distances (px) beyond which coverage is 1 (inside) and 0 (outside).
     inside: T,
     outside: T,
@@ -59,10 +60,10 @@ impl<T: Real> JointScratch<T> {
         self.hessian.resize(packed(n, 0), T::zero());
         self.gradient.clear();
         self.gradient.resize(n, T::zero());
-        let profile = Profile::new(problem);
-        self.place(problem, scene, &profile);
+        let band = Band::new(problem);
+        self.place(problem, scene, &band);
         let size = problem.image.size();
-        let stride = if problem.coarse { profile.stride() } else { 1 };
+        let stride = if problem.coarse { band.stride() } else { 1 };
         let near_weight = T::of_usize(stride * stride);
         let mut cost = T::zero();
         // Each pixel once, by the first object whose band holds it; interiors on a coarse grid for the colors.
@@ -71,13 +72,13 @@ impl<T: Real> JointScratch<T> {
             for row in (top.next_multiple_of(stride)..bottom).step_by(stride) {
                 for column in (left.next_multiple_of(stride)..right).step_by(stride) {
                     let interior = row % INTERIOR_STRIDE == 0 && column % INTERIOR_STRIDE == 0;
-                    let near = self.near(problem, scene, &profile, first, column, row);
+                    let near = self.near(problem, scene, &band, first, column, row);
                     if !(near || problem.colors && interior && self.inside_box(first, column, row)) {
                         continue;
                     }
                     let earlier = (0..first).any(|k| {
                         self.inside_box(k, column, row) && {
-                            (problem.colors && interior) || self.near(problem, scene, &profile, k, column, row)
+                            (problem.colors && interior) || self.near(problem, scene, &band, k, column, row)
                         }
                     });
                     if earlier {
@@ -85,7 +86,7 @@ impl<T: Real> JointScratch<T> {
                     }
                     let weight = if near { near_weight } else { T::of_usize(INTERIOR_STRIDE * INTERIOR_STRIDE) };
                     let index = row * size.width() + column;
-                    cost += self.add_pixel(problem, scene, &profile, [column, row], index, weight);
+                    cost += self.add_pixel(problem, scene, &band, [column, row], index, weight);
                 }
             }
         }
@@ -98,14 +99,14 @@ impl<T: Real> JointScratch<T> {
     }
 
     /// Frames and boxes of all objects.
-    fn place(&mut self, problem: &JointProblem<'_, T>, scene: &JointScene<T>, profile: &Profile<T>) {
+    fn place(&mut self, problem: &JointProblem<'_, T>, scene: &JointScene<T>, band: &Band<T>) {
         let size = problem.image.size();
         self.frames.clear();
         self.boxes.clear();
         for object in &scene.objects {
             let frame = Frame::new(&object.pose);
             let field = &problem.shapes[object.shape].field;
-            let reach = frame.scale * field.radius + profile.outside;
+            let reach = frame.scale * field.radius + band.outside;
             let bounds = |center: T, extent: usize| {
                 let limit = T::of_usize(extent);
                 let low = (center - reach).max(T::zero()).min(limit).floor().to_count();
@@ -125,7 +126,7 @@ impl<T: Real> JointScratch<T> {
         &self,
         problem: &JointProblem<'_, T>,
         scene: &JointScene<T>,
-        profile: &Profile<T>,
+        band: &Band<T>,
         object: usize,
         column: usize,
         row: usize,
@@ -134,14 +135,14 @@ impl<T: Real> JointScratch<T> {
         let frame = self.frames[object];
         let u = frame.to_unit([T::of_usize(column) + half, T::of_usize(row) + half]);
         let (low, high) = problem.shapes[scene.objects[object].shape].field.distance_bounds(u);
-        low * frame.scale < profile.outside && high * frame.scale > -profile.inside
+        low * frame.scale < band.outside && high * frame.scale > -band.inside
     }
 
     fn add_pixel(
         &mut self,
         problem: &JointProblem<'_, T>,
         scene: &JointScene<T>,
-        profile: &Profile<T>,
+        band: &Band<T>,
         [column, row]: [usize; 2],
         index: usize,
         pixel_weight: T,
@@ -156,7 +157,7 @@ impl<T: Real> JointScratch<T> {
             let frame = self.frames[k];
             let u = frame.to_unit(point);
             let (distance, normal) = problem.shapes[object.shape].field.distance(u);
-            let (coverage, change) = profile.coverage(distance * frame.scale);
+            let (coverage, change) = band.profile.coverage(distance * frame.scale);
             if coverage <= T::zero() {
                 continue;
             }
@@ -282,37 +283,16 @@ fn composite<T: Real>(compositing: Compositing, scene: &JointScene<T>, covers: &
     }
 }
 
-impl<T: Real> Profile<T> {
+impl<T: Real> Band<T> {
     fn new(problem: &JointProblem<'_, T>) -> Self {
-        let doubled_px = T::of_usize(problem.image.size().unit_px()) * T::of(0.5);
-        let square = doubled_px * doubled_px;
-        let edge = problem.edge;
-        // Coverage within 1e-4 of 1 counts as 1.
-        let full = edge.offset - edge.sigma * T::of(9.21);
-        Self {
-            offset: edge.offset * square,
-            inverse_sigma: T::one() / (edge.sigma * square),
-            cut: edge.cut * square,
-            inside: (-full).max(T::zero()).sqrt() * doubled_px,
-            outside: edge.cut.max(T::zero()).sqrt() * doubled_px,
-        }
+        let profile = problem.edge.in_pixels(T::of_usize(problem.image.size().unit_px()));
+        let inside = profile.px((-profile.full(SATURATION)).max(T::zero()));
+        Self { profile, inside, outside: profile.px(profile.cut.max(T::zero())) }
     }
 
     /// Every how many rows and columns suffice to see the band: at least three to its width, at most those of interiors.
     fn stride(&self) -> usize {
         let band = (self.inside + self.outside) / T::of(3.0);
         if band >= T::of_usize(INTERIOR_STRIDE) { INTERIOR_STRIDE } else { band.to_count().clamp(1, 2) }
-    }
-
-    /// Coverage at a signed distance (px), and its derivative per px.
-    #[inline(always)]
-    fn coverage(&self, distance: T) -> (T, T) {
-        let squared = distance * distance.abs();
-        if squared > self.cut {
-            return (T::zero(), T::zero());
-        }
-        let coverage = T::one() / (T::one() + ((squared - self.offset) * self.inverse_sigma).exp_lanes::<false>());
-        let change = -coverage * (T::one() - coverage) * self.inverse_sigma * T::of(2.0) * distance.abs();
-        (coverage, change)
     }
 }

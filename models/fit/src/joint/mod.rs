@@ -11,7 +11,7 @@ mod tests;
 
 use alloc::vec::Vec;
 
-use dvp_core::render::{Compositing, EdgeProfile};
+use dvp_core::render::{Compositing, EdgeLaw, EdgeProfile};
 use dvp_core::{ImageView, Real};
 
 use crate::StopReason;
@@ -117,7 +117,7 @@ pub(crate) fn refine<T: Real>(
     result
 }
 
-/// Refines at `factors` x sigma, one after the other; the last one should be 1. The width grows with the root of the factor:
+/// Refines at `factors` x sigma (their roots, where sigma is no square), one after the other; the last one should be 1. The width grows with the root of the factor:
 /// a soft edge is off by more.
 pub(crate) fn continue_sigma<T: Real>(
     problem: &JointProblem<'_, T>,
@@ -129,8 +129,9 @@ pub(crate) fn continue_sigma<T: Real>(
     let mut steps = 0;
     let mut result = JointResult { cost: T::infinity(), steps: 0, stop: StopReason::StepLimit };
     for &factor in factors {
-        let sigma = problem.edge.sigma * T::of(factor);
-        let cut = problem.edge.offset + (problem.edge.cut - problem.edge.offset) * T::of(factor);
+        let softer = if problem.edge.law == EdgeLaw::SquaredDistance { T::of(factor) } else { T::of(factor).sqrt() };
+        let sigma = problem.edge.sigma * softer;
+        let cut = problem.edge.offset + (problem.edge.cut - problem.edge.offset) * softer;
         let width = problem.width * T::of(factor).sqrt();
         let softened =
             JointProblem { edge: EdgeProfile { sigma, cut, ..problem.edge }, coarse: factor > 1.0, width, ..*problem };

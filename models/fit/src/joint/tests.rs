@@ -64,7 +64,7 @@ fn value(scene: &mut JointScene<f64>, lane: usize) -> &mut f64 {
 fn the_gradient_is_that_of_half_the_cost() {
     let (shapes, image, mut scene) = ([shape()], image(), scene());
     // A softer edge than the reference's at 36 px, so that bands are several pixels wide; no cut, which is a jump.
-    let edge = EdgeProfile { offset: 5e-4, sigma: 4e-3, cut: 0.1 };
+    let edge = EdgeProfile { offset: 5e-4, sigma: 4e-3, cut: 0.1, ..EdgeProfile::reference() };
     for compositing in [Compositing::Blend, Compositing::Over] {
         let problem = JointProblem {
             image: image.view(),
@@ -100,7 +100,7 @@ fn the_gradient_is_that_of_half_the_cost() {
 fn the_hessian_is_that_of_the_rows() {
     // At residuals of 0 it is the second derivative of half the cost: cost(x + h) = h^2 H / 2 x 2.
     let (shapes, truth) = ([shape()], scene());
-    let edge = EdgeProfile { offset: 5e-4, sigma: 4e-3, cut: 0.1 };
+    let edge = EdgeProfile { offset: 5e-4, sigma: 4e-3, cut: 0.1, ..EdgeProfile::reference() };
     let mut image = image();
     let problem = |image, width| JointProblem {
         image,
@@ -159,7 +159,7 @@ fn render(scene: &JointScene<f64>, shape: &Prototype<f64>, edge: EdgeProfile<f64
 #[test]
 fn refinement_returns_to_the_truth() {
     let (shapes, truth) = ([shape()], scene());
-    let edge = EdgeProfile { offset: 5e-4, sigma: 1e-3, cut: 9.21e-3 };
+    let edge = EdgeProfile { offset: 5e-4, sigma: 1e-3, cut: 9.21e-3, ..EdgeProfile::reference() };
     let mut image = image();
     render(&truth, &shapes[0], edge, &mut image);
     let problem = JointProblem {

@@ -186,7 +186,7 @@ fn try_fit(
     };
     let (fit, time) = solver.solve(image.view(), &input.stem, scratch)?;
     write_results(arguments, &fit, image.size(), input)?;
-    Ok(FoundScene::new(&fit, fit.loss, time.as_secs_f64() * 1e3))
+    Ok(FoundScene::new(&fit, image.size(), time.as_secs_f64() * 1e3))
 }
 
 fn stack_image<'a>(stacks: &'a [Stack], path: &Path, frame: usize) -> Option<&'a Image<f32>> {

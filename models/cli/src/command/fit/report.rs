@@ -1,6 +1,8 @@
 //! What a fit tells: JSON for programs, a table for people.
 
 use comfy_table::{Table, presets};
+use dvp_core::render::{EdgeLaw, EdgeProfile};
+use dvp_core::{ImageSize, Real};
 use dvp_fit::{Ambiguity, Fit, StopReason};
 use serde::Serialize;
 
@@ -28,12 +30,25 @@ pub(super) struct FoundScene {
     cpu_ms: f64,
     steps: usize,
     stop: &'static str,
+    edge: EdgeReport,
     /// Description length; null for methods that do not count it.
     bits: Option<f64>,
     ambiguity: Vec<AmbiguityReport>,
     /// Per object, row by row: covariance of (x, y, log scale, rotation).
     covariance: Vec<[f32; 16]>,
 }
+
+/// The edges of the picture.
+#[derive(Debug, Serialize)]
+struct EdgeReport {
+    /// `reference`, `squared`, `area`, `hard` or `blur`.
+    kind: &'static str,
+    /// Pixels in which coverage falls from 0.9 to 0.1.
+    width_px: f32,
+}
+
+/// Hard edges are narrower, px.
+const HARD_PX: f32 = 0.2;
 
 /// An ambiguity under its name.
 #[derive(Debug, Serialize)]
@@ -57,10 +72,10 @@ pub(super) struct Summary {
 }
 
 impl FoundScene {
-    pub(super) fn new(fit: &Fit<f32>, mae: f32, cpu_ms: f64) -> Self {
+    pub(super) fn new(fit: &Fit<f32>, size: ImageSize, cpu_ms: f64) -> Self {
         Self {
             objects: fit.scene.objects.len(),
-            mae,
+            mae: fit.loss,
             cpu_ms,
             steps: fit.steps,
             stop: match fit.stop {
@@ -70,10 +85,26 @@ impl FoundScene {
                 StopReason::Empty => "empty",
                 _ => "other",
             },
+            edge: EdgeReport::of(&fit.scene.edge, size),
             bits: fit.bits.is_finite().then_some(fit.bits),
             ambiguity: fit.ambiguity.iter().map(AmbiguityReport::of).collect(),
             covariance: fit.covariance.clone(),
         }
+    }
+}
+
+impl EdgeReport {
+    fn of(edge: &EdgeProfile<f32>, size: ImageSize) -> Self {
+        let profile = edge.in_pixels(f32::of_usize(size.unit_px()));
+        let width_px = profile.distance(0.1) - profile.distance(0.9);
+        let kind = match edge.law {
+            EdgeLaw::Area => "area",
+            EdgeLaw::Distance if width_px < HARD_PX => "hard",
+            EdgeLaw::Distance => "blur",
+            EdgeLaw::SquaredDistance if *edge == EdgeProfile::reference() => "reference",
+            EdgeLaw::SquaredDistance => "squared",
+        };
+        Self { kind, width_px }
     }
 }
 
@@ -127,7 +158,7 @@ pub(super) fn json(reports: &[Report]) -> serde_json::Result<String> {
 pub(super) fn table(reports: &[Report]) -> String {
     let mut table = Table::new();
     table.load_style(presets::UTF8_HORIZONTAL_ONLY);
-    table.set_header(["picture", "objects", "MAE", "CPU ms", "steps", "stop"]);
+    table.set_header(["picture", "objects", "MAE", "CPU ms", "steps", "stop", "edge"]);
     let summary = Summary::of(reports);
     if reports.len() <= MOST_ROWS {
         for report in reports {
@@ -139,6 +170,7 @@ pub(super) fn table(reports: &[Report]) -> String {
                     format!("{:.2}", found.cpu_ms),
                     found.steps.to_string(),
                     found.stop.to_owned(),
+                    format!("{} {:.1} px", found.edge.kind, found.edge.width_px),
                 ]),
                 None => table.add_row([report.path.as_str(), "failed"]),
             };

@@ -5,12 +5,12 @@
 //! size does not.
 
 use dvp_core::Real;
-use dvp_core::render::EdgeProfile;
+use dvp_core::render::{EdgeLaw, EdgeProfile};
 
 /// How coverage and distance belong together at the edges of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum EdgeKind<T> {
-    /// A profile in squared distance.
+    /// A profile in distance or its square.
     Profile(EdgeProfile<T>),
     /// Share of the pixel's area.
     Area,
@@ -69,11 +69,16 @@ impl CoverageCounts {
 const FEW: usize = 12;
 
 impl<T: Real> EdgeKind<T> {
+    /// The kind that a profile paints.
+    pub(crate) fn of(profile: EdgeProfile<T>) -> Self {
+        if profile.law == EdgeLaw::Area { Self::Area } else { Self::Profile(profile) }
+    }
+
     /// The profile that renders this kind at `unit_px` pixels per scene unit.
     pub(crate) fn profile(&self, unit_px: T) -> EdgeProfile<T> {
         match self {
             Self::Profile(profile) => *profile,
-            Self::Area => EdgeProfile::area(unit_px),
+            Self::Area => EdgeProfile::area(),
             Self::Hard => EdgeProfile::hard(unit_px),
         }
     }
@@ -92,16 +97,14 @@ impl<T: Real> EdgeKind<T> {
     /// Signed distance (px, positive outside) at which coverage is `coverage`, and the slope of coverage there per px; none
     /// where coverage is too close to 0 or 1 to tell.
     pub(crate) fn distance(&self, coverage: T, unit_px: T) -> Option<(T, T)> {
-        let (one, two, half) = (T::one(), T::of(2.0), T::of(0.5));
+        let (one, half) = (T::one(), T::of(0.5));
         let settled = !(coverage > T::of(0.02) && coverage < T::of(0.985));
         match self {
             Self::Profile(_) | Self::Area if settled => None,
             Self::Profile(edge) => {
-                let doubled_px = unit_px / two;
-                let d2 = edge.offset - edge.sigma * (coverage / (one - coverage)).ln();
-                let d = d2.abs().sqrt() * d2.signum();
-                let slope = coverage * (one - coverage) / edge.sigma * two * d.abs() / doubled_px;
-                Some((d * doubled_px, slope))
+                let edge = edge.in_pixels(unit_px);
+                let distance = edge.distance(coverage);
+                Some((distance, -edge.coverage(distance).1))
             }
             // Of a half plane along the pixel grid; others differ by a few hundredths of a pixel.
             Self::Area => Some((half - coverage, one)),
