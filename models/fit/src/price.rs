@@ -20,13 +20,16 @@ fn choice_bits(bank: usize) -> f64 {
     Float::log2(f64::of_usize(bank.max(1)))
 }
 
+/// Bits of an object but for its shape.
+pub(crate) const OBJECT_BITS: f64 = COLOR_BITS + POSE_BITS;
+
 /// Bits of background and objects; a prototype costs the choice among `bank` shapes, a free shape its coefficients.
 pub(crate) fn scene_bits<T: Real>(scene: &Scene<T>, bank: usize) -> f64 {
     let shape = |harmonics: usize, known: bool| {
         if known { choice_bits(bank) } else { 4.0 * COEFFICIENT_BITS * T::of_usize(harmonics).as_f64() }
     };
     let objects = scene.objects.iter();
-    let parts = objects.map(|o| COLOR_BITS + POSE_BITS + shape(o.efd.harmonic_count(), o.prototype.is_some()));
+    let parts = objects.map(|o| OBJECT_BITS + shape(o.efd.harmonic_count(), o.prototype.is_some()));
     COLOR_BITS + parts.sum::<f64>()
 }
 

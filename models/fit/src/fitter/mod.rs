@@ -1,10 +1,11 @@
 //! Segment-and-fit: the pipeline from an image to a [`Fit`].
 //!
-//! `order` decides which objects are in front, `known` poses the prototypes of a bank, `unknown` fits free outlines; `run` is what both share: rendering, colors,
+//! `pieces` joins what another object cuts in two, `order` decides which objects are in front, `known` poses the prototypes of a bank, `unknown` fits free outlines; `run` is what both share: rendering, colors,
 //! pruning, and the doubt that goes with the result.
 
 mod known;
 mod order;
+mod pieces;
 mod run;
 mod twins;
 mod unknown;
@@ -176,6 +177,7 @@ impl<T: Real> Fitter<T> {
     ) -> Result<Fit<T>, FitError> {
         let edge = kind.profile(T::of_usize(image.size().unit_px()));
         let mut run = Run { fitter: self, image, kind, edge, compositing, scratch };
+        run.join_pieces();
         run.decide_order();
         run.scratch.segmentation.gather(image.size(), &kind);
         let found = if self.prototypes.is_empty() { run.unknown_shapes()? } else { run.known_shapes()? };

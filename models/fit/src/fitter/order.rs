@@ -55,7 +55,7 @@ impl<T: Real> Run<'_, T> {
     }
 
     /// Bits of the shape of an object and of what its samples miss, from the borders that are decided for it.
-    fn part_bits(&mut self, object: u32) -> f64 {
+    pub(super) fn part_bits(&mut self, object: u32) -> f64 {
         let size = self.image.size();
         self.scratch.segmentation.gather_object(object, size, &self.kind);
         if self.fitter.prototypes.is_empty() {

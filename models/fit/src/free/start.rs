@@ -28,6 +28,9 @@ pub(crate) fn trace<T: Real>(
     size: ImageSize,
     scratch: &mut StartScratch<T>,
 ) -> Option<Vec<[T; 2]>> {
+    if segment.pixels == 0 {
+        return None;
+    }
     let [left, top, right, bottom] = segment.bounds.map(|v| v as usize);
     // The window in image coordinates, shifted by the margin on all sides; it may leave the image by the margin.
     let (low_x, low_y) = (left.saturating_sub(MARGIN), top.saturating_sub(MARGIN));

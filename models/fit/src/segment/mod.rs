@@ -20,7 +20,7 @@ use dvp_core::{ImageSize, ImageView, Real};
 
 use edge_kind::CoverageCounts;
 pub(crate) use edge_kind::EdgeKind;
-pub(crate) use interpret::{Border, Evidence};
+pub(crate) use interpret::{Border, Evidence, Stacking};
 
 /// Signed distance from a pixel center to the outline of an object, read from the pixel's color.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -118,7 +118,6 @@ impl<T: Real> Segmentation<T> {
         self.segments.resize_with(self.segments.len().max(self.count), Segment::default);
         let objects = self.reading.colors.iter().zip(&self.reading.confidences);
         for (segment, (&color, &confidence)) in self.segments.iter_mut().zip(objects) {
-            segment.clear();
             segment.color = color;
             segment.confidence = confidence;
         }
@@ -163,6 +162,19 @@ impl<T: Real> Segmentation<T> {
         if let Some(border) = self.reading.borders.get_mut(border) {
             border.front = front;
         }
+    }
+
+    /// Makes `other` a part of `object`; returns what [`Self::part`] takes to undo that.
+    pub(crate) fn join(&mut self, object: u32, other: u32) -> Stacking {
+        let before = self.reading.join(object, other);
+        self.gather_moments();
+        before
+    }
+
+    /// Undoes [`Self::join`].
+    pub(crate) fn part(&mut self, before: Stacking) {
+        self.reading.restore(before);
+        self.gather_moments();
     }
 
     /// Turns soft pixels into samples of one object under the given edge kind.
@@ -290,6 +302,7 @@ impl<T: Real> Segmentation<T> {
     }
 
     fn gather_moments(&mut self) {
+        self.segments.iter_mut().take(self.count).for_each(Segment::clear);
         for (region, cover) in self.regions.iter().zip(&self.reading.covers) {
             for &object in cover.members() {
                 let segment = &mut self.segments[object as usize];

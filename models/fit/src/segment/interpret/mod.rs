@@ -65,6 +65,13 @@ pub(crate) struct Border {
     pub(crate) front: Option<u32>,
 }
 
+/// What covers what, as it was before two objects were joined.
+#[derive(Clone, Debug)]
+pub(crate) struct Stacking {
+    covers: Vec<Cover>,
+    borders: Vec<Border>,
+}
+
 /// Soft pixels that speak for a way to read the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Evidence {

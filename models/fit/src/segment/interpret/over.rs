@@ -8,7 +8,7 @@
 use dvp_core::Real;
 use dvp_core::render::Compositing;
 
-use super::{BACKGROUND_CONTACT, Border, Cover, MAX_COVER, Reading, distance, is_color, within_unit};
+use super::{BACKGROUND_CONTACT, Border, Cover, MAX_COVER, Reading, Stacking, distance, is_color, within_unit};
 use crate::segment::region::Region;
 
 /// How exactly an overlap shows the color that opacity foretells.
@@ -39,10 +39,10 @@ impl<T: Real> Reading<T> {
         self.overlaps.clear();
         self.overlaps.resize(regions.len(), None);
         let mut through = alloc::vec![T::zero(); regions.len()];
-        for i in 0..regions.len() {
+        for (i, through) in through.iter_mut().enumerate() {
             if let Some(shadow) = self.shadow(regions, i) {
                 self.overlaps[i] = Some(([shadow.top, shadow.bottom, 0], 2));
-                through[i] = shadow.through;
+                *through = shadow.through;
             }
         }
         self.drop_chained_overlaps();
@@ -255,5 +255,34 @@ impl<T: Real> Reading<T> {
             border.front = border.front.or(front);
         }
         self.borders.retain(|border| border.front.is_some() || border.pixels >= MIN_BORDER);
+    }
+
+    /// Makes `other` a part of `object`; returns what was before.
+    pub(crate) fn join(&mut self, object: u32, other: u32) -> Stacking {
+        let before = Stacking { covers: self.covers.clone(), borders: self.borders.clone() };
+        let renamed = |member: u32| if member == other { object } else { member };
+        for cover in &mut self.covers {
+            if cover.members().contains(&other) {
+                let mut members = cover.members().to_vec();
+                members.iter_mut().for_each(|member| *member = renamed(*member));
+                *cover = Cover::of(&members);
+            }
+        }
+        for border in before.borders.iter().filter(|border| border.objects.contains(&other)) {
+            let [a, b] = border.objects.map(renamed);
+            if a != b {
+                let joined = self.border(a, b);
+                joined.pixels += border.pixels;
+                joined.front = joined.front.or(border.front.map(renamed));
+            }
+        }
+        self.borders.retain(|border| !border.objects.contains(&other));
+        before
+    }
+
+    /// Undoes [`Self::join`].
+    pub(crate) fn restore(&mut self, before: Stacking) {
+        self.covers = before.covers;
+        self.borders = before.borders;
     }
 }
