@@ -26,7 +26,7 @@ use crate::joint::JointScratch;
 use crate::pose::field::OutlineField;
 use crate::pose::search::{Candidate, Prototype};
 use crate::residual::Residual;
-use crate::segment::{EdgeKind, EdgeSample, SegmentOptions, Segmentation};
+use crate::segment::{EdgeKind, EdgeSample, SegmentOptions, Segmentation, noise_level};
 use crate::{Fit, FitError, FitOptions};
 use run::Run;
 
@@ -55,6 +55,7 @@ pub struct FitScratch<T: Real> {
     lanes: EdgeLanes<T>,
     samples: Vec<EdgeSample<T>>,
     colors: ColorScratch<T>,
+    differences: Vec<T>,
 }
 
 impl<T: Real> Default for FitScratch<T> {
@@ -73,6 +74,7 @@ impl<T: Real> Default for FitScratch<T> {
             lanes: EdgeLanes::default(),
             samples: Vec::new(),
             colors: ColorScratch::default(),
+            differences: Vec::new(),
         }
     }
 }
@@ -124,7 +126,12 @@ impl<T: Real> Fitter<T> {
         if let Err(dvp_core::image::ImageError::NotFinite { index }) = ImageView::new(image.size(), image.data()) {
             return Err(FitError::NotFinite { index });
         }
-        let readable = scratch.segmentation.read(&image, &SegmentOptions::default());
+        let noise = noise_level(&image, &mut scratch.differences);
+        let readable = if noise < T::of(QUIET) {
+            scratch.segmentation.read(&image, &SegmentOptions::default())
+        } else {
+            scratch.segmentation.read_noisy(&image, noise, usize::MAX)
+        };
         if !readable {
             let edge = self.options.edge.unwrap_or_else(EdgeProfile::reference);
             let compositing = self.options.compositing.unwrap_or_default();
@@ -192,6 +199,9 @@ fn shorter<T>(first: Fit<T>, second: Fit<T>) -> Fit<T> {
 /// So many soft pixels between two objects without their mean color between speak for one hiding the other; objects that
 /// merely touch have fewer.
 const DIRECT_PIXELS: u32 = 8;
+
+/// Below this noise a picture is read as if it had none.
+const QUIET: f64 = 0.0015;
 
 /// Harmonics that 64 vertices, two of them in one place, can carry.
 const MAX_HARMONICS: usize = 31;

@@ -13,7 +13,6 @@ use super::run::Run;
 use crate::free::grow::Freedom;
 use crate::pose::search::Effort;
 use crate::price::misfit_bits;
-use crate::segment::PIXEL_NOISE;
 
 /// Descriptions whose lengths differ by less say nothing.
 const CLEARLY_SHORTER_BITS: f64 = 8.0;
@@ -64,7 +63,7 @@ impl<T: Real> Run<'_, T> {
         }
         self.search(object, Effort::Usual);
         let samples = &self.scratch.segmentation.segments()[object as usize].samples;
-        let noise = T::one() / T::of(PIXEL_NOISE);
+        let noise = T::one() / self.noise();
         let weights: T = samples.iter().map(|sample| (sample.weight * noise).powi(2)).sum();
         let best = self.scratch.candidates.first();
         best.map_or(NO_FIT_BITS, |best| (best.cost * weights * misfit_bits()).as_f64())

@@ -11,7 +11,7 @@ use super::{FitScratch, Fitter, symmetry_order};
 use crate::colors::{MAX_COVERAGE_VALUES, is_rounded, refine_colors};
 use crate::doubt::{covariance, visible_share};
 use crate::price::scene_bits;
-use crate::segment::{EdgeKind, PIXEL_NOISE};
+use crate::segment::EdgeKind;
 use crate::{Ambiguity, Fit, FitError, StopReason};
 
 /// One image being fitted.
@@ -46,15 +46,24 @@ pub(super) struct FoundObject<T> {
 
 /// A rendering that misses a pixel by this much in some channel does so visibly.
 const VISIBLE_ERROR: f64 = 0.03;
+/// Under noise, this many standard deviations are visible; a picture has about one such pixel in 5000 by chance.
+const VISIBLE_NOISE: f64 = 4.0;
 /// Objects of fewer flat pixels, or of less contrast, must show that they pay for their description.
 const SURE_PIXELS: usize = 12;
 const SURE_CONTRAST: f64 = 0.03;
+/// The same in units of the noise.
+const SURE_NOISE: f64 = 10.0;
 /// A twin is worth telling if its squared error is below this many times that of the chosen prototype.
 const TWIN_RATIO: f64 = 4.0;
 
 impl<T: Real> Run<'_, T> {
     pub(super) fn unit_px(&self) -> T {
         T::of_usize(self.image.size().unit_px())
+    }
+
+    /// Standard deviation of a pixel's channel that no object explains.
+    pub(super) fn noise(&self) -> T {
+        self.scratch.segmentation.noise()
     }
 
     /// No flat region: the mean color and no object.
@@ -75,7 +84,12 @@ impl<T: Real> Run<'_, T> {
 
     /// Pixels within `reach_px` of a point that the last rendering visibly misses.
     pub(super) fn missed_pixels(&self, center_px: [T; 2], reach_px: T) -> usize {
-        self.scratch.residual.count_above(self.image.size(), center_px, reach_px, T::of(VISIBLE_ERROR))
+        self.scratch.residual.count_above(
+            self.image.size(),
+            center_px,
+            reach_px,
+            T::of(VISIBLE_ERROR).max(T::of(VISIBLE_NOISE) * self.noise()),
+        )
     }
 
     /// Cuts to the number of objects allowed, refines colors, drops what does not pay, and adds the doubt.
@@ -162,13 +176,13 @@ impl<T: Real> Run<'_, T> {
 
     /// Description length of the scene plus that of the residual last measured.
     fn bits(&self, scene: &Scene<T>) -> f64 {
-        scene_bits(scene, self.fitter.prototypes.len()) + self.scratch.residual.bits(T::of(PIXEL_NOISE))
+        scene_bits(scene, self.fitter.prototypes.len()) + self.scratch.residual.bits(self.noise())
     }
 
     fn is_doubtful(&self, scene: &Scene<T>, part: &FoundObject<T>) -> bool {
         let pixels = self.scratch.segmentation.segments()[part.segment].pixels;
         let contrast = (0..3).fold(T::zero(), |most, c| most.max((part.object.color[c] - scene.background[c]).abs()));
-        pixels < SURE_PIXELS || contrast < T::of(SURE_CONTRAST)
+        pixels < SURE_PIXELS || contrast < T::of(SURE_CONTRAST).max(T::of(SURE_NOISE) * self.noise())
     }
 
     fn covariances(&mut self, scene: &Scene<T>, found: &Found<T>) -> Result<Vec<[T; 16]>, FitError> {
@@ -181,7 +195,7 @@ impl<T: Real> Run<'_, T> {
             scratch.outline.extend(scratch.drawing.outline(k).iter().map(|v| v.map(|x| x * unit)));
             let center = object.pose.translation.map(|x| x * unit);
             let samples = &scratch.segmentation.segments()[part.segment].samples;
-            let noise = T::of(PIXEL_NOISE);
+            let noise = scratch.segmentation.noise();
             out.push(covariance(&scratch.outline, center, samples, unit, noise, &mut scratch.lanes));
         }
         Ok(out)

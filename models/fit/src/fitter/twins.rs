@@ -9,7 +9,6 @@ use super::run::Run;
 use crate::FitError;
 use crate::joint::{JointObject, JointScene};
 use crate::price::known_object_bits;
-use crate::segment::PIXEL_NOISE;
 use crate::split::split;
 
 impl<T: Real> Run<'_, T> {
@@ -50,7 +49,7 @@ impl<T: Real> Run<'_, T> {
     }
 
     fn residual_bits(&self) -> f64 {
-        self.scratch.residual.bits(T::of(PIXEL_NOISE))
+        self.scratch.residual.bits(self.noise())
     }
 }
 

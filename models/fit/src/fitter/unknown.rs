@@ -7,7 +7,7 @@ use dvp_core::shape::REFERENCE_VERTICES;
 use dvp_core::{Efd, Object, Real};
 
 use super::run::{Found, FoundObject, Run};
-use crate::free::grow::{Freedom, Grown, grow, hold_outside};
+use crate::free::grow::{Freedom, GrowSettings, Grown, grow, hold_outside};
 use crate::free::start::{shrink, trace};
 use crate::{FitError, StopReason};
 
@@ -91,6 +91,7 @@ impl<T: Real> Run<'_, T> {
         let size = self.image.size();
         let half_coverage_px = self.edge.half_coverage().max(T::zero()) * self.unit_px();
         let scratch = &mut *self.scratch;
+        let noise = scratch.segmentation.noise();
         let part = &scratch.segmentation.segments()[segment];
         let object = u32::try_from(segment).ok()?;
         let contour = trace(part, object, &scratch.segmentation, size, &mut scratch.start)?;
@@ -100,8 +101,8 @@ impl<T: Real> Run<'_, T> {
         if part.border > 0 {
             hold_outside(&contour, T::of_usize(size.width()), T::of_usize(size.height()), &mut scratch.samples);
         }
-        let most = self.fitter.options.max_harmonics;
-        let basis = &self.fitter.basis;
-        grow(&contour, &scratch.samples, basis, REFERENCE_VERTICES, most, freedom, &mut scratch.free)
+        let max_harmonics = self.fitter.options.max_harmonics;
+        let settings = GrowSettings { vertex_count: REFERENCE_VERTICES, max_harmonics, freedom, noise };
+        grow(&contour, &scratch.samples, &self.fitter.basis, settings, &mut scratch.free)
     }
 }

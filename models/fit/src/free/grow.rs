@@ -9,7 +9,7 @@ use super::basis::Basis;
 use super::outline_fit::{FreeOutline, OutlineScratch, OutlineSettings, refine};
 use super::polygon_fit::{PolygonScratch, move_vertices, transform};
 use crate::price::{COEFFICIENT_BITS, misfit_bits};
-use crate::segment::{EdgeSample, PIXEL_NOISE};
+use crate::segment::EdgeSample;
 
 /// Numbers of harmonics an outline is cut to.
 const LADDER: [usize; 10] = [2, 3, 4, 6, 8, 10, 12, 16, 20, 24];
@@ -36,6 +36,16 @@ pub(crate) enum Freedom {
     None,
 }
 
+/// Settings of [`grow`].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct GrowSettings<T> {
+    pub(crate) vertex_count: usize,
+    pub(crate) max_harmonics: usize,
+    pub(crate) freedom: Freedom,
+    /// Noise of a pixel value that the weights of the samples refer to.
+    pub(crate) noise: T,
+}
+
 /// Memory of [`grow`].
 #[derive(Clone, Debug, Default)]
 pub(crate) struct GrowScratch<T> {
@@ -53,12 +63,10 @@ pub(crate) fn grow<T: Real>(
     contour: &[[T; 2]],
     samples: &[EdgeSample<T>],
     basis: &Basis<T>,
-    vertex_count: usize,
-    max_harmonics: usize,
-    freedom: Freedom,
+    settings: GrowSettings<T>,
     scratch: &mut GrowScratch<T>,
 ) -> Option<Grown<T>> {
-    let noise = T::of(PIXEL_NOISE);
+    let GrowSettings { vertex_count, max_harmonics, freedom, noise } = settings;
     if freedom != Freedom::Full {
         let GrowScratch { polygon, vertices, .. } = scratch;
         take_vertices(contour, vertex_count, vertices)?;
@@ -90,7 +98,7 @@ pub(crate) fn grow<T: Real>(
         let cost = move_vertices(vertices, samples, T::of(0.5), noise, POLYGON_STEPS, polygon);
         let outline = transform(vertices, basis, max_harmonics);
         let full = Grown { outline, bits: price::<T>(max_harmonics) + cost * misfit_bits(), steps: 0 };
-        let cut = most_promising_cut(&full, samples, basis, vertex_count);
+        let cut = most_promising_cut(&full, samples, basis, vertex_count, noise);
         // Coefficients let vertices slide into corners, which normals alone do not.
         let tried = fit(&full.outline, cut, &[0.5], outline_scratch);
         steps += 2 + POLYGON_STEPS;
@@ -120,10 +128,11 @@ fn most_promising_cut<T: Real>(
     samples: &[EdgeSample<T>],
     basis: &Basis<T>,
     vertex_count: usize,
+    noise: T,
 ) -> usize {
     let rows = &full.outline.rows;
-    let noise = T::one() / T::of(PIXEL_NOISE * PIXEL_NOISE);
-    let weights = samples.iter().map(|sample| sample.weight * sample.weight * noise).sum::<T>();
+    let precision = T::one() / (noise * noise);
+    let weights = samples.iter().map(|sample| sample.weight * sample.weight * precision).sum::<T>();
     let mut vertices = Vec::new();
     full.outline.write_vertices(basis, vertex_count, &mut vertices);
     let edges = vertex_count - 1;

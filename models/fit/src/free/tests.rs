@@ -1,7 +1,7 @@
 use alloc::vec::Vec;
 
 use super::basis::Basis;
-use super::grow::{Freedom, GrowScratch, grow};
+use super::grow::{Freedom, GrowScratch, GrowSettings, grow};
 use super::outline_fit::{FreeOutline, OutlineScratch, OutlineSettings, expand, gather};
 use crate::segment::EdgeSample;
 
@@ -84,8 +84,8 @@ fn ellipse_samples() -> (Vec<[f64; 2]>, Vec<EdgeSample<f64>>) {
 fn an_ellipse_pays_for_one_harmonic() {
     let (contour, samples) = ellipse_samples();
     let basis = Basis::new(VERTICES, 31);
-    let grown =
-        grow(&contour[1..], &samples, &basis, VERTICES, 31, Freedom::Full, &mut GrowScratch::default()).unwrap();
+    let settings = GrowSettings { vertex_count: VERTICES, max_harmonics: 31, freedom: Freedom::Full, noise: 0.003 };
+    let grown = grow(&contour[1..], &samples, &basis, settings, &mut GrowScratch::default()).unwrap();
     assert_eq!(grown.outline.rows.len(), 1);
     let [a, b, c, d] = grown.outline.rows[0];
     // The area pi |a d - b c| does not depend on where the outline starts.

@@ -5,7 +5,7 @@
 
 use alloc::vec::Vec;
 
-use dvp_core::{ImageView, Real, simd};
+use dvp_core::{ImageSize, ImageView, Real, simd};
 
 /// A run of flat pixels of one row.
 #[derive(Clone, Copy, Debug)]
@@ -81,6 +81,36 @@ impl FlatMap {
         for run in &self.runs {
             let row = run.row as usize * width;
             self.labels[row + run.start as usize..row + run.end as usize].fill(run.label);
+        }
+    }
+
+    /// Takes the regions of a partition: pixels of one label, connected or not, are one region; those labeled `soft` belong
+    /// to none.
+    #[expect(clippy::cast_possible_truncation, reason = "an image has at most 2^28 pixels")]
+    pub(crate) fn set(&mut self, size: ImageSize, labels: &[u32], soft: u32) {
+        self.runs.clear();
+        self.labels.clear();
+        self.labels.resize(labels.len(), 0);
+        // Numbers in reading order, from 1.
+        let most = labels.iter().copied().filter(|&label| label != soft).max().map_or(0, |most| most as usize + 1);
+        self.sizes.clear();
+        self.sizes.resize(most, 0);
+        self.region_count = 0;
+        for (row, line) in labels.chunks_exact(size.width()).enumerate() {
+            let mut start = 0;
+            for same in line.chunk_by(|a, b| a == b) {
+                let end = start + same.len();
+                if same[0] != soft {
+                    let name = &mut self.sizes[same[0] as usize];
+                    if *name == 0 {
+                        self.region_count += 1;
+                        *name = self.region_count as u32;
+                    }
+                    self.runs.push(Run { row: row as u32, start: start as u32, end: end as u32, label: *name });
+                    self.labels[row * size.width() + start..row * size.width() + end].fill(*name);
+                }
+                start = end;
+            }
         }
     }
 

@@ -9,6 +9,7 @@ mod edge_kind;
 mod flat;
 mod interpret;
 mod region;
+mod robust;
 #[cfg(test)]
 mod tests;
 mod transition;
@@ -21,6 +22,7 @@ use dvp_core::{ImageSize, ImageView, Real};
 use edge_kind::CoverageCounts;
 pub(crate) use edge_kind::EdgeKind;
 pub(crate) use interpret::{Border, Evidence, Stacking};
+pub(crate) use robust::noise_level;
 
 /// Signed distance from a pixel center to the outline of an object, read from the pixel's color.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,12 +31,15 @@ pub(crate) struct EdgeSample<T> {
     pub(crate) point: [T; 2],
     /// Distance (px), positive outside.
     pub(crate) distance: T,
-    /// Inverse of the noise of `distance`, in units of 1 / [`PIXEL_NOISE`]: about the change of the pixel value per px.
+    /// Noise of a pixel value over that of `distance`: about the change of the pixel value per px.
     pub(crate) weight: T,
 }
 
-/// Noise of a pixel value that no outline explains: rounding to 8 bits and the seams of the reference renderer.
+/// Noise of a pixel value that no outline explains, at least: rounding to 8 bits and the seams of the reference renderer.
 pub(crate) const PIXEL_NOISE: f64 = 0.003;
+
+/// How far from the line between two colors a denoised pixel may lie, in units of the noise.
+const LINE_NOISE: f64 = 2.0;
 
 /// One object as the segmentation sees it.
 #[derive(Clone, Debug, Default)]
@@ -94,17 +99,32 @@ pub(crate) struct Segmentation<T> {
     transitions: Vec<transition::Transition<T>>,
     reading: interpret::Reading<T>,
     segments: Vec<Segment<T>>,
+    robust: robust::RobustScratch<T>,
+    noise: T,
     count: usize,
 }
 
 impl<T: Real> Segmentation<T> {
     /// Segments `image`; false if no pixel is flat. [`Self::interpret`] and [`Self::gather`] must follow.
     pub(crate) fn read(&mut self, image: &ImageView<'_, T>, options: &SegmentOptions<T>) -> bool {
-        self.count = 0;
         self.map.label(image, options.flat_tolerance, options.min_pixels);
-        region::measure(image, &self.map, &mut self.regions, &mut self.region_scratch);
+        region::measure(image, &self.map, T::zero(), &mut self.regions, &mut self.region_scratch);
         let tolerance = options.line_tolerance;
         transition::find(image, &self.map, &self.regions, tolerance, &mut self.soft, &mut self.transitions);
+        self.noise = T::of(PIXEL_NOISE);
+        self.reading.prepare(&self.regions, &self.transitions)
+    }
+
+    /// As [`Self::read`], for a picture with noise of standard deviation `noise`, cut to `most_regions` regions.
+    pub(crate) fn read_noisy(&mut self, image: &ImageView<'_, T>, noise: T, most_regions: usize) -> bool {
+        self.noise = noise.max(T::of(PIXEL_NOISE));
+        robust::read_flat(image, self.noise, most_regions, &mut self.robust, &mut self.map);
+        // Clipping at black and white moves means, and the denoised picture with them: soft pixels lie between its colors.
+        let Ok(smooth) = ImageView::new(image.size(), &self.robust.smooth) else { return false };
+        region::measure(&smooth, &self.map, self.noise, &mut self.regions, &mut self.region_scratch);
+        let tolerance = T::of(LINE_NOISE) * self.noise + T::of(0.012);
+        transition::find(&smooth, &self.map, &self.regions, tolerance, &mut self.soft, &mut self.transitions);
+        region::measure(image, &self.map, self.noise, &mut self.regions, &mut self.region_scratch);
         self.reading.prepare(&self.regions, &self.transitions)
     }
 
@@ -189,7 +209,7 @@ impl<T: Real> Segmentation<T> {
                 && rim.object == object as usize
             {
                 segment.rim.push((transition.pixel, rim.coverage));
-                segment.samples.extend(sample(&rim, transition, edge, size));
+                segment.samples.extend(sample(&rim, transition, edge, size, self.noise));
             }
         }
         self.segments[object as usize] = segment;
@@ -207,7 +227,7 @@ impl<T: Real> Segmentation<T> {
                 self.share_between(&transition);
                 continue;
             };
-            let sample = sample(&rim, &transition, edge, size);
+            let sample = sample(&rim, &transition, edge, size, self.noise);
             let segment = &mut self.segments[rim.object];
             segment.rim.push((transition.pixel, rim.coverage));
             segment.samples.extend(sample);
@@ -255,6 +275,11 @@ impl<T: Real> Segmentation<T> {
         let (from, to) = (self.regions[a].color, self.regions[b].color);
         let contrast = (0..3).map(|c| (from[c] - to[c]) * (from[c] - to[c])).sum::<T>().sqrt();
         Some(Rim { object: object as usize, others, coverage, contrast })
+    }
+
+    /// Standard deviation of a pixel's channel that no outline explains.
+    pub(crate) fn noise(&self) -> T {
+        self.noise
     }
 
     pub(crate) fn background(&self) -> [T; 3] {
@@ -325,8 +350,9 @@ fn sample<T: Real>(
     transition: &transition::Transition<T>,
     edge: &EdgeKind<T>,
     size: ImageSize,
+    pixel_noise: T,
 ) -> Option<EdgeSample<T>> {
-    let (own, pixel_noise) = (edge.distance_noise(), T::of(PIXEL_NOISE));
+    let own = edge.distance_noise();
     let (one, half) = (T::one(), T::of(0.5));
     let (distance, slope) = edge.distance(rim.coverage, T::of_usize(size.unit_px()))?;
     let n = T::of_usize(rim.others);

@@ -6,13 +6,19 @@ use dvp_core::{ImageView, Real};
 
 use super::flat::FlatMap;
 
-/// Pixels looked at for the color of a region.
+/// Pixels looked at for the color of a region of a picture without noise.
 const COLOR_SAMPLES: usize = 63;
+/// Pixels looked at under noise: the median is as good as the mean of two thirds of them.
+const NOISY_SAMPLES: usize = 4095;
+/// Standard deviation of a median in units of that of a mean.
+const MEDIAN_SPREAD: f64 = 1.25;
 
 /// A connected region of flat pixels.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Region<T> {
     pub(crate) color: [T; 3],
+    /// Standard deviation of each channel of the color that noise makes; 0 without noise.
+    pub(crate) doubt: T,
     pub(crate) pixels: usize,
     /// Sums over pixel centers: x, y, xx, xy, yy (px).
     pub(crate) sums: [T; 5],
@@ -24,11 +30,11 @@ pub(crate) struct Region<T> {
 
 /// Fills `regions` from labels; region k of the map is `regions[k - 1]`.
 ///
-/// The color is the median of up to 63 pixels spread over the region: triangulation seams and near-edge pixels are
-/// outvoted.
+/// The color is the median of pixels spread over the region: triangulation seams and near-edge pixels are outvoted.
 pub(crate) fn measure<T: Real>(
     image: &ImageView<'_, T>,
     map: &FlatMap,
+    noise: T,
     regions: &mut Vec<Region<T>>,
     scratch: &mut Vec<Vec<[T; 3]>>,
 ) {
@@ -63,10 +69,11 @@ pub(crate) fn measure<T: Real>(
     for samples in scratch.iter_mut() {
         samples.clear();
     }
+    let most = if noise > T::zero() { NOISY_SAMPLES } else { COLOR_SAMPLES };
     let mut seen = [0usize; 64];
     for run in &map.runs {
         let k = run.label as usize - 1;
-        let stride = 1 + regions[k].pixels / COLOR_SAMPLES;
+        let stride = 1 + regions[k].pixels / most;
         // Where in the region's own count of pixels this run starts; beyond 64 regions each run starts afresh.
         let counted = seen.get(k).copied().unwrap_or(0);
         let offset = (stride - counted % stride) % stride;
@@ -84,6 +91,7 @@ pub(crate) fn measure<T: Real>(
         for c in 0..3 {
             region.color[c] = median_of(samples, c);
         }
+        region.doubt = noise * T::of(MEDIAN_SPREAD) / T::of_usize(samples.len().max(1)).sqrt();
     }
 }
 

@@ -18,7 +18,7 @@ fn paint(width: usize, height: usize, color: impl Fn(usize, usize) -> [f64; 3]) 
 fn regions(image: &Image<f64>) -> (FlatMap, Vec<Region<f64>>) {
     let (mut map, mut regions) = (FlatMap::default(), Vec::new());
     map.label(&image.view(), 0.0085, 4);
-    measure(&image.view(), &map, &mut regions, &mut Vec::new());
+    measure(&image.view(), &map, 0.0, &mut regions, &mut Vec::new());
     (map, regions)
 }
 

@@ -4,7 +4,7 @@
 use dvp_core::Real;
 use dvp_core::render::Compositing;
 
-use super::{BACKGROUND_CONTACT, Cover, MAX_COVER, Reading, distance, is_color, mean, within_unit};
+use super::{BACKGROUND_CONTACT, Cover, MAX_COVER, Reading, distance, is_color, mean, slack, within_unit};
 use crate::segment::region::Region;
 
 /// How exactly an overlap shows the mean of its colors.
@@ -50,7 +50,8 @@ impl<T: Real> Reading<T> {
                     continue;
                 }
                 let off = distance(regions[i].color, mean(&[regions[a].color, regions[b].color]));
-                if off <= T::of(MEAN_COLOR) && best.is_none_or(|(o, _)| off < o) {
+                let tolerance = T::of(MEAN_COLOR) + slack(regions, &[a, b, i]);
+                if off <= tolerance && best.is_none_or(|(o, _)| off < o) {
                     best = Some((off, [a as u32, b as u32, 0]));
                 }
             }
@@ -79,7 +80,9 @@ impl<T: Real> Reading<T> {
                 for c in b + 1..count {
                     let triple = [members[a], members[b], members[c]];
                     let off = distance(regions[i].color, mean(&triple.map(|m| regions[m as usize].color)));
-                    if off <= T::of(MEAN_COLOR) && best.is_none_or(|(o, _)| off < o) {
+                    let [x, y, z] = triple.map(|m| m as usize);
+                    let tolerance = T::of(MEAN_COLOR) + slack(regions, &[x, y, z, i]);
+                    if off <= tolerance && best.is_none_or(|(o, _)| off < o) {
                         best = Some((off, triple));
                     }
                 }

@@ -116,6 +116,11 @@ fn distance<T: Real>(a: [T; 3], b: [T; 3]) -> T {
     (a[0] - b[0]).abs().max((a[1] - b[1]).abs()).max((a[2] - b[2]).abs())
 }
 
+/// Twice the standard deviation of a difference between the colors of regions that noise has left in doubt.
+fn slack<T: Real>(regions: &[Region<T>], compared: &[usize]) -> T {
+    T::of(2.0) * compared.iter().map(|&i| regions[i].doubt * regions[i].doubt).sum::<T>().sqrt()
+}
+
 fn mean<T: Real>(colors: &[[T; 3]]) -> [T; 3] {
     let share = T::one() / T::of_usize(colors.len().max(1));
     core::array::from_fn(|c| colors.iter().map(|color| color[c]).sum::<T>() * share)
@@ -246,7 +251,8 @@ impl<T: Real> Reading<T> {
             let i = self.order[at] as usize;
             let same = self.order[..at].iter().copied().find(|&j| {
                 self.classes[j as usize] == j
-                    && distance(regions[j as usize].color, regions[i].color) <= T::of(SAME_COLOR)
+                    && distance(regions[j as usize].color, regions[i].color)
+                        <= T::of(SAME_COLOR) + slack(regions, &[j as usize, i])
             });
             self.classes[i] = same.unwrap_or(i as u32);
         }

@@ -8,7 +8,7 @@
 use dvp_core::Real;
 use dvp_core::render::Compositing;
 
-use super::{BACKGROUND_CONTACT, Border, Cover, MAX_COVER, Reading, Stacking, distance, is_color, within_unit};
+use super::{BACKGROUND_CONTACT, Border, Cover, MAX_COVER, Reading, Stacking, distance, is_color, slack, within_unit};
 use crate::segment::region::Region;
 
 /// How exactly an overlap shows the color that opacity foretells.
@@ -80,7 +80,7 @@ impl<T: Real> Reading<T> {
                     continue;
                 }
                 let colors = [regions[i].color, regions[a].color, regions[b].color];
-                if let Some((through, off)) = self.opacity(colors)
+                if let Some((through, off)) = self.opacity(colors, slack(regions, &[i, a, b]))
                     && best.is_none_or(|held| off < held.off)
                 {
                     best = Some(Shadow { top: a as u32, bottom: b as u32, through, off });
@@ -91,7 +91,7 @@ impl<T: Real> Reading<T> {
     }
 
     /// What shows through `top` if `mixed` is its overlap over `bottom`, and how far from that `mixed` is.
-    fn opacity(&self, [mixed, top, bottom]: [[T; 3]; 3]) -> Option<(T, T)> {
+    fn opacity(&self, [mixed, top, bottom]: [[T; 3]; 3], slack: T) -> Option<(T, T)> {
         let ground = self.background;
         if distance(bottom, ground) < T::of(SHADOW_CONTRAST) {
             return None;
@@ -105,7 +105,7 @@ impl<T: Real> Reading<T> {
         let foretold: [T; 3] = core::array::from_fn(|c| top[c] + through * (bottom[c] - ground[c]));
         let off = distance(mixed, foretold);
         let translucent = through >= T::of(THROUGH[0]) && through <= T::of(THROUGH[1]);
-        let fits = translucent && off <= T::of(MIXED_COLOR) && is_color(self.own_color(top, through));
+        let fits = translucent && off <= T::of(MIXED_COLOR) + slack && is_color(self.own_color(top, through));
         fits.then_some((through, off))
     }
 
@@ -205,7 +205,7 @@ impl<T: Real> Reading<T> {
                 }
                 let below_color = regions[j].color;
                 let foretold = core::array::from_fn(|c| below_color[c] + opacity * (color[c] - below_color[c]));
-                if distance(regions[i].color, foretold) <= T::of(2.0 * MIXED_COLOR) {
+                if distance(regions[i].color, foretold) <= T::of(2.0 * MIXED_COLOR) + slack(regions, &[i, j]) {
                     let mut members = below.members().to_vec();
                     members.push(object);
                     return Some(Cover::of(&members));

@@ -1,0 +1,216 @@
+//! Neighboring regions merged, the least different first, until every boundary that is left pays for its length
+//! (piecewise-constant Mumford-Shah by region merging; Koepfler, Lopez and Morel 1994).
+
+use alloc::collections::{BTreeMap, BinaryHeap};
+use alloc::vec::Vec;
+use core::cmp::Reverse;
+
+use dvp_core::{ImageView, Real};
+
+/// Every region pays as if it had this much more boundary (px): what an object costs whatever its size.
+const FIXED_LENGTH: f64 = 8.0;
+
+/// Regions that cover all pixels, with their boundaries; kept between images as memory.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Merger<T> {
+    parents: Vec<u32>,
+    sums: Vec<[T; 3]>,
+    counts: Vec<u32>,
+    neighbors: Vec<Vec<u32>>,
+    /// Boundary (px) between two regions, the lower first.
+    lengths: BTreeMap<(u32, u32), u32>,
+    queue: BinaryHeap<Reverse<(u64, u32, u32)>>,
+    left: usize,
+}
+
+/// When to stop merging.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stop<T> {
+    /// Squared error that a pixel of boundary must save.
+    pub(crate) price: T,
+    /// Fewest regions that merging goes on for regardless of the price.
+    pub(crate) most_regions: usize,
+}
+
+fn pair(a: u32, b: u32) -> (u32, u32) {
+    (a.min(b), a.max(b))
+}
+
+impl<T: Real> Merger<T> {
+    /// Zones of pixels that differ by at most `tolerance` (per channel) from a direct neighbor in `smooth`, then merged by
+    /// the colors of `image`. `labels` gets the number of each pixel's region, from 0; returns how many there are.
+    pub(crate) fn partition(
+        &mut self,
+        image: &ImageView<'_, T>,
+        smooth: &ImageView<'_, T>,
+        tolerance: T,
+        stop: Stop<T>,
+        labels: &mut Vec<u32>,
+    ) -> usize {
+        self.find_zones(smooth, tolerance, labels);
+        self.measure(image, labels);
+        self.merge(stop);
+        self.number(labels)
+    }
+
+    #[expect(clippy::cast_possible_truncation, reason = "an image has at most 2^28 pixels")]
+    fn find_zones(&mut self, smooth: &ImageView<'_, T>, tolerance: T, labels: &mut Vec<u32>) {
+        let (width, pixels) = (smooth.size().width(), smooth.size().pixels());
+        self.parents.clear();
+        self.parents.extend(0..pixels as u32);
+        let [r, g, b] = [0, 1, 2].map(|c| smooth.channel(c));
+        let alike =
+            |i: usize, j: usize| (r[i] - r[j]).abs().max((g[i] - g[j]).abs()).max((b[i] - b[j]).abs()) <= tolerance;
+        for i in 0..pixels {
+            if i % width != 0 && alike(i, i - 1) {
+                self.unite(i as u32 - 1, i as u32);
+            }
+            if i >= width && alike(i, i - width) {
+                self.unite((i - width) as u32, i as u32);
+            }
+        }
+        labels.clear();
+        labels.resize(pixels, 0);
+        let mut count = 0;
+        for i in 0..pixels {
+            let top = self.top(i as u32) as usize;
+            labels[i] = if top == i {
+                count += 1;
+                count - 1
+            } else {
+                labels[top]
+            };
+        }
+        self.left = count as usize;
+    }
+
+    fn unite(&mut self, a: u32, b: u32) {
+        let (a, b) = (self.top(a), self.top(b));
+        // The first pixel of a zone is its root.
+        self.parents[a.max(b) as usize] = a.min(b);
+    }
+
+    fn top(&mut self, mut i: u32) -> u32 {
+        while self.parents[i as usize] != i {
+            let up = self.parents[self.parents[i as usize] as usize];
+            self.parents[i as usize] = up;
+            i = up;
+        }
+        i
+    }
+
+    /// From labels of zones to sums, boundaries and the queue of pairs.
+    #[expect(clippy::cast_possible_truncation, reason = "an image has at most 2^28 pixels")]
+    fn measure(&mut self, image: &ImageView<'_, T>, labels: &[u32]) {
+        let (width, zones) = (image.size().width(), self.left);
+        self.parents.clear();
+        self.parents.extend(0..zones as u32);
+        self.sums.clear();
+        self.sums.resize(zones, [T::zero(); 3]);
+        self.counts.clear();
+        self.counts.resize(zones, 0);
+        self.neighbors.iter_mut().for_each(Vec::clear);
+        self.neighbors.resize_with(self.neighbors.len().max(zones), Vec::new);
+        self.lengths.clear();
+        self.queue.clear();
+        let mut steps: Vec<(u32, u32)> = Vec::new();
+        for (i, &label) in labels.iter().enumerate() {
+            let color = image.pixel(i);
+            for (sum, part) in self.sums[label as usize].iter_mut().zip(color) {
+                *sum += part;
+            }
+            self.counts[label as usize] += 1;
+            if i % width != 0 && labels[i - 1] != label {
+                steps.push(pair(labels[i - 1], label));
+            }
+            if i >= width && labels[i - width] != label {
+                steps.push(pair(labels[i - width], label));
+            }
+        }
+        steps.sort_unstable();
+        for same in steps.chunk_by(|a, b| a == b) {
+            let (a, b) = same[0];
+            self.neighbors[a as usize].push(b);
+            self.neighbors[b as usize].push(a);
+            self.lengths.insert((a, b), same.len() as u32);
+        }
+        let cost = |(&(a, b), &length): (&(u32, u32), &u32)| Reverse((self.cost(a, b, length), a, b));
+        self.queue = self.lengths.iter().map(cost).collect();
+    }
+
+    /// Squared error that merging adds, per boundary that it saves, as the bits of a number not below 0: they sort like it.
+    fn cost(&self, a: u32, b: u32, length: u32) -> u64 {
+        let (a, b) = (a as usize, b as usize);
+        let [n, m] = [self.counts[a], self.counts[b]].map(|count| T::of_usize(count as usize));
+        let off = |c: usize| self.sums[a][c] / n - self.sums[b][c] / m;
+        let squared = (0..3).map(|c| off(c) * off(c)).sum::<T>();
+        let added = squared * n * m / (n + m);
+        (added.as_f64() / (f64::from(length) + FIXED_LENGTH)).max(0.0).to_bits()
+    }
+
+    fn merge(&mut self, stop: Stop<T>) {
+        let price = stop.price.as_f64().to_bits();
+        while let Some(Reverse((cost, a, b))) = self.queue.pop() {
+            if cost > price && self.left <= stop.most_regions {
+                break;
+            }
+            let (a, b) = (self.top(a), self.top(b));
+            let Some(&length) = self.lengths.get(&pair(a, b)) else { continue };
+            let now = self.cost(a, b, length);
+            if now > cost {
+                // It grew since; a pair that fell was queued again when it did.
+                self.queue.push(Reverse((now, a, b)));
+            } else {
+                self.join(a, b);
+            }
+        }
+    }
+
+    /// Merges two roots.
+    fn join(&mut self, a: u32, b: u32) {
+        let swap = self.neighbors[a as usize].len() < self.neighbors[b as usize].len();
+        let (a, b) = if swap { (b, a) } else { (a, b) };
+        self.left -= 1;
+        self.parents[b as usize] = a;
+        self.counts[a as usize] += self.counts[b as usize];
+        let moved = self.sums[b as usize];
+        for (sum, part) in self.sums[a as usize].iter_mut().zip(moved) {
+            *sum += part;
+        }
+        self.lengths.remove(&pair(a, b));
+        let moved = core::mem::take(&mut self.neighbors[b as usize]);
+        for &other in &moved {
+            let other = self.top(other);
+            // Already moved with another name, or the two that become one.
+            let Some(length) = self.lengths.remove(&pair(b, other)) else { continue };
+            let total = self.lengths.entry(pair(a, other)).or_insert(0);
+            if *total == 0 {
+                self.neighbors[a as usize].push(other);
+                self.neighbors[other as usize].push(a);
+            }
+            *total += length;
+            let total = *total;
+            let cost = self.cost(a, other, total);
+            self.queue.push(Reverse((cost, a, other)));
+        }
+    }
+
+    /// Numbers the regions that are left in the order of their first pixels.
+    #[expect(clippy::cast_possible_truncation, reason = "an image has at most 2^28 pixels")]
+    fn number(&mut self, labels: &mut [u32]) -> usize {
+        const OPEN: u32 = u32::MAX;
+        let mut names = core::mem::take(&mut self.counts);
+        names.fill(OPEN);
+        let mut count = 0;
+        for label in labels.iter_mut() {
+            let top = self.top(*label) as usize;
+            if names[top] == OPEN {
+                names[top] = count as u32;
+                count += 1;
+            }
+            *label = names[top];
+        }
+        self.counts = names;
+        count
+    }
+}

@@ -1,0 +1,139 @@
+//! Flat regions of a picture with noise: denoised, partitioned, and freed from the soft pixels along their boundaries.
+//!
+//! In: a picture. Out: a [`FlatMap`] like that of a picture without noise, and the denoised picture to place soft pixels by.
+//! `level` estimates the noise, `denoise` averages, `merge` partitions, `strips` tells strips of soft pixels that became
+//! regions of their own from thin objects; here pixels near boundaries are freed.
+
+mod denoise;
+mod level;
+mod merge;
+mod strips;
+#[cfg(test)]
+mod tests;
+
+use alloc::vec::Vec;
+
+use dvp_core::{ImageView, Real};
+
+use super::flat::FlatMap;
+use denoise::{DenoiseScratch, DenoiseSettings, denoise};
+pub(crate) use level::noise_level;
+use merge::{Merger, Stop};
+use strips::{Zone, find_strips, measure_zones};
+
+/// Pixels this far apart are averaged (px).
+const REACH: usize = 5;
+/// Noise that the first pass leaves, in units of the picture's.
+const FIRST_LEFT: f64 = 0.25;
+/// Squared error (in units of the noise's variance) that a pixel of boundary must save.
+const BOUNDARY_PRICE: f64 = 3.0;
+/// Rings of pixels beside a boundary that may still be soft.
+const SOFT_RINGS: usize = 3;
+/// Fewer flat pixels than this are no region.
+const MIN_PIXELS: u32 = 4;
+
+/// Label of pixels that belong to no region.
+const SOFT: u32 = u32::MAX;
+
+/// Memory of [`read_flat`].
+#[derive(Clone, Debug, Default)]
+pub(crate) struct RobustScratch<T> {
+    denoise: DenoiseScratch<T>,
+    first: Vec<T>,
+    /// The denoised picture, planar.
+    pub(crate) smooth: Vec<T>,
+    merger: Merger<T>,
+    labels: Vec<u32>,
+    eroded: Vec<u32>,
+    zones: Vec<Zone<T>>,
+    steps: Vec<(u32, u32)>,
+}
+
+/// Fills `map` and the denoised picture.
+pub(crate) fn read_flat<T: Real>(
+    image: &ImageView<'_, T>,
+    noise: T,
+    most_regions: usize,
+    scratch: &mut RobustScratch<T>,
+    map: &mut FlatMap,
+) {
+    let variance = noise * noise;
+    let two = T::of(2.0);
+    let first = DenoiseSettings { reach: REACH, expected: two * variance, limit: two * variance };
+    denoise(image, image, first, &mut scratch.denoise, &mut scratch.first);
+    let Ok(guide) = ImageView::new(image.size(), &scratch.first) else { return };
+    let left = two * variance * T::of(FIRST_LEFT * FIRST_LEFT);
+    let second = DenoiseSettings { reach: REACH, expected: left, limit: two * left };
+    denoise(image, &guide, second, &mut scratch.denoise, &mut scratch.smooth);
+    let Ok(smooth) = ImageView::new(image.size(), &scratch.smooth) else { return };
+    let stop = Stop { price: T::of(BOUNDARY_PRICE) * variance, most_regions };
+    let tolerance = T::of(0.004) + T::of(0.1) * noise;
+    let count = scratch.merger.partition(image, &smooth, tolerance, stop, &mut scratch.labels);
+    measure_zones(&smooth, count, &scratch.labels, &mut scratch.zones, &mut scratch.steps);
+    find_strips(&mut scratch.zones, &scratch.steps, T::of(0.02) + noise);
+    let deviation = T::of(0.008) + T::of(0.5) * noise;
+    erode(&smooth, &scratch.zones, &mut scratch.labels, &mut scratch.eroded, deviation);
+    restore_small(&mut scratch.zones, &scratch.labels, &mut scratch.eroded);
+    map.set(image.size(), &scratch.eroded, SOFT);
+}
+
+/// Frees zones from strips, from pixels beside another zone, and from those near a boundary that deviate from the color of
+/// their zone.
+fn erode<T: Real>(
+    smooth: &ImageView<'_, T>,
+    zones: &[Zone<T>],
+    labels: &mut [u32],
+    eroded: &mut Vec<u32>,
+    deviation: T,
+) {
+    let (width, pixels) = (smooth.size().width(), smooth.size().pixels());
+    eroded.clear();
+    eroded.extend_from_slice(labels);
+    for (i, label) in eroded.iter_mut().enumerate() {
+        let own = labels[i];
+        let x = i % width;
+        let other = |there: bool, j: usize| there && labels[j] != own;
+        let beside = other(x > 0, i.wrapping_sub(1))
+            || other(x + 1 < width, i + 1)
+            || other(i >= width, i.wrapping_sub(width))
+            || other(i + width < pixels, i + width);
+        if beside || zones[own as usize].strip {
+            *label = SOFT;
+        }
+    }
+    let mut before = Vec::new();
+    for _ in 1..SOFT_RINGS {
+        before.clear();
+        before.extend_from_slice(eroded);
+        for (i, label) in eroded.iter_mut().enumerate() {
+            if *label == SOFT {
+                continue;
+            }
+            let x = i % width;
+            let soft = |there: bool, j: usize| there && before[j] == SOFT;
+            let beside = soft(x > 0, i.wrapping_sub(1))
+                || soft(x + 1 < width, i + 1)
+                || soft(i >= width, i.wrapping_sub(width))
+                || soft(i + width < pixels, i + width);
+            if beside {
+                let (own, color) = (zones[*label as usize].color, smooth.pixel(i));
+                if (0..3).any(|c| (own[c] - color[c]).abs() > deviation) {
+                    *label = SOFT;
+                }
+            }
+        }
+    }
+}
+
+/// Zones that erosion left nothing of get their pixels back.
+fn restore_small<T: Real>(zones: &mut [Zone<T>], labels: &[u32], eroded: &mut [u32]) {
+    for &label in eroded.iter().filter(|&&label| label != SOFT) {
+        zones[label as usize].flat += 1;
+    }
+    for (label, &own) in eroded.iter_mut().zip(labels) {
+        let zone = &zones[own as usize];
+        if zone.flat < MIN_PIXELS && !zone.strip {
+            *label = if zone.pixels >= MIN_PIXELS { own } else { SOFT };
+        }
+    }
+}

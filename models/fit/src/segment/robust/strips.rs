@@ -1,0 +1,111 @@
+//! Strips of soft pixels along edges that became regions of their own, told from thin objects: the color of a strip lies
+//! between those of its two neighbors.
+
+use alloc::vec::Vec;
+
+use dvp_core::{ImageView, Real};
+
+/// Regions up to this wide (px; twice the area over the boundary) may be strips along an edge.
+const STRIP_WIDTH: f64 = 2.6;
+/// A region of the partition.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Zone<T> {
+    pub(super) color: [T; 3],
+    pub(super) pixels: u32,
+    /// Pixels of boundary with other zones.
+    pub(super) boundary: u32,
+    /// Flat pixels.
+    pub(super) flat: u32,
+    pub(super) strip: bool,
+}
+
+/// Colors and boundaries; `steps` gets the pairs of zones that touch, one entry per pixel of boundary, in both orders.
+pub(super) fn measure_zones<T: Real>(
+    smooth: &ImageView<'_, T>,
+    count: usize,
+    labels: &[u32],
+    zones: &mut Vec<Zone<T>>,
+    steps: &mut Vec<(u32, u32)>,
+) {
+    let width = smooth.size().width();
+    zones.clear();
+    zones.resize(count, Zone { color: [T::zero(); 3], pixels: 0, boundary: 0, flat: 0, strip: false });
+    steps.clear();
+    for (i, &label) in labels.iter().enumerate() {
+        let (zone, color) = (&mut zones[label as usize], smooth.pixel(i));
+        zone.pixels += 1;
+        for (sum, part) in zone.color.iter_mut().zip(color) {
+            *sum += part;
+        }
+        for other in [(i % width != 0).then(|| labels[i - 1]), (i >= width).then(|| labels[i - width])] {
+            if let Some(other) = other.filter(|&other| other != label) {
+                steps.push((label, other));
+                steps.push((other, label));
+            }
+        }
+    }
+    steps.sort_unstable();
+    for &(zone, _) in steps.iter() {
+        zones[zone as usize].boundary += 1;
+    }
+    for zone in zones {
+        let share = T::one() / T::of_usize(zone.pixels as usize);
+        zone.color = zone.color.map(|sum| sum * share);
+    }
+}
+
+/// Marks thin zones whose color lies between those of two neighbors, `tolerance` off the line at most. A strip beside
+/// another strip looks beyond it, to the zones along the same edge that are not thin.
+pub(super) fn find_strips<T: Real>(zones: &mut [Zone<T>], steps: &[(u32, u32)], tolerance: T) {
+    let mut anchors: Vec<usize> = Vec::new();
+    for own in steps.chunk_by(|a, b| a.0 == b.0) {
+        let at = own[0].0 as usize;
+        if !is_thin(&zones[at]) {
+            continue;
+        }
+        let long = |n: usize| 6 * n >= zones[at].boundary as usize;
+        let same = || own.chunk_by(|a, b| a.1 == b.1);
+        anchors.clear();
+        anchors.extend(same().filter(|same| long(same.len())).map(|same| same[0].1 as usize));
+        let mut between = is_between_any(zones, at, &anchors, tolerance);
+        if !between {
+            anchors.clear();
+            for neighbor in same().map(|same| same[0].1) {
+                if is_thin(&zones[neighbor as usize]) {
+                    let first = steps.partition_point(|step| step.0 < neighbor);
+                    let beyond =
+                        steps[first..].iter().take_while(|step| step.0 == neighbor).map(|step| step.1 as usize);
+                    anchors.extend(beyond.filter(|&zone| !is_thin(&zones[zone])));
+                } else {
+                    anchors.push(neighbor as usize);
+                }
+            }
+            anchors.sort_unstable();
+            anchors.dedup();
+            between = is_between_any(zones, at, &anchors, tolerance);
+        }
+        zones[at].strip = between;
+    }
+}
+
+fn is_thin<T: Real>(zone: &Zone<T>) -> bool {
+    T::of_usize(2 * zone.pixels as usize) <= T::of(STRIP_WIDTH) * T::of_usize(zone.boundary as usize)
+}
+
+fn is_between_any<T: Real>(zones: &[Zone<T>], at: usize, anchors: &[usize], tolerance: T) -> bool {
+    let pairs = anchors.iter().enumerate().flat_map(|(i, &a)| anchors[..i].iter().map(move |&b| (a, b)));
+    pairs.into_iter().any(|(a, b)| is_between(&zones[at], &zones[a], &zones[b], tolerance))
+}
+
+fn is_between<T: Real>(zone: &Zone<T>, a: &Zone<T>, b: &Zone<T>, tolerance: T) -> bool {
+    let line: [T; 3] = core::array::from_fn(|c| b.color[c] - a.color[c]);
+    let arm: [T; 3] = core::array::from_fn(|c| zone.color[c] - a.color[c]);
+    let squared = line.iter().map(|&v| v * v).sum::<T>();
+    let dot = line.iter().zip(arm).map(|(&u, v)| u * v).sum::<T>();
+    if squared <= T::zero() {
+        return false;
+    }
+    let along = dot / squared;
+    let off = (0..3).fold(T::zero(), |most, c| most.max((arm[c] - along * line[c]).abs()));
+    along > T::of(0.03) && along < T::of(0.97) && off <= tolerance + T::of(0.1) * squared.sqrt()
+}

@@ -1,0 +1,121 @@
+use alloc::vec::Vec;
+
+use dvp_core::{Image, ImageSize};
+
+use super::denoise::{DenoiseScratch, DenoiseSettings, denoise};
+use super::merge::{Merger, Stop};
+use super::{RobustScratch, noise_level, read_flat};
+use crate::segment::flat::FlatMap;
+
+const SIDE: usize = 64;
+
+fn paint(color: impl Fn(usize, usize) -> [f64; 3]) -> Image<f64> {
+    let pixels: Vec<f64> = (0..SIDE * SIDE).flat_map(|i| color(i % SIDE, i / SIDE)).collect();
+    Image::from_interleaved(ImageSize::new(SIDE, SIDE).unwrap(), &pixels).unwrap()
+}
+
+/// Adds normal noise: Box-Muller on a 64-bit linear congruential generator (Knuth's constants).
+fn add_noise(image: &mut Image<f64>, sigma: f64) {
+    let mut state = 1_u64;
+    let mut uniform = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        f64::from(u32::try_from(state >> 32).unwrap()) / f64::from(u32::MAX)
+    };
+    for value in image.data_mut() {
+        let (radius, turn) = (uniform().max(1e-12), uniform());
+        *value += sigma * (-2.0 * radius.ln()).sqrt() * (core::f64::consts::TAU * turn).cos();
+    }
+}
+
+/// A disk of radius 20 with an edge 4 px soft, on another color.
+fn soft_disk() -> Image<f64> {
+    paint(|x, y| {
+        let off = [x, y].map(|v| f64::from(u32::try_from(v).unwrap()) - 31.5);
+        let share = ((22.0 - off[0].hypot(off[1])) / 4.0).clamp(0.0, 1.0);
+        [0.2 + 0.6 * share, 0.7 - 0.4 * share, 0.5]
+    })
+}
+
+#[test]
+fn the_noise_level_is_found() {
+    for sigma in [0.005, 0.01, 0.02, 0.05, 0.1] {
+        let mut image = soft_disk();
+        add_noise(&mut image, sigma);
+        let found = noise_level(&image.view(), &mut Vec::new());
+        assert!((found / sigma - 1.0).abs() < 0.1, "{found} is not {sigma}");
+    }
+}
+
+#[test]
+fn pictures_without_noise_have_none() {
+    assert!(noise_level(&soft_disk().view(), &mut Vec::new()) < 1e-12);
+    let slope = paint(|x, y| [x, y, x + y].map(|v| f64::from(u32::try_from(v).unwrap()) / 128.0));
+    assert!(noise_level(&slope.view(), &mut Vec::new()) < 1e-12);
+    let one = Image::<f64>::zeros(ImageSize::new(1, 1).unwrap());
+    assert!(noise_level(&one.view(), &mut Vec::new()).abs() < 1e-12);
+}
+
+fn mean_square(a: &[f64], b: &[f64]) -> f64 {
+    let count = f64::from(u32::try_from(a.len()).unwrap());
+    a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>() / count
+}
+
+#[test]
+fn denoising_keeps_edges() {
+    let clean = soft_disk();
+    let mut image = clean.clone();
+    let sigma: f64 = 0.05;
+    add_noise(&mut image, sigma);
+    let mut out = Vec::new();
+    let settings = DenoiseSettings { reach: 5, expected: 2.0 * sigma * sigma, limit: 2.0 * sigma * sigma };
+    denoise(&image.view(), &image.view(), settings, &mut DenoiseScratch::default(), &mut out);
+    // A 3 x 3 mean would leave a ninth of the noise and blur the edge.
+    let left = mean_square(&out, clean.data()) / (sigma * sigma);
+    assert!(left < 0.1, "{left} of the noise is left");
+    // A picture without noise stays as it is.
+    let nothing = DenoiseSettings { reach: 5, expected: 0.0, limit: 1e-9 };
+    denoise(&clean.view(), &clean.view(), nothing, &mut DenoiseScratch::default(), &mut out);
+    assert!(mean_square(&out, clean.data()) < 1e-12);
+}
+
+#[test]
+fn denoising_averages_pairs_once() {
+    // 3 x 1 pixels 0, 1, 0.5 of equal neighborhoods at this limit: all pairs have a share near 1, so all become the mean.
+    let pixels: Vec<f64> = [0.0, 1.0, 0.5].into_iter().flat_map(|v| [v; 3]).collect();
+    let image = Image::from_interleaved(ImageSize::new(3, 1).unwrap(), &pixels).unwrap();
+    let mut out = Vec::new();
+    let settings = DenoiseSettings { reach: 2, expected: 0.0, limit: 1e9 };
+    denoise(&image.view(), &image.view(), settings, &mut DenoiseScratch::default(), &mut out);
+    assert!(out.iter().all(|v| (v - 0.5).abs() < 1e-6), "{out:?}");
+}
+
+#[test]
+fn regions_merge_in_the_order_of_what_it_costs() {
+    // Quarters of 32 x 32 pixels at 0, 0.1, 0.5 and 0.6, boundaries of 32 px + 8: merging 0 with 0.1 adds
+    // 3 x 0.1^2 x 512 / 40 = 0.384 per px, merging the pairs (0.05 with 0.55, boundary 64 + 8) adds
+    // 3 x 0.5^2 x 1024 / 72 = 10.7.
+    let image = paint(|x, y| [[0.0, 0.1, 0.5, 0.6][x / 32 + 2 * (y / 32)]; 3]);
+    let regions = |price: f64, most_regions: usize| {
+        let mut labels = Vec::new();
+        let stop = Stop { price, most_regions };
+        Merger::default().partition(&image.view(), &image.view(), 1e-3, stop, &mut labels)
+    };
+    assert_eq!(regions(0.37, usize::MAX), 4);
+    assert_eq!(regions(0.39, usize::MAX), 2);
+    assert_eq!(regions(10.6, usize::MAX), 2);
+    assert_eq!(regions(10.8, usize::MAX), 1);
+    assert_eq!(regions(0.0, 3), 3);
+}
+
+#[test]
+fn a_noisy_disk_is_one_region_on_another() {
+    let mut image = soft_disk();
+    add_noise(&mut image, 0.05);
+    let (mut scratch, mut map) = (RobustScratch::default(), FlatMap::default());
+    read_flat(&image.view(), 0.05, usize::MAX, &mut scratch, &mut map);
+    assert_eq!(map.region_count, 2);
+    let at = |x: usize, y: usize| map.labels[y * SIDE + x];
+    assert_eq!([at(1, 1), at(62, 62), at(32, 32), at(18, 32)], [1, 1, 2, 2]);
+    // Half covered pixels belong to neither.
+    assert_eq!([at(52, 32), at(32, 11)], [0, 0]);
+}
