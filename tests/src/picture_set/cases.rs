@@ -147,26 +147,17 @@ impl Case {
                 for (path, seed) in paths.iter().zip(0..) {
                     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
                     let text = fs::read_to_string(path)?;
-                    self.write_drawn(folder, &stem, &text, seed).map_err(|error| format!("{stem}: {error}"))?;
+                    self.finish.write_drawn(folder, &stem, &text, seed).map_err(|error| format!("{stem}: {error}"))?;
                 }
                 Ok(())
             }
             Source::Crowd(side, count) => (0..2).try_for_each(|seed| {
-                self.write_drawn(folder, &format!("crowd-{seed}"), &crowd(side, count, seed), seed)
+                self.finish.write_drawn(folder, &format!("crowd-{seed}"), &crowd(side, count, seed), seed)
             }),
             Source::MdsHr(count) => self.write_scenes(folder, count, |seed| Ok(mds_hr(SEED, seed - SEED))),
             Source::Twins(count, gap) => self.write_scenes(folder, count, |seed| Ok(twins(gap, seed))),
             Source::Cropped(count) => self.write_scenes(folder, count, cropped),
         }
-    }
-
-    fn write_drawn(&self, folder: &Path, stem: &str, text: &str, seed: u64) -> Result<(), Failure> {
-        let drawn = draw_with_labels(text)?;
-        drawn.labels.save(folder.join(format!("{stem}.labels.png")))?;
-        let opaque = drawn.picture.pixels().all(|pixel| pixel.0[3] == u8::MAX);
-        let picture = DynamicImage::from(drawn.picture);
-        let picture = if opaque { picture.to_rgb8().into() } else { picture };
-        self.write_picture(folder, stem, picture, seed)
     }
 
     fn write_scenes(
@@ -182,20 +173,35 @@ impl Case {
             let json = SceneJson { id: Some(index as u64), ..SceneJson::from_scene(&scene, image.size()) };
             lines.push_str(&(json.to_line(&Place::file(folder))? + "\n"));
             let picture = image::load_from_memory(&encode_png(image.view())?)?;
-            self.write_picture(folder, &format!("{index:05}"), picture, seed)?;
+            self.finish.write_picture(folder, &format!("{index:05}"), picture, seed)?;
         }
         fs::write(folder.join(SCENES_FILE), lines)?;
         Ok(())
     }
+}
 
-    fn write_picture(&self, folder: &Path, stem: &str, picture: DynamicImage, seed: u64) -> Result<(), Failure> {
+impl Finish {
+    /// Writes what an SVG shows, as STEM.png or, for a palette, STEM.gif, and its label map beside it.
+    ///
+    /// # Errors
+    /// A sentence, if the text is no SVG of ours or a file cannot be written.
+    pub fn write_drawn(self, folder: &Path, stem: &str, text: &str, seed: u64) -> Result<(), Failure> {
+        let drawn = draw_with_labels(text)?;
+        drawn.labels.save(folder.join(format!("{stem}.labels.png")))?;
+        let opaque = drawn.picture.pixels().all(|pixel| pixel.0[3] == u8::MAX);
+        let picture = DynamicImage::from(drawn.picture);
+        let picture = if opaque { picture.to_rgb8().into() } else { picture };
+        self.write_picture(folder, stem, picture, seed)
+    }
+
+    fn write_picture(self, folder: &Path, stem: &str, picture: DynamicImage, seed: u64) -> Result<(), Failure> {
         let png = folder.join(format!("{stem}.png"));
         let noisy = |sigma| {
             let mut picture: RgbImage = picture.to_rgb8();
             add_noise(&mut picture, sigma, seed);
             picture
         };
-        match self.finish {
+        match self {
             Finish::Png => picture.save(png)?,
             Finish::Noise(sigma) => noisy(sigma).save(png)?,
             Finish::Blur(sigma_px) => blurred(&picture.to_rgb8(), sigma_px).save(png)?,

@@ -29,5 +29,5 @@ mod spoil;
 pub use cases::{CASES, Case, Finish, Source};
 pub use drawn::{Drawn, draw_with_labels};
 pub use random::{cropped, crowd, mds_hr, paint_mds_hr, twins};
-pub use score::{CaseScore, PictureScore, score_case, table_head};
+pub use score::{CaseScore, PictureScore, score_case, score_folder, table_head};
 pub use spoil::{add_noise, blurred, jpeg};

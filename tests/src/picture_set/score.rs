@@ -46,6 +46,17 @@ pub struct CaseScore {
 /// # Errors
 /// If pictures cannot be made or the command breaks; pictures that it refuses are in [`CaseScore::failures`].
 pub fn score_case(case: &Case, folder: &Path) -> Result<CaseScore, Failure> {
+    case.write(&folder.join("data"))?;
+    let options = if case.bank { &["--bank", "mdshr"][..] } else { &[] };
+    let (pictures, failures) = score_folder(folder, options)?;
+    Ok(CaseScore { case: *case, pictures, failures })
+}
+
+/// Fits the data set `folder/data` to `folder/out` with `options` and scores it: its pictures by name, and complaints.
+///
+/// # Errors
+/// If the command breaks.
+pub fn score_folder(folder: &Path, options: &[&str]) -> Result<(Vec<PictureScore>, String), Failure> {
     #[derive(Deserialize)]
     struct Fits {
         images: Vec<Time>,
@@ -55,17 +66,10 @@ pub fn score_case(case: &Case, folder: &Path) -> Result<CaseScore, Failure> {
         stem: String,
         cpu_ms: Option<f64>,
     }
-    let (data, out, csv) = (folder.join("data"), folder.join("out"), folder.join("scores.csv"));
-    case.write(&data)?;
-    let text = |path: &Path| path.to_string_lossy().into_owned();
-    let mut fit = vec!["fit".to_owned(), text(&data), "--out".to_owned(), text(&out)];
-    fit.extend(["--json", "--threads", "1"].map(str::to_owned));
-    if case.bank {
-        fit.extend(["--bank", "mdshr"].map(str::to_owned));
-    }
-    let (json, mut failures) = command(fit)?;
-    let evaluate = ["evaluate", &text(&out), &text(&data), "--threads", "1", "--csv", &text(&csv)];
-    failures.push_str(&command(evaluate.map(str::to_owned))?.1);
+    let [data, out, csv] = ["data", "out", "scores.csv"].map(|name| folder.join(name).to_string_lossy().into_owned());
+    let fit = ["fit", &data, "--out", &out, "--json", "--threads", "1"];
+    let (json, mut failures) = command(fit.iter().chain(options))?;
+    failures.push_str(&command(["evaluate", &out, &data, "--threads", "1", "--csv", &csv].iter())?.1);
     let fits: Fits = serde_json::from_str(&json)?;
     let mut pictures = Vec::new();
     for line in fs::read_to_string(csv)?.lines().skip(1) {
@@ -85,13 +89,13 @@ pub fn score_case(case: &Case, folder: &Path) -> Result<CaseScore, Failure> {
             ms: ms.unwrap_or(f64::NAN),
         });
     }
-    Ok(CaseScore { case: *case, pictures, failures })
+    Ok((pictures, failures))
 }
 
 /// Runs `dvp` in this process; its two streams.
-fn command(arguments: impl IntoIterator<Item = String>) -> Result<(String, String), Failure> {
+fn command<'a>(arguments: impl Iterator<Item = &'a &'a str>) -> Result<(String, String), Failure> {
     let (mut out, mut err) = (Vec::new(), Vec::new());
-    let all = core::iter::once("dvp".to_owned()).chain(arguments).map(Into::into);
+    let all = core::iter::once(&"dvp").chain(arguments).map(Into::into);
     // Whoever failed is in the second stream.
     let _ = dvp::command::run(all, &mut out, &mut err);
     Ok((String::from_utf8(out)?, String::from_utf8(err)?))
