@@ -12,7 +12,7 @@ fn check(name: &str) {
     let folder = tempfile::tempdir().unwrap();
     let score = score_case(case, folder.path()).unwrap();
     eprintln!("{}", score.row());
-    assert!(!score.pictures.is_empty() || !score.failures.is_empty(), "no pictures");
+    assert!(!score.pictures.is_empty(), "{}", score.failures);
     assert!(score.holds(), "{}\n{}\n{}", table_head(), score.row(), score.worst());
 }
 
@@ -26,11 +26,54 @@ macro_rules! cases {
 
 cases! { HELD:
     flat: "flat",
+    rings: "rings and holes",
+    touching: "touching",
     empty: "empty",
+    cells: "cells",
+    sprites: "sprites",
+    gray: "gray",
+    cropped_by_the_border: "cropped by the border",
+    crowd_of_30: "crowd of 30",
+    crowd_of_80: "crowd of 80",
+    crowd_of_200: "crowd of 200",
+    sixteen_bits: "flat, 16 bits",
+    palette: "flat, palette",
+    mds_hr: "MDS-HR",
+    mds_hr_cropped: "MDS-HR cropped",
+    mds_hr_bank: "MDS-HR, bank",
+    mds_hr_twins_bank: "MDS-HR twins 0.15, bank",
+    mds_hr_close_twins_bank: "MDS-HR twins 0.10, bank",
+    mds_hr_cropped_bank: "MDS-HR cropped, bank",
 }
 
 /// Cases that fall short of their thresholds, with the reason.
-const SHORT: &[(&str, &str)] = &[];
+const SHORT: &[(&str, &str)] = &[
+    ("occlusion", "what a front object cuts in two is found as two objects"),
+    ("translucent", "one of five fails"),
+    ("thin", "lines without a flat pixel are not found"),
+    ("3 px", "objects without a flat pixel are not found"),
+    ("coins", "rim and core of similar colors"),
+    ("alpha", "a small object on a large one"),
+    ("twins", "without a bank one outline is one object"),
+    ("flat, blur 0.8 px", "softness is not estimated"),
+    ("flat, blur 1.5 px", "softness is not estimated"),
+    ("flat, noise 0.01", "noise hides flat regions"),
+    ("flat, noise 0.03", "noise hides flat regions"),
+    ("flat, noise 0.05", "noise hides flat regions"),
+    ("flat, JPEG 50", "ringing is read as objects"),
+    ("occlusion, noise 0.03", "noise hides flat regions"),
+    ("occlusion, JPEG 50", "ringing is read as objects"),
+    ("MDS-HR, noise 0.01", "noise hides flat regions"),
+    ("MDS-HR, noise 0.03", "noise hides flat regions"),
+    ("MDS-HR, noise 0.05", "noise hides flat regions"),
+    ("MDS-HR, JPEG 50", "ringing is read as objects"),
+    ("MDS-HR twins 0.15", "without a bank one outline is one object"),
+    ("MDS-HR twins 0.10", "without a bank one outline is one object"),
+    ("MDS-HR, noise 0.01, bank", "noise hides flat regions"),
+    ("MDS-HR, noise 0.03, bank", "noise hides flat regions"),
+    ("MDS-HR, noise 0.05, bank", "noise hides flat regions"),
+    ("MDS-HR, JPEG 50, bank", "ringing is read as objects"),
+];
 
 #[test]
 fn every_case_is_tested_or_known_to_fall_short() {

@@ -2,7 +2,12 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test with a line number")]
 
-use dvp_core::metric::{MaskOverlap, Ownership, RandIndexScratch, adjusted_rand_index};
+use dvp_core::metric::{MaskOverlap, Ownership, OwnershipRule, RandIndexScratch, adjusted_rand_index};
+use dvp_core::render::hard::object_index;
+use dvp_core::render::{Compositing, ContourRenderer};
+use dvp_core::shape::OutlineBasis;
+use dvp_core::{Drawing, ImageSize, Scene};
+use dvp_tests::strategy;
 use proptest::collection::vec;
 use proptest::prelude::*;
 
@@ -30,7 +35,41 @@ fn owned(objects: &[(Vec<f64>, f64)]) -> Ownership {
     owned
 }
 
+/// A scene's drawing, and its planes of coverage.
+fn drawn(scene: &Scene<f64>, renderer: &ContourRenderer<f64>, size: ImageSize) -> (Drawing<f64>, Vec<f64>) {
+    let mut drawing = Drawing::default();
+    scene.draw(&OutlineBasis::new(32, 4).unwrap(), &mut drawing).unwrap();
+    let mut planes = vec![0.0; drawing.object_count() * size.pixels()];
+    renderer.object_coverage(&drawing, size, &mut Default::default(), &mut planes).unwrap();
+    (drawing, planes)
+}
+
 proptest! {
+    #[test]
+    fn ownership_of_a_drawing_equals_that_of_its_planes(mut scene in strategy::scene(0..6, 1..5), width in 20..50_usize) {
+        let size = ImageSize::new(width, 32).unwrap();
+        let renderer = ContourRenderer::new(scene.edge, Compositing::Over);
+        let mut owned = Ownership::default();
+        let (drawing, planes) = drawn(&scene, &renderer, size);
+        owned.fill_drawing(OwnershipRule::Reached, &renderer, &drawing, size, &mut Default::default()).unwrap();
+        let mut expected = Ownership::default();
+        expected.fill(size.pixels(), &planes, &drawing.confidences).unwrap();
+        prop_assert_eq!(&owned, &expected);
+
+        // The topmost object that covers half a pixel; all of them opaque enough for an index of masks.
+        scene.objects.iter_mut().for_each(|object| object.confidence = object.confidence.max(0.5));
+        let (drawing, planes) = drawn(&scene, &renderer, size);
+        let seen = OwnershipRule::Seen(Compositing::Over);
+        owned.fill_drawing(seen, &renderer, &drawing, size, &mut Default::default()).unwrap();
+        let mut index = vec![0; size.pixels()];
+        object_index(&planes, &drawing.confidences, &mut index).unwrap();
+        prop_assert_eq!(owned.index(), &index[..]);
+        index.sort_unstable();
+        index.dedup();
+        prop_assert_eq!(owned.objects(), index.iter().filter(|&&label| label > 0).count());
+        prop_assert_eq!(owned.union().filter(|&union| union).count(), owned.index().iter().filter(|&&k| k > 0).count());
+    }
+
     /// Over all pairs of pixels: 2 (s d' - ...) in the form of Hubert and Arabie, from four counts.
     #[test]
     fn rand_index_equals_the_count_over_pairs(a in labels(), b in labels()) {

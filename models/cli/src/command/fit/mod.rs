@@ -25,6 +25,7 @@ use crate::svg::to_svg;
 
 /// Finds the objects of pictures: shapes, poses and colors.
 ///
+/// Pictures may have 8 or 16 bits, be gray, in color or have a palette; what is transparent is put over white.
 /// Writes for every picture STEM.json (the scene), STEM.svg (its outlines) and STEM.png (the reconstruction).
 #[derive(Debug, Args)]
 #[command(before_help = "Example: dvp fit picture.png --out out\n         \
