@@ -122,6 +122,25 @@ fn float_pixels_come_from_a_numpy_file() {
     assert!(names(folder.path()).contains(&"float.npy".to_owned()));
 }
 
+#[test]
+fn more_objects_than_a_byte_can_number_are_scored() {
+    let folder = tempfile::tempdir().unwrap();
+    let [data, predictions] = ["data", "predictions"].map(|name| folder.path().join(name));
+    let crowd = ["--visible", "300", "--slots", "300", "--width", "256", "--scale", "0.01..0.03"];
+    let generate = ["generate", "--count", "1", "--preset", "multi-dsprites", "--out", text(&data)];
+    dvp_done(generate.into_iter().chain(crowd));
+    fs::create_dir(&predictions).unwrap();
+    fs::copy(data.join("scenes.jsonl"), predictions.join("00000.json")).unwrap();
+    let csv = folder.path().join("figures.csv");
+    dvp_done(["evaluate", text(&predictions), text(&data), "--csv", text(&csv)]);
+    let csv = fs::read_to_string(csv).unwrap();
+    let fields: Vec<&str> = csv.lines().nth(1).unwrap().split(',').collect();
+    // Some are hidden altogether; the rest is seen on both sides.
+    let [iou, ari, objects, found] = [4, 5, 6, 7].map(|i| fields[i].parse::<f64>().unwrap());
+    assert!(objects > 255.0 && objects <= 300.0, "{csv}");
+    assert_eq!([iou, ari, found].map(f64::to_bits), [1.0, 1.0, objects].map(f64::to_bits), "{csv}");
+}
+
 /// The topmost object of each pixel, from 1, of a scene of hard-edged objects.
 fn label_map(scene: &Scene<f32>, side: usize) -> Vec<u32> {
     let drawing = Painter::default().draw(scene).unwrap();
