@@ -1,7 +1,8 @@
 //! Segment-and-fit: the pipeline from an image to a [`Fit`].
 //!
-//! `pieces` joins what another object cuts in two, `order` decides which objects are in front, `known` poses the prototypes of a bank, `unknown` fits free outlines; `run` is what both share: rendering, colors,
-//! pruning, and the doubt that goes with the result.
+//! `pieces` joins what another object cuts in two, `order` decides which objects are in front, `known` poses the
+//! prototypes of a bank, `unknown` fits free outlines, `twins` splits what is several objects of one color; `run` is what
+//! they share: rendering, colors, pruning, and the doubt that goes with the result.
 
 mod known;
 mod order;
@@ -26,7 +27,7 @@ use crate::joint::JointScratch;
 use crate::pose::field::OutlineField;
 use crate::pose::search::{Candidate, Prototype};
 use crate::residual::Residual;
-use crate::segment::{EdgeKind, EdgeSample, SegmentOptions, Segmentation, noise_level};
+use crate::segment::{EdgeKind, EdgeSample, Evidence, SegmentOptions, Segmentation, noise_level};
 use crate::{Fit, FitError, FitOptions};
 use run::Run;
 
@@ -139,31 +140,27 @@ impl<T: Real> Fitter<T> {
             let found = run.nothing();
             return run.finish(found);
         }
-        scratch.segmentation.interpret(self.options.compositing.unwrap_or_default());
+        scratch.segmentation.interpret(Compositing::Blend);
+        let evidence = scratch.segmentation.evidence();
         let (kind, other) =
             self.options.edge.map_or(scratch.segmentation.edge_kinds(), |edge| (EdgeKind::of(edge), None));
-        let (compositing, second) = self.compositings(&scratch.segmentation, &kind);
-        if compositing != self.options.compositing.unwrap_or_default() {
-            scratch.segmentation.interpret(compositing);
+        // In doubt several readings are fitted; the shortest description wins.
+        let mut best: Option<Fit<T>> = None;
+        for kind in [Some(kind), other].into_iter().flatten() {
+            let (compositing, second) = self.compositings(evidence, &kind);
+            for compositing in [Some(compositing), second].into_iter().flatten() {
+                let fit = self.fit_with(image, kind, compositing, scratch)?;
+                best = Some(best.filter(|best| best.bits <= fit.bits).unwrap_or(fit));
+            }
         }
-        let mut fit = self.fit_with(image, kind, compositing, scratch)?;
-        // In doubt both readings are fitted; the shorter description wins.
-        if let Some(kind) = other {
-            fit = shorter(fit, self.fit_with(image, kind, compositing, scratch)?);
-        }
-        if let Some(compositing) = second {
-            scratch.segmentation.interpret(compositing);
-            fit = shorter(fit, self.fit_with(image, kind, compositing, scratch)?);
-        }
-        Ok(fit)
+        best.ok_or(FitError::Setting { what: "edge", must: "known" })
     }
 
     /// How the objects seem to be composited, and a second way to try in doubt.
-    fn compositings(&self, segmentation: &Segmentation<T>, kind: &EdgeKind<T>) -> (Compositing, Option<Compositing>) {
+    fn compositings(&self, evidence: Evidence, kind: &EdgeKind<T>) -> (Compositing, Option<Compositing>) {
         if let Some(known) = self.options.compositing {
             return (known, None);
         }
-        let evidence = segmentation.evidence();
         let reference = *kind == EdgeKind::Profile(EdgeProfile::reference());
         if evidence.direct >= DIRECT_PIXELS {
             if evidence.mean > 0 { (Compositing::Blend, Some(Compositing::Over)) } else { (Compositing::Over, None) }
@@ -183,6 +180,10 @@ impl<T: Real> Fitter<T> {
         scratch: &mut FitScratch<T>,
     ) -> Result<Fit<T>, FitError> {
         let edge = kind.profile(T::of_usize(image.size().unit_px()));
+        // An order decided under another edge kind is decided anew.
+        if scratch.segmentation.compositing() != compositing || compositing == Compositing::Over {
+            scratch.segmentation.interpret(compositing);
+        }
         let mut run = Run { fitter: self, image, kind, edge, compositing, scratch };
         run.join_pieces();
         run.decide_order();
@@ -190,10 +191,6 @@ impl<T: Real> Fitter<T> {
         let found = if self.prototypes.is_empty() { run.unknown_shapes()? } else { run.known_shapes()? };
         run.finish(found)
     }
-}
-
-fn shorter<T>(first: Fit<T>, second: Fit<T>) -> Fit<T> {
-    if second.bits < first.bits { second } else { first }
 }
 
 /// So many soft pixels between two objects without their mean color between speak for one hiding the other; objects that

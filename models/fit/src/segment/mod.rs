@@ -144,6 +144,11 @@ impl<T: Real> Segmentation<T> {
         self.gather_moments();
     }
 
+    /// The way in which objects overlap in the present reading.
+    pub(crate) fn compositing(&self) -> Compositing {
+        self.reading.compositing
+    }
+
     /// What the regions say of compositing; to be asked after interpreting them as blended.
     pub(crate) fn evidence(&self) -> Evidence {
         self.reading.evidence(&self.regions)

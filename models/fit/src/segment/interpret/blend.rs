@@ -4,7 +4,7 @@
 use dvp_core::Real;
 use dvp_core::render::Compositing;
 
-use super::{BACKGROUND_CONTACT, Cover, MAX_COVER, Reading, distance, is_color, mean, slack, within_unit};
+use super::{BACKGROUND_CONTACT, Cover, MAX_COVER, Reading, distance, is_color, mean, mixed_in, slack, within_unit};
 use crate::segment::region::Region;
 
 /// How exactly an overlap shows the mean of its colors.
@@ -139,8 +139,7 @@ impl<T: Real> Reading<T> {
     fn host(&self, regions: &[Region<T>], i: usize) -> Option<(u32, [T; 3])> {
         let outer = self.lies_inside(regions, i)?;
         let [host] = *self.covers[outer].members() else { return None };
-        let two = T::of(2.0);
-        let color: [T; 3] = core::array::from_fn(|c| two * regions[i].color[c] - regions[outer].color[c]);
+        let color = mixed_in(regions[i].color, regions[outer].color);
         is_color(color).then(|| (host, within_unit(color)))
     }
 }

@@ -126,6 +126,11 @@ fn mean<T: Real>(colors: &[[T; 3]]) -> [T; 3] {
     core::array::from_fn(|c| colors.iter().map(|color| color[c]).sum::<T>() * share)
 }
 
+/// The color whose mean with `host` is `color`.
+fn mixed_in<T: Real>(color: [T; 3], host: [T; 3]) -> [T; 3] {
+    core::array::from_fn(|c| color[c] + color[c] - host[c])
+}
+
 /// Whether all channels are in [0, 1], but for two rounding errors of 8 bits.
 fn is_color<T: Real>(color: [T; 3]) -> bool {
     let slack = T::of(0.006);
@@ -174,8 +179,11 @@ impl<T: Real> Reading<T> {
             } else if self.hole(regions, a).is_some() || self.hole(regions, b).is_some() {
                 evidence.direct += pixels;
             } else if single(a) && single(b) && self.classes[a] != self.classes[b] {
-                if self.lies_inside(regions, a).is_some() || self.lies_inside(regions, b).is_some() {
-                    evidence.inside += pixels;
+                let inside = |i: usize| self.lies_inside(regions, i).map(|outer| [regions[i].color, regions[outer].color]);
+                if let Some([color, host]) = inside(a).or_else(|| inside(b)) {
+                    // What no color mixed with the host's can show lies on top of it.
+                    let mixed = is_color(mixed_in(color, host));
+                    *if mixed { &mut evidence.inside } else { &mut evidence.direct } += pixels;
                 } else if !self.mix_somewhere(a, b) {
                     evidence.direct += pixels;
                 }
