@@ -359,7 +359,14 @@ fn sample<T: Real>(
 ) -> Option<EdgeSample<T>> {
     let own = edge.distance_noise();
     let (one, half) = (T::one(), T::of(0.5));
-    let (distance, slope) = edge.distance(rim.coverage, T::of_usize(size.unit_px()))?;
+    let known = edge.distance(rim.coverage, T::of_usize(size.unit_px()));
+    // Pixels that are covered in whole beside ones not covered at all: the outline runs between them.
+    let between = || {
+        let to_nearest = (rim.coverage - rim.coverage.round()).abs();
+        let exact = transition.step && *edge == EdgeKind::Area && to_nearest < T::of(0.02);
+        exact.then_some((half - rim.coverage, one))
+    };
+    let (distance, slope) = known.or_else(between)?;
     let n = T::of_usize(rim.others);
     let share = if rim.others == 0 { one } else { n * (n + one) / ((n + rim.coverage) * (n + rim.coverage)) };
     let [x, y] = transition.pixel.map(|v| T::of_usize(v as usize) + half);

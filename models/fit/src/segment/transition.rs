@@ -16,6 +16,8 @@ pub(crate) struct Transition<T> {
     pub(crate) pair: [u32; 2],
     /// 0 at the color of the first region, 1 at that of the second; a little beyond either for noise.
     pub(crate) weight: T,
+    /// Whether the colors change from one pixel to the next, this being one of the two.
+    pub(crate) step: bool,
 }
 
 /// Soft pixel with the nearest regions to the left, right, above and below (0: none, else region + 1), and the lengths
@@ -50,7 +52,7 @@ pub(crate) fn find<T: Real>(
         let color = image.pixel(soft.pixel[1] as usize * width + soft.pixel[0] as usize);
         let across = [(soft.ends[0], soft.ends[1], soft.runs[0]), (soft.ends[2], soft.ends[3], soft.runs[1])];
         let mut best: Option<(T, Transition<T>)> = None;
-        for (a, b, run) in across {
+        for (axis, (a, b, run)) in (0..).zip(across) {
             if a == b || a == 0 || b == 0 {
                 continue;
             }
@@ -59,7 +61,9 @@ pub(crate) fn find<T: Real>(
             // Of two crossings that explain the pixel about as well, the shorter is the more perpendicular one.
             let cost = off + tolerance * T::of(0.05) * T::of_usize(run as usize);
             if off <= tolerance && best.as_ref().is_none_or(|(c, _)| cost < *c) {
-                best = Some((cost, Transition { pixel: soft.pixel, pair, weight }));
+                // A run from row to row counts from flat row to flat row.
+                let step = run == 2 + axis;
+                best = Some((cost, Transition { pixel: soft.pixel, pair, weight, step }));
             }
         }
         if let Some((_, transition)) = best {
