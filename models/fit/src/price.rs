@@ -26,11 +26,27 @@ pub(crate) const OBJECT_BITS: f64 = COLOR_BITS + POSE_BITS;
 /// Bits of background and objects; a prototype costs the choice among `bank` shapes, a free shape its coefficients.
 pub(crate) fn scene_bits<T: Real>(scene: &Scene<T>, bank: usize) -> f64 {
     let shape = |harmonics: usize, known: bool| {
-        if known { choice_bits(bank) } else { 4.0 * COEFFICIENT_BITS * T::of_usize(harmonics).as_f64() }
+        if known { choice_bits(bank) } else { equal_bits(harmonics) }
     };
     let objects = scene.objects.iter();
     let parts = objects.map(|o| OBJECT_BITS + shape(o.efd.harmonic_count(), o.prototype.is_some()));
     COLOR_BITS + parts.sum::<f64>()
+}
+
+/// Bits of the coefficients of a free shape, all alike.
+pub(crate) fn equal_bits(harmonics: usize) -> f64 {
+    4.0 * COEFFICIENT_BITS * f64::of_usize(harmonics)
+}
+
+/// Bits of the coefficients of a free shape if small ones cost less: each as many as tell it to a 200th of the first
+/// harmonic. Unlike the number of harmonics, which a hidden stretch may raise, this compares shapes by how simple they are.
+pub(crate) fn coefficient_bits<T: Real>(rows: &[[T; 4]]) -> f64 {
+    let square = |row: &[T; 4]| row.iter().map(|&v| v * v).sum::<T>();
+    let first = rows.first().map_or(T::one(), square);
+    // The first harmonic of a circle has two coefficients of its radius.
+    let size = (first * T::of(0.5)).sqrt().max(T::of(1e-9));
+    let steps = T::of(Float::powf(2.0, COEFFICIENT_BITS)) / size;
+    rows.iter().flatten().map(|&v| Float::log2((T::one() + v.abs() * steps).as_f64())).sum()
 }
 
 /// Bits per unit of the robust cost: half a squared residual in units of the noise, in base 2.

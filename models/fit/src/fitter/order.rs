@@ -12,7 +12,7 @@ use dvp_core::Real;
 use super::run::Run;
 use crate::free::grow::Freedom;
 use crate::pose::search::Effort;
-use crate::price::misfit_bits;
+use crate::price::{coefficient_bits, equal_bits, misfit_bits};
 
 /// Descriptions whose lengths differ by less say nothing.
 const CLEARLY_SHORTER_BITS: f64 = 8.0;
@@ -59,7 +59,10 @@ impl<T: Real> Run<'_, T> {
         self.scratch.segmentation.gather_object(object, size, &self.kind);
         if self.fitter.prototypes.is_empty() {
             let grown = self.outline_of(object as usize, Freedom::Full);
-            return grown.map_or(NO_FIT_BITS, |grown| grown.bits.as_f64());
+            return grown.map_or(NO_FIT_BITS, |grown| {
+                let rows = &grown.outline.rows;
+                grown.bits.as_f64() - equal_bits(rows.len()) + coefficient_bits(rows)
+            });
         }
         self.search(object, Effort::Usual);
         let samples = &self.scratch.segmentation.segments()[object as usize].samples;

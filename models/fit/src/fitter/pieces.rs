@@ -3,69 +3,103 @@
 //! Two regions of one color that end at the same third object may be one object that goes on behind it. They are if one
 //! shape explains both outlines, and its description is shorter than that of two.
 
+use alloc::vec;
+use alloc::vec::Vec;
+
 use dvp_core::Real;
 
 use super::run::Run;
 use crate::price::OBJECT_BITS;
-use crate::segment::Border;
 
 /// Channel difference of pieces of one object (two rounding errors of 8 bits).
 const SAME_COLOR: f64 = 0.008;
+/// Most pieces that are tried together.
+const MOST_PIECES: usize = 8;
 
 impl<T: Real> Run<'_, T> {
     /// Joins pieces while that makes the description shorter. To be done before the order is decided.
+    #[expect(clippy::cast_possible_truncation, reason = "objects are numbered in u32")]
     pub(super) fn join_pieces(&mut self) {
-        let count = self.scratch.segmentation.segments().len();
+        let count = self.scratch.segmentation.segments().len() as u32;
         for first in 0..count {
-            let mut second = first + 1;
-            while second < count {
-                // What was joined may be joined with more; an emptied object is no candidate any longer.
-                if let Some(cover) = self.cut_by(first, second)
-                    && self.are_one(first, second, cover)
-                {
-                    second = first;
+            // All that may belong together, else pairs of it.
+            let group = self.pieces_of(first);
+            if group.len() < 2 || self.are_one(&group) {
+                continue;
+            }
+            for &second in &group[1..] {
+                let pair = [first, second];
+                if group.len() > 2 && !self.covers_of(&pair, 2).is_empty() {
+                    self.are_one(&pair);
                 }
-                second += 1;
             }
         }
     }
 
-    /// The object between two pieces of one color, if it may be in front of both.
-    fn cut_by(&self, first: usize, second: usize) -> Option<u32> {
-        let segmentation = &self.scratch.segmentation;
-        let [a, b] = [first, second].map(|index| &segmentation.segments()[index]);
-        let same = (0..3).all(|c| (a.color[c] - b.color[c]).abs() <= T::of(SAME_COLOR));
-        if !same || a.pixels == 0 || b.pixels == 0 {
-            return None;
+    /// The object and the later ones of its color that may be its pieces: a third object lies between each of them and
+    /// another one.
+    #[expect(clippy::cast_possible_truncation, reason = "objects are numbered in u32")]
+    fn pieces_of(&self, first: u32) -> Vec<u32> {
+        let segments = self.scratch.segmentation.segments();
+        let whole = &segments[first as usize];
+        let mut group = vec![first];
+        if whole.pixels == 0 || self.covers_of(&group, 1).is_empty() {
+            return group;
         }
-        let [p, q] = [first, second].map(|index| u32::try_from(index).unwrap_or(u32::MAX));
-        let hides = |border: &Border, object: u32, cover: u32| {
-            border.front.is_none_or(|front| front == cover && front != object)
+        let same = |other: u32| {
+            let part = &segments[other as usize];
+            part.pixels > 0 && (0..3).all(|c| (whole.color[c] - part.color[c]).abs() <= T::of(SAME_COLOR))
         };
-        let beside = |object: u32| {
-            let borders = segmentation.borders().iter();
-            borders.filter_map(move |border| match border.objects {
-                [x, y] if x == object && hides(border, object, y) => Some(y),
-                [x, y] if y == object && hides(border, object, x) => Some(x),
-                _ => None,
-            })
-        };
-        beside(p).find(|&cover| cover != q && beside(q).any(|other| other == cover))
+        let mut open: Vec<u32> = (first + 1..segments.len() as u32).filter(|&other| same(other)).collect();
+        while group.len() < MOST_PIECES {
+            let covers = self.covers_of(&group, 1);
+            let next = open.iter().position(|&other| self.covers_of(&[other], 1).iter().any(|c| covers.contains(c)));
+            let Some(at) = next else { break };
+            group.push(open.remove(at));
+        }
+        group
     }
 
-    /// Whether one shape behind `cover` explains both pieces for fewer bits; they are joined then.
-    fn are_one(&mut self, first: usize, second: usize, cover: u32) -> bool {
-        let [p, q] = [first, second].map(|index| u32::try_from(index).unwrap_or(u32::MAX));
-        let behind = self.part_bits(p) + self.part_bits(q);
-        let around = self.bits_if_front(cover, &[p, q]);
-        let in_front = self.bits_if_front(p, &[cover]) + self.bits_if_front(q, &[cover]) + self.part_bits(cover);
-        let apart = OBJECT_BITS + in_front.min(behind + around);
-        // The part between the pieces cannot be described for nothing.
-        if around >= apart {
+    /// Objects that may be in front of at least `least` of the pieces.
+    fn covers_of(&self, pieces: &[u32], least: usize) -> Vec<u32> {
+        let mut seen: Vec<(u32, usize)> = Vec::new();
+        for border in self.scratch.segmentation.borders() {
+            let [a, b] = border.objects;
+            for (piece, cover) in [(a, b), (b, a)] {
+                if pieces.contains(&piece)
+                    && !pieces.contains(&cover)
+                    && border.front.is_none_or(|front| front == cover)
+                {
+                    match seen.iter_mut().find(|(object, _)| *object == cover) {
+                        Some((_, count)) => *count += 1,
+                        None => seen.push((cover, 1)),
+                    }
+                }
+            }
+        }
+        seen.into_iter().filter(|&(_, count)| count >= least).map(|(object, _)| object).collect()
+    }
+
+    /// Whether one shape that goes on behind what lies between explains all pieces for fewer bits; they are joined then.
+    fn are_one(&mut self, pieces: &[u32]) -> bool {
+        let covers = self.covers_of(pieces, 2);
+        let (mut behind, mut in_front, mut around) = (0.0, 0.0, 0.0);
+        for &cover in &covers {
+            around += self.bits_if_front(cover, pieces);
+            in_front += self.part_bits(cover);
+        }
+        for &piece in pieces {
+            behind += self.part_bits(piece);
+            in_front += self.bits_if_front(piece, &covers);
+        }
+        let others = f64::from(u32::try_from(pieces.len() - 1).unwrap_or(u32::MAX));
+        let apart = OBJECT_BITS * others + in_front.min(behind + around);
+        // What covers the part between cannot be described for nothing.
+        if covers.is_empty() || around >= apart {
             return false;
         }
-        let before = self.scratch.segmentation.join(p, q);
-        let joined = self.part_bits(p) + around;
+        let before = self.scratch.segmentation.join(pieces);
+        let joined = self.part_bits(pieces[0]) + around;
         if joined < apart {
             return true;
         }
@@ -75,17 +109,17 @@ impl<T: Real> Run<'_, T> {
 
     /// Bits of an object if it is in front of the others given.
     fn bits_if_front(&mut self, object: u32, behind: &[u32]) -> f64 {
-        let mut changed = [None; 2];
-        for (slot, &other) in changed.iter_mut().zip(behind) {
+        let mut changed = Vec::new();
+        for &other in behind {
             let objects = [object.min(other), object.max(other)];
             let at = self.scratch.segmentation.borders().iter().position(|border| border.objects == objects);
-            *slot = at.map(|at| (at, self.scratch.segmentation.borders()[at].front));
             if let Some(at) = at {
+                changed.push((at, self.scratch.segmentation.borders()[at].front));
                 self.scratch.segmentation.set_front(at, Some(object));
             }
         }
         let bits = self.part_bits(object);
-        for (at, front) in changed.into_iter().flatten() {
+        for (at, front) in changed {
             self.scratch.segmentation.set_front(at, front);
         }
         bits

@@ -189,9 +189,9 @@ impl<T: Real> Segmentation<T> {
         }
     }
 
-    /// Makes `other` a part of `object`; returns what [`Self::part`] takes to undo that.
-    pub(crate) fn join(&mut self, object: u32, other: u32) -> Stacking {
-        let before = self.reading.join(object, other);
+    /// Makes the objects one, the first; returns what [`Self::part`] takes to undo that.
+    pub(crate) fn join(&mut self, objects: &[u32]) -> Stacking {
+        let before = self.reading.join(objects);
         self.gather_moments();
         before
     }

@@ -179,7 +179,8 @@ impl<T: Real> Reading<T> {
             } else if self.hole(regions, a).is_some() || self.hole(regions, b).is_some() {
                 evidence.direct += pixels;
             } else if single(a) && single(b) && self.classes[a] != self.classes[b] {
-                let inside = |i: usize| self.lies_inside(regions, i).map(|outer| [regions[i].color, regions[outer].color]);
+                let inside =
+                    |i: usize| self.lies_inside(regions, i).map(|outer| [regions[i].color, regions[outer].color]);
                 if let Some([color, host]) = inside(a).or_else(|| inside(b)) {
                     // What no color mixed with the host's can show lies on top of it.
                     let mixed = is_color(mixed_in(color, host));

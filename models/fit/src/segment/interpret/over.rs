@@ -5,6 +5,8 @@
 //! object b: what it shows moves by (1 - f) (b - g). So a region between two others that is off the color of one by a part
 //! of what the other is off the background is their overlap, and both f and c are known.
 
+use alloc::vec::Vec;
+
 use dvp_core::Real;
 use dvp_core::render::Compositing;
 
@@ -257,18 +259,19 @@ impl<T: Real> Reading<T> {
         self.borders.retain(|border| border.front.is_some() || border.pixels >= MIN_BORDER);
     }
 
-    /// Makes `other` a part of `object`; returns what was before.
-    pub(crate) fn join(&mut self, object: u32, other: u32) -> Stacking {
+    /// Makes the objects one, the first; returns what was before.
+    pub(crate) fn join(&mut self, objects: &[u32]) -> Stacking {
         let before = Stacking { covers: self.covers.clone(), borders: self.borders.clone() };
-        let renamed = |member: u32| if member == other { object } else { member };
+        let renamed = |member: u32| objects.first().copied().filter(|_| objects.contains(&member)).unwrap_or(member);
         for cover in &mut self.covers {
-            if cover.members().contains(&other) {
-                let mut members = cover.members().to_vec();
-                members.iter_mut().for_each(|member| *member = renamed(*member));
+            if cover.members().iter().any(|member| objects.contains(member)) {
+                let mut members: Vec<u32> = cover.members().iter().copied().map(renamed).collect();
+                members.dedup();
                 *cover = Cover::of(&members);
             }
         }
-        for border in before.borders.iter().filter(|border| border.objects.contains(&other)) {
+        self.borders.clear();
+        for border in &before.borders {
             let [a, b] = border.objects.map(renamed);
             if a != b {
                 let joined = self.border(a, b);
@@ -276,7 +279,6 @@ impl<T: Real> Reading<T> {
                 joined.front = joined.front.or(border.front.map(renamed));
             }
         }
-        self.borders.retain(|border| !border.objects.contains(&other));
         before
     }
 
