@@ -12,7 +12,14 @@ pub(crate) const COEFFICIENT_BITS: f64 = 8.0;
 
 /// Bits of an object whose shape is one of `bank` prototypes.
 pub(crate) fn known_object_bits(bank: usize) -> f64 {
-    COLOR_BITS + POSE_BITS + choice_bits(bank)
+    OBJECT_BITS + choice_bits(bank)
+}
+
+/// Bits of a free shape that repeats itself `symmetry` times around (0: a disk): a k-fold symmetric outline has every k-th
+/// harmonic only.
+pub(crate) fn free_shape_bits(harmonics: usize, symmetry: usize) -> f64 {
+    let needed = if symmetry == 0 { 1 } else { harmonics.div_ceil(symmetry) };
+    equal_bits(needed)
 }
 
 /// Bits of a choice among `bank` shapes.
@@ -25,12 +32,17 @@ pub(crate) const OBJECT_BITS: f64 = COLOR_BITS + POSE_BITS;
 
 /// Bits of background and objects; a prototype costs the choice among `bank` shapes, a free shape its coefficients.
 pub(crate) fn scene_bits<T: Real>(scene: &Scene<T>, bank: usize) -> f64 {
-    let shape = |harmonics: usize, known: bool| {
-        if known { choice_bits(bank) } else { equal_bits(harmonics) }
+    let shape = |at: usize| {
+        let object = &scene.objects[at];
+        if object.prototype.is_some() {
+            choice_bits(bank)
+        } else if at > 0 && scene.objects[at - 1].efd == object.efd {
+            0.0
+        } else {
+            equal_bits(object.efd.harmonic_count())
+        }
     };
-    let objects = scene.objects.iter();
-    let parts = objects.map(|o| OBJECT_BITS + shape(o.efd.harmonic_count(), o.prototype.is_some()));
-    COLOR_BITS + parts.sum::<f64>()
+    COLOR_BITS + (0..scene.objects.len()).map(|at| OBJECT_BITS + shape(at)).sum::<f64>()
 }
 
 /// Bits of the coefficients of a free shape, all alike.

@@ -28,6 +28,8 @@ use crate::pose::field::OutlineField;
 use crate::pose::search::{Candidate, Prototype};
 use crate::residual::Residual;
 use crate::segment::{EdgeKind, EdgeSample, Evidence, SegmentOptions, Segmentation, noise_level};
+use crate::split::common::CommonShapes;
+use crate::split::twins::TwinScratch;
 use crate::{Fit, FitError, FitOptions};
 use run::Run;
 
@@ -53,6 +55,8 @@ pub struct FitScratch<T: Real> {
     residual: Residual<T>,
     start: StartScratch<T>,
     free: GrowScratch<T>,
+    common: CommonShapes<T>,
+    twins: TwinScratch<T>,
     lanes: EdgeLanes<T>,
     samples: Vec<EdgeSample<T>>,
     colors: ColorScratch<T>,
@@ -72,6 +76,8 @@ impl<T: Real> Default for FitScratch<T> {
             residual: Residual::default(),
             start: StartScratch::default(),
             free: GrowScratch::default(),
+            common: CommonShapes::default(),
+            twins: TwinScratch::default(),
             lanes: EdgeLanes::default(),
             samples: Vec::new(),
             colors: ColorScratch::default(),

@@ -2,14 +2,54 @@
 
 use alloc::vec::Vec;
 
-use dvp_core::Real;
+use dvp_core::scene::Pose;
+use dvp_core::shape::REFERENCE_VERTICES;
+use dvp_core::{Efd, Object, Real};
 
 use super::known::Source;
-use super::run::Run;
+use super::run::{Found, FoundObject, Run};
 use crate::FitError;
+use crate::free::grow::{Freedom, GrowSettings};
+use crate::free::outline_fit::FreeOutline;
 use crate::joint::{JointObject, JointScene};
-use crate::price::known_object_bits;
-use crate::split::split;
+use crate::pose::search::{Effort, search};
+use crate::price::{OBJECT_BITS, free_shape_bits, known_object_bits};
+use crate::split::motion::Motion;
+use crate::split::twins::{Union, is_waisted, misfit, repeats};
+use crate::split::{Explanation, split};
+
+/// Noise of a pixel value that free outlines leave: harmonics cut corners, by more the sharper they are, which says nothing of
+/// how many objects there are.
+const CORNER_NOISE: f64 = 0.01;
+/// A union may miss the samples by this many times as much as the single outline did, and by so much (px^2) in any case.
+const MISFIT_RATIO: f64 = 2.0;
+const MISFIT_SLACK: f64 = 0.004;
+
+/// After so many outlines with a waist that were no unions, those left are taken as they are: the picture is made of such shapes.
+const MOST_FAILURES: usize = 6;
+
+/// Where parts of a union come from, the more reliable first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Way {
+    /// Common shapes posed on parts of the outline.
+    Common,
+    /// A motion that takes one part to the other.
+    Motion,
+}
+
+impl Way {
+    const ALL: [Self; 2] = [Self::Common, Self::Motion];
+}
+
+/// An outline that may be that of a union.
+#[derive(Clone, Debug)]
+struct Waisted<T> {
+    contour: Vec<[T; 2]>,
+    /// Most robust mean squared distance error (px^2) that a union may have.
+    most: T,
+    /// Bits of its shape as one object.
+    shape_bits: f64,
+}
 
 impl<T: Real> Run<'_, T> {
     /// Replaces objects that visibly miss the image by sets of prototypes whose union explains their segments, where that
@@ -20,44 +60,162 @@ impl<T: Real> Run<'_, T> {
         sources: &mut Vec<Source>,
         mut loss: T,
     ) -> Result<T, FitError> {
-        for at in 0..sources.len() {
+        let mut at = 0;
+        while at < sources.len() {
             let source = sources[at];
             if source.sure || !self.misses_object(posed, at) {
+                at += 1;
                 continue;
             }
             let sets = split(&self.scratch.segmentation.segments()[source.segment], &self.fitter.prototypes);
             let single = posed.objects[at];
-            let count = posed.objects.len();
-            let mut best = (self.residual_bits(), loss, Vec::from([single]));
+            let mut placed = 1;
+            let mut best = (self.residual_bits(), Vec::from([single]));
             for set in sets {
                 let parts = set.parts.iter();
                 let objects: Vec<JointObject<T>> =
                     parts.map(|part| JointObject { shape: part.prototype, pose: part.pose, ..single }).collect();
-                place(posed, at, count, &objects);
-                let loss = self.compare(posed)?;
-                let price = known_object_bits(self.fitter.prototypes.len()) * T::of_usize(objects.len() - 1).as_f64();
+                posed.objects.splice(at..at + placed, objects.iter().copied());
+                placed = objects.len();
+                self.compare(posed)?;
+                let price = known_object_bits(self.fitter.prototypes.len()) * f64::of_usize(placed - 1);
                 let bits = self.residual_bits() + price;
                 if bits < best.0 {
-                    best = (bits, loss, objects);
+                    best = (bits, objects);
                 }
             }
-            place(posed, at, count, &best.2);
-            sources.resize(posed.objects.len(), source);
+            posed.objects.splice(at..at + placed, best.1.iter().copied());
+            sources.splice(at..=at, best.1.iter().map(|_| source));
             loss = self.compare(posed)?;
+            at += best.1.len();
         }
         Ok(loss)
     }
 
+    /// Replaces outlines with a waist by two or three of common shapes, or two of one simpler shape, where that shortens the
+    /// description.
+    pub(super) fn split_unknown(&mut self, found: &mut Found<T>) -> Result<(), FitError> {
+        let (mut at, mut failures) = (0, 0);
+        while at < found.objects.len() && failures < MOST_FAILURES {
+            let single = found.objects[at].clone();
+            let mut placed = 1;
+            if let Some(waisted) = self.waisted(&single)? {
+                self.compare_found(found)?;
+                let mut best = (waisted.shape_bits + self.coarse_residual_bits(), Vec::from([single.clone()]));
+                for way in Way::ALL {
+                    for explanation in self.explanations(&waisted, &single, way) {
+                        if explanation.cost > waisted.most {
+                            continue;
+                        }
+                        let Some(objects) = self.placed(&explanation, &single) else { continue };
+                        found.objects.splice(at..at + placed, objects.iter().cloned());
+                        placed = objects.len();
+                        self.compare_found(found)?;
+                        let poses = OBJECT_BITS * f64::of_usize(placed - 1);
+                        let bits = explanation.shape_bits + poses + self.coarse_residual_bits();
+                        if bits < best.0 {
+                            best = (bits, objects);
+                        }
+                    }
+                    if best.1.len() > 1 {
+                        break;
+                    }
+                }
+                let count = best.1.len();
+                failures += usize::from(count == 1);
+                found.objects.splice(at..at + placed, best.1);
+                placed = count;
+            }
+            at += placed;
+        }
+        Ok(())
+    }
+
+    /// What is known of an object that narrows somewhere, as two that overlap do; none for others.
+    fn waisted(&mut self, single: &FoundObject<T>) -> Result<Option<Waisted<T>>, FitError> {
+        let mut outline = alloc::vec![[T::zero(); 2]; self.fitter.outlines.vertex_count()];
+        self.fitter.outlines.outline(single.object.efd.rows(), &mut outline)?;
+        if !is_waisted(&outline) {
+            return Ok(None);
+        }
+        single.object.pose.transform(&mut outline);
+        let unit = self.unit_px();
+        outline.iter_mut().for_each(|v| *v = v.map(|x| x * unit));
+        let Some(contour) = self.contour_of(single.segment) else { return Ok(None) };
+        let samples = &self.scratch.segmentation.segments()[single.segment].samples;
+        let misfit = misfit(&outline, samples);
+        let most = T::of(MISFIT_RATIO) * misfit + T::of(MISFIT_SLACK);
+        if self.is_common(single.segment, most) {
+            return Ok(None);
+        }
+        let samples = &self.scratch.segmentation.segments()[single.segment].samples;
+        let shape_bits = free_shape_bits(single.object.efd.harmonic_count(), repeats(&contour, samples));
+        Ok(Some(Waisted { contour, most, shape_bits }))
+    }
+
+    /// Whether one common shape explains a segment.
+    fn is_common(&mut self, segment: usize, most: T) -> bool {
+        let scratch = &mut *self.scratch;
+        scratch.common.prepare();
+        let (object, size) = (u32::try_from(segment).unwrap_or(u32::MAX), self.image.size());
+        let shapes = &scratch.common.prototypes;
+        search(object, shapes, size, &scratch.segmentation, Effort::Usual, &mut scratch.candidates);
+        scratch.candidates.first().is_some_and(|best| best.cost <= most)
+    }
+
+    fn explanations(&mut self, waisted: &Waisted<T>, single: &FoundObject<T>, way: Way) -> Vec<Explanation<T>> {
+        let scratch = &mut *self.scratch;
+        let segment = &scratch.segmentation.segments()[single.segment];
+        let union = Union {
+            contour: &waisted.contour,
+            samples: &segment.samples,
+            basis: &self.fitter.basis,
+            settings: GrowSettings {
+                vertex_count: REFERENCE_VERTICES,
+                max_harmonics: self.fitter.options.max_harmonics,
+                freedom: Freedom::Full,
+                noise: scratch.segmentation.noise(),
+            },
+        };
+        match way {
+            Way::Common => {
+                let sets = split(segment, &scratch.common.prototypes);
+                let mut out: Vec<_> = sets.iter().map(|set| set.of_common_shapes(&scratch.common)).collect();
+                for set in &sets {
+                    if let [first, second] = *set.parts
+                        && first.prototype == second.prototype
+                    {
+                        let prototype = &scratch.common.prototypes[first.prototype];
+                        out.extend(union.twins_from([first, second], prototype, &mut scratch.twins));
+                    }
+                }
+                out
+            }
+            Way::Motion => union.twins(&mut scratch.twins),
+        }
+    }
+
+    fn placed(&self, explanation: &Explanation<T>, single: &FoundObject<T>) -> Option<Vec<FoundObject<T>>> {
+        let unit = self.unit_px();
+        let place = |(outline, motion): &(FreeOutline<T>, Motion<T>)| {
+            let normal = Efd::new(outline.rows.clone()).normalize().ok()?;
+            let pose = Pose {
+                translation: motion.apply(outline.center).map(|v| v / unit),
+                scale: motion.scale() * normal.scale / unit,
+                rotation: normal.rotation + motion.rotation(),
+            };
+            let object = Object { pose, efd: normal.efd, ..single.object.clone() };
+            Some(FoundObject { object, ..single.clone() })
+        };
+        explanation.members.iter().map(place).collect()
+    }
+
+    /// Bits of the residual against the noise that cut corners of free outlines leave.
+    fn coarse_residual_bits(&self) -> f64 {
+        self.scratch.residual.bits(self.noise().max(T::of(CORNER_NOISE)))
+    }
+
     fn residual_bits(&self) -> f64 {
         self.scratch.residual.bits(self.noise())
-    }
-}
-
-/// Puts the first of `objects` in place `at` and the others behind the first `count`.
-fn place<T: Real>(posed: &mut JointScene<T>, at: usize, count: usize, objects: &[JointObject<T>]) {
-    posed.objects.truncate(count);
-    if let Some((first, others)) = objects.split_first() {
-        posed.objects[at] = *first;
-        posed.objects.extend_from_slice(others);
     }
 }

@@ -29,6 +29,7 @@ impl<T: Real> Run<'_, T> {
             }
         }
         self.try_with_less_freedom(&mut found)?;
+        self.split_unknown(&mut found)?;
         Ok(found)
     }
 
@@ -62,7 +63,7 @@ impl<T: Real> Run<'_, T> {
         Ok(())
     }
 
-    fn compare_found(&mut self, found: &Found<T>) -> Result<T, FitError> {
+    pub(super) fn compare_found(&mut self, found: &Found<T>) -> Result<T, FitError> {
         self.scene_of(found).draw(&self.fitter.outlines, &mut self.scratch.drawing)?;
         self.compare_drawing()
     }
@@ -87,15 +88,23 @@ impl<T: Real> Run<'_, T> {
         Some((object, grown.steps))
     }
 
-    pub(super) fn outline_of(&mut self, segment: usize, freedom: Freedom) -> Option<Grown<T>> {
+    /// The outline of a segment as traced (px); none if it encloses nothing.
+    pub(super) fn contour_of(&mut self, segment: usize) -> Option<Vec<[T; 2]>> {
         let size = self.image.size();
         let half_coverage_px = self.edge.half_coverage().max(T::zero()) * self.unit_px();
         let scratch = &mut *self.scratch;
-        let noise = scratch.segmentation.noise();
         let part = &scratch.segmentation.segments()[segment];
         let object = u32::try_from(segment).ok()?;
         let contour = trace(part, object, &scratch.segmentation, size, &mut scratch.start)?;
-        let contour = shrink(&contour, half_coverage_px);
+        Some(shrink(&contour, half_coverage_px))
+    }
+
+    pub(super) fn outline_of(&mut self, segment: usize, freedom: Freedom) -> Option<Grown<T>> {
+        let size = self.image.size();
+        let contour = self.contour_of(segment)?;
+        let scratch = &mut *self.scratch;
+        let noise = scratch.segmentation.noise();
+        let part = &scratch.segmentation.segments()[segment];
         scratch.samples.clear();
         scratch.samples.extend_from_slice(&part.samples);
         if part.border > 0 {

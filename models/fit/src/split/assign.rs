@@ -75,7 +75,7 @@ fn assign<T: Real>(
 }
 
 /// Robust mean squared distance error of the union (px^2).
-fn cost<T: Real>(parts: &[Part<T>], samples: &[EdgeSample<T>], prototypes: &[Prototype<T>]) -> T {
+pub(super) fn cost<T: Real>(parts: &[Part<T>], samples: &[EdgeSample<T>], prototypes: &[Prototype<T>]) -> T {
     let mut nearest = alloc::vec![T::infinity(); samples.len()];
     for part in parts {
         for (held, residual) in nearest.iter_mut().zip(part.residuals(&prototypes[part.prototype].field, samples)) {

@@ -7,21 +7,31 @@
 //! sample given to the outline nearest to it.
 
 mod assign;
+pub(crate) mod common;
 mod cover;
+pub(crate) mod motion;
 mod partial;
+mod symmetry;
 #[cfg(test)]
 mod tests;
+pub(crate) mod twins;
 
 use alloc::vec::Vec;
 
 use dvp_core::Real;
 
+use common::CommonShapes;
+use motion::Motion;
+
+use crate::free::outline_fit::FreeOutline;
 use crate::pose::gauss_newton::PosePx;
 use crate::pose::search::Prototype;
 use crate::segment::Segment;
 
 /// Sets of poses that are handed back.
 const MOST_SETS: usize = 3;
+/// A set of three must miss the samples by so many times less than one of two.
+const THIRD_PART: f64 = 4.0;
 /// Distance error (px) up to which an outline explains a sample.
 pub(crate) const EXPLAINED_PX: f64 = 0.3;
 
@@ -40,6 +50,31 @@ pub(crate) struct PartSet<T> {
     pub(crate) cost: T,
 }
 
+/// Objects of one color, each a shape (px) and the motion that places it, that together explain an outline.
+#[derive(Clone, Debug)]
+pub(crate) struct Explanation<T> {
+    pub(crate) members: Vec<(FreeOutline<T>, Motion<T>)>,
+    /// Bits of their shapes, shared ones once.
+    pub(crate) shape_bits: f64,
+    /// Robust mean squared distance error (px^2).
+    pub(crate) cost: T,
+}
+
+impl<T: Real> PartSet<T> {
+    /// The set as it is, of common shapes.
+    pub(crate) fn of_common_shapes(&self, shapes: &CommonShapes<T>) -> Explanation<T> {
+        let member = |part: &Part<T>| {
+            let rows = shapes.rows[part.prototype].clone();
+            (FreeOutline { center: [T::zero(); 2], rows }, Motion { pose: part.pose })
+        };
+        Explanation {
+            members: self.parts.iter().map(member).collect(),
+            shape_bits: shapes.bits() * f64::of_usize(self.parts.len()),
+            cost: self.cost,
+        }
+    }
+}
+
 /// Sets of two or three posed prototypes whose union could be `segment`, best first.
 ///
 /// None where no set explains clearly more samples than one prototype does.
@@ -49,7 +84,9 @@ pub(crate) fn split<T: Real>(segment: &Segment<T>, prototypes: &[Prototype<T>]) 
         .into_iter()
         .map(|parts| assign::refine(parts, &segment.samples, prototypes))
         .collect();
-    sets.sort_by(|a, b| a.cost.partial_cmp(&b.cost).unwrap_or(core::cmp::Ordering::Equal));
+    // A third part must make much of a difference.
+    let price = |set: &PartSet<T>| if set.parts.len() > 2 { set.cost * T::of(THIRD_PART) } else { set.cost };
+    sets.sort_by(|a, b| price(a).partial_cmp(&price(b)).unwrap_or(core::cmp::Ordering::Equal));
     sets.truncate(MOST_SETS);
     sets
 }

@@ -17,13 +17,13 @@ use crate::segment::{EdgeSample, Segment};
 const SEEDS: usize = 16;
 /// Samples that tell starts apart; refinement uses [`REFINE_SAMPLES`], the end all.
 const START_SAMPLES: usize = 48;
-const REFINE_SAMPLES: usize = 120;
+const REFINE_SAMPLES: usize = 80;
 /// Every how many vertices one is laid on a seed.
 const VERTEX_STRIDE: usize = 2;
 /// Sizes relative to that of a single object of the segment's area.
 const SIZES: [f64; 7] = [0.3, 0.42, 0.54, 0.66, 0.78, 0.9, 1.02];
 /// Starts per seed and prototype that are refined.
-const KEPT: usize = 4;
+const KEPT: usize = 2;
 /// Widths (px) of residuals behind the outline, stage by stage, and the steps of each.
 const STAGES: [(f64, usize); 3] = [(2.0, 5), (1.0, 5), (0.4, 6)];
 /// Width (px) of residuals that stand out.

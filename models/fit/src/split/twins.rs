@@ -1,0 +1,239 @@
+//! Two objects of one unknown shape and color whose outlines have run together.
+//!
+//! With U the union and M the motion from the first to the second, the first lies in U and in M^-1 U: their
+//! intersection is where its outline starts. What both show is then brought together by M^-1 and fitted as one outline.
+
+use alloc::vec::Vec;
+
+use dvp_core::contour::{Connectivity, resample, signed_area, trace_level};
+use dvp_core::shape::REFERENCE_VERTICES;
+use dvp_core::{ImageSize, Real};
+
+use super::assign;
+use super::motion::{Motion, search};
+use super::symmetry::PartlyKnown;
+use super::{Explanation, Part};
+use crate::free::basis::Basis;
+use crate::free::grow::{GrowScratch, GrowSettings, grow};
+use crate::pose::field::OutlineField;
+use crate::pose::gauss_newton::{Frame, PosePx};
+use crate::pose::search::Prototype;
+use crate::price::free_shape_bits;
+use crate::segment::EdgeSample;
+
+/// Motions whose shape is fitted.
+const TRIED: usize = 6;
+/// Pairs that are handed back.
+const MOST_PAIRS: usize = 3;
+/// Rounds of fitting the shape and posing it.
+const ROUNDS: usize = 2;
+/// Vertices of the outlines in between.
+const START_VERTICES: usize = 96;
+/// Rows and columns around the union while the intersection is traced.
+const MARGIN: usize = 2;
+/// Turn (radians) over four edges from which an outline bends inward.
+const INWARD: f64 = 0.06;
+const SHARPLY_INWARD: f64 = 0.2;
+/// Distance (px) by which an outline may stand out of the union.
+const STANDS_OUT_PX: f64 = 0.8;
+/// Distance (px) beyond which a sample lies on neither outline.
+const ASTRAY_PX: f64 = 1.5;
+/// Where two outlines pass within this distance (px) of a sample its color tells neither distance.
+const CROSSING_PX: f64 = 2.5;
+
+/// Memory of [`Union::twins`].
+#[derive(Clone, Debug, Default)]
+pub(crate) struct TwinScratch<T> {
+    grow: GrowScratch<T>,
+    field: Vec<T>,
+    samples: Vec<EdgeSample<T>>,
+}
+
+/// Whether a closed outline (the last vertex repeats the first) bends inward in at least two places, sharply in one.
+pub(crate) fn is_waisted<T: Real>(outline: &[[T; 2]]) -> bool {
+    let n = outline.len().saturating_sub(1);
+    if n < 8 {
+        return false;
+    }
+    let sign = if signed_area(&outline[..n]) > T::zero() { T::one() } else { -T::one() };
+    let turn = |i: usize| {
+        let (a, b, c) = (outline[(i + n - 2) % n], outline[i % n], outline[(i + 2) % n]);
+        let (p, q) = ([b[0] - a[0], b[1] - a[1]], [c[0] - b[0], c[1] - b[1]]);
+        (p[0] * q[1] - p[1] * q[0]).atan2(p[0] * q[0] + p[1] * q[1]) * sign
+    };
+    let turns: Vec<T> = (0..n).map(turn).collect();
+    let inward = |i: &usize| {
+        let own = turns[*i];
+        own < T::of(-INWARD) && (1..=2).all(|k| own <= turns[(i + k) % n] && own < turns[(i + n - k) % n])
+    };
+    let sharp = (0..n).filter(inward).any(|i| turns[i] < T::of(-SHARPLY_INWARD));
+    sharp && (0..n).filter(inward).count() >= 2
+}
+
+/// How many times a known outline (px) repeats itself, turned or mirrored; 1 for one without symmetry.
+pub(crate) fn repeats<T: Real>(contour: &[[T; 2]], samples: &[EdgeSample<T>]) -> usize {
+    let outline = closed(contour);
+    let Some(field) = OutlineField::new(&outline) else { return 1 };
+    1 + PartlyKnown::new(&outline, &field, samples).symmetries(|_, _| true).len()
+}
+
+/// Robust mean squared distance error (px^2) of a known outline (px, closed).
+pub(crate) fn misfit<T: Real>(outline: &[[T; 2]], samples: &[EdgeSample<T>]) -> T {
+    let Some(field) = OutlineField::new(outline) else { return T::infinity() };
+    let prototype = Prototype { field, outline: outline.to_vec(), symmetry: 1 };
+    let part = Part { prototype: 0, pose: Motion::identity().pose };
+    assign::cost(&[part], samples, core::slice::from_ref(&prototype))
+}
+
+/// What twins are looked for in.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Union<'a, T> {
+    /// Traced outline (px).
+    pub(crate) contour: &'a [[T; 2]],
+    pub(crate) samples: &'a [EdgeSample<T>],
+    pub(crate) basis: &'a Basis<T>,
+    /// How the shape of twins is fitted.
+    pub(crate) settings: GrowSettings<T>,
+}
+
+impl<T: Real> Union<'_, T> {
+    /// Pairs of one common shape, refined: their start is `part`, that `prototype` was posed as.
+    pub(crate) fn twins_from(
+        &self,
+        parts: [Part<T>; 2],
+        prototype: &Prototype<T>,
+        scratch: &mut TwinScratch<T>,
+    ) -> Option<Explanation<T>> {
+        let union = OutlineField::new(self.contour)?;
+        let frame = Frame::new(&parts[0].pose);
+        let outline = prototype.outline.iter().map(|&v| frame.to_pixels(v)).collect();
+        self.shaped(&union, outline, Motion::between(&parts[0].pose, &parts[1].pose), scratch)
+    }
+
+    /// Pairs of equal objects, best first.
+    pub(crate) fn twins(&self, scratch: &mut TwinScratch<T>) -> Vec<Explanation<T>> {
+        let Some(union) = OutlineField::new(self.contour) else { return Vec::new() };
+        let mut pairs = Vec::new();
+        for motion in search(self.contour, &union).into_iter().take(TRIED) {
+            let frame = Frame::new(&motion.pose);
+            let margin = T::of_usize(MARGIN);
+            let both = |point: [T; 2]| {
+                let here = union.distance(point).0;
+                // Far outside it does not matter how far.
+                if here > margin { here } else { here.max(union.distance(frame.to_pixels(point)).0) }
+            };
+            let start = traced(self.contour, both, &mut scratch.field);
+            pairs.extend(start.and_then(|start| self.shaped(&union, closed(&start), motion, scratch)));
+        }
+        pairs.sort_by(|a, b| a.cost.partial_cmp(&b.cost).unwrap_or(core::cmp::Ordering::Equal));
+        pairs.truncate(MOST_PAIRS);
+        pairs
+    }
+
+    /// The shape that starts as `outline` (px, closed) and is found again by `motion`; none if nothing is left of it.
+    fn shaped(
+        &self,
+        union: &OutlineField<T>,
+        mut outline: Vec<[T; 2]>,
+        motion: Motion<T>,
+        scratch: &mut TwinScratch<T>,
+    ) -> Option<Explanation<T>> {
+        let margin = T::of_usize(MARGIN);
+        let mut poses = [Motion::identity().pose, motion.pose];
+        let mut found = None;
+        for _ in 0..ROUNDS {
+            let field = OutlineField::new(&outline)?;
+            gather(&field, poses, self.samples, &mut scratch.samples)?;
+            let mut known = PartlyKnown::new(&outline, &field, &scratch.samples);
+            let frames = poses.map(|pose| Frame::new(&pose));
+            let symmetries = known.symmetries(|point, distance| {
+                frames.iter().all(|frame| union.distance(frame.to_pixels(point)).0 - distance <= T::of(STANDS_OUT_PX))
+            });
+            if !symmetries.is_empty() {
+                let carried = known.carried(&symmetries);
+                let common = |point: [T; 2]| {
+                    let here = field.distance(point).0;
+                    let carried = symmetries.iter().map(|carry| field.distance(carry.point(point)).0);
+                    if here > margin { here } else { carried.fold(here, T::max) }
+                };
+                outline = closed(&traced(&outline, common, &mut scratch.field)?);
+                scratch.samples.extend(carried);
+            }
+            outline.pop();
+            let TwinScratch { grow: memory, samples: shared, .. } = &mut *scratch;
+            let grown = grow(&outline, shared, self.basis, self.settings, memory)?;
+            grown.outline.write_vertices(self.basis, REFERENCE_VERTICES, &mut outline);
+            let prototype = Prototype { field: OutlineField::new(&outline)?, outline: outline.clone(), symmetry: 1 };
+            let parts = poses.map(|pose| Part { prototype: 0, pose });
+            let set = assign::refine(parts.into(), self.samples, core::slice::from_ref(&prototype));
+            let [first, second] = *set.parts else { return None };
+            poses = [first.pose, second.pose];
+            found = Some(Explanation {
+                shape_bits: free_shape_bits(grown.outline.rows.len(), symmetries.len() + 1),
+                members: poses.map(|pose| (grown.outline.clone(), Motion { pose })).into(),
+                cost: set.cost,
+            });
+        }
+        found
+    }
+}
+
+/// Points at equal distances, the first one repeated.
+fn closed<T: Real>(contour: &[[T; 2]]) -> Vec<[T; 2]> {
+    let mut points = resample(contour, START_VERTICES);
+    points.extend(points.first().copied());
+    points
+}
+
+/// The largest outline where `distance` is 0, looked for around `contour`.
+fn traced<T: Real>(contour: &[[T; 2]], distance: impl Fn([T; 2]) -> T, values: &mut Vec<T>) -> Option<Vec<[T; 2]>> {
+    let (mut low, mut high) = ([T::infinity(); 2], [-T::infinity(); 2]);
+    for v in contour {
+        for c in 0..2 {
+            low[c] = low[c].min(v[c]);
+            high[c] = high[c].max(v[c]);
+        }
+    }
+    let margin = T::of_usize(MARGIN);
+    let low = low.map(|v| v.floor() - margin);
+    let [columns, rows] = [0, 1].map(|c| (high[c] + margin - low[c]).ceil().to_count());
+    let half = T::of(0.5);
+    values.clear();
+    for row in 0..rows {
+        for column in 0..columns {
+            let point = [low[0] + T::of_usize(column) + half, low[1] + T::of_usize(row) + half];
+            values.push(half - distance(point));
+        }
+    }
+    let loops = trace_level(values, ImageSize::new(columns, rows).ok()?, half, Connectivity::Four).ok()?;
+    let mut best = loops.into_iter().max_by(|a, b| {
+        let (a, b) = (signed_area(a), signed_area(b));
+        a.partial_cmp(&b).unwrap_or(core::cmp::Ordering::Equal)
+    })?;
+    for v in &mut best {
+        *v = [v[0] + low[0], v[1] + low[1]];
+    }
+    (best.len() >= 8).then_some(best)
+}
+
+/// Brings the samples of both objects to the shape they share.
+fn gather<T: Real>(
+    field: &OutlineField<T>,
+    poses: [PosePx<T>; 2],
+    samples: &[EdgeSample<T>],
+    out: &mut Vec<EdgeSample<T>>,
+) -> Option<()> {
+    let frames = poses.map(|pose| Frame::new(&pose));
+    out.clear();
+    for sample in samples {
+        let back = frames.map(|frame| frame.to_unit(sample.point));
+        let distances: [T; 2] = core::array::from_fn(|k| frames[k].scale * field.distance(back[k]).0);
+        let own = usize::from(distances[1] < distances[0]);
+        let astray = (distances[own] - sample.distance).abs() > T::of(ASTRAY_PX);
+        if !astray && distances[1 - own] > T::of(CROSSING_PX) {
+            let scale = frames[own].scale;
+            out.push(EdgeSample { point: back[own], distance: sample.distance / scale, weight: sample.weight * scale });
+        }
+    }
+    (out.len() >= 8).then_some(())
+}
