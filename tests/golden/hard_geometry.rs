@@ -45,6 +45,15 @@ fn twins_with_a_bank() {
 }
 
 #[test]
+fn twins_without_a_bank() {
+    // 0.95 and 0.85 of 24.
+    for (gap, least) in [(0.15, 23), (0.1, 21)] {
+        let (found, _) = score(FitOptions::default(), |index| twins(gap, index));
+        assert!(found >= least, "gap {gap}: {found}");
+    }
+}
+
+#[test]
 fn cropped_objects() {
     for hidden in [0.3, 0.5, 0.7] {
         for options in [known(), FitOptions::default()] {

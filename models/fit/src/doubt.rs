@@ -9,6 +9,9 @@ use crate::segment::EdgeSample;
 /// covariance finite where the image says nothing (the angle of a disk).
 pub(crate) const PRIOR_VARIANCE: [f64; 4] = [1.0, 1.0, 1.0, 3.29];
 
+/// Samples that miss the outline by more (px) are those of another object.
+const ASTRAY_PX: f64 = 1.5;
+
 /// Covariance of (x, y in scene units, log scale, rotation), row-major, from the normal equations of the samples.
 ///
 /// `outline_px` is the closed posed outline, `center_px` the point it turns and grows about; `pixel_noise` the standard
@@ -33,6 +36,11 @@ pub(crate) fn covariance<T: Real>(
             continue;
         }
         let n = [y / length, -x / length];
+        // Where the outline is hidden by another of its color, the samples nearest to it are that one's.
+        let across = (n[0] * (sample.point[0] - a[0]) + n[1] * (sample.point[1] - a[1])).abs();
+        if (across - sample.distance.abs()).abs() > T::of(ASTRAY_PX) {
+            continue;
+        }
         let arm = [sample.point[0] - center_px[0], sample.point[1] - center_px[1]];
         // The outline moves across itself by n for a shift (in scene units: times the unit), n.arm for a growth, and
         // n x arm for a turn.

@@ -8,6 +8,7 @@
 //! |---|---|---|
 //! | `segment` | an image | objects as colors and distance samples along their outlines |
 //! | `pose` | samples, a bank | prototype and pose |
+//! | `split` | samples of a segment that no single shape explains | several shapes of one color and their poses |
 //! | `free` | samples, no bank | elliptic Fourier descriptors, as few as the samples support |
 //! | `fitter` | all of it | a [`Fit`] |
 //! | [`refine`] | an image, a start | a [`Fit`] by Levenberg-Marquardt |
@@ -78,6 +79,15 @@ pub enum Ambiguity {
         /// Index of the object.
         object: usize,
         /// Visible share of the outline, [0, 1].
+        visible: f64,
+    },
+    /// The object has run together with another one of its color: what of its outline does not show is a guess.
+    Merged {
+        /// Index of the object.
+        object: usize,
+        /// The other object, the first of them if there are several.
+        other: usize,
+        /// Share of its outline that lies in none of the others, [0, 1].
         visible: f64,
     },
     /// Another prototype explains the object nearly as well.

@@ -28,7 +28,7 @@ use crate::pose::field::OutlineField;
 use crate::pose::search::{Candidate, Prototype};
 use crate::residual::Residual;
 use crate::segment::{EdgeKind, EdgeSample, Evidence, SegmentOptions, Segmentation, noise_level};
-use crate::split::common::CommonShapes;
+use crate::split::simple_shapes::SimpleShapes;
 use crate::split::twins::TwinScratch;
 use crate::{Fit, FitError, FitOptions};
 use run::Run;
@@ -55,7 +55,7 @@ pub struct FitScratch<T: Real> {
     residual: Residual<T>,
     start: StartScratch<T>,
     free: GrowScratch<T>,
-    common: CommonShapes<T>,
+    simple: SimpleShapes<T>,
     twins: TwinScratch<T>,
     lanes: EdgeLanes<T>,
     samples: Vec<EdgeSample<T>>,
@@ -76,7 +76,7 @@ impl<T: Real> Default for FitScratch<T> {
             residual: Residual::default(),
             start: StartScratch::default(),
             free: GrowScratch::default(),
-            common: CommonShapes::default(),
+            simple: SimpleShapes::default(),
             twins: TwinScratch::default(),
             lanes: EdgeLanes::default(),
             samples: Vec::new(),

@@ -2,6 +2,7 @@
 
 use alloc::vec::Vec;
 
+use dvp_core::contour::contains;
 use dvp_core::render::contour::ContourRenderer;
 use dvp_core::render::{Compositing, EdgeLaw, EdgeProfile, Renderer};
 use dvp_core::shape::REFERENCE_VERTICES;
@@ -217,10 +218,25 @@ impl<T: Real> Run<'_, T> {
                     core::array::from_fn(|i| self.scratch.drawing.outline(object)[i].map(|x| x * unit));
                 out.push(Ambiguity::Cropped { object, visible: visible_share(&outline, self.image.size()) });
             }
+            out.extend(self.merged(found, object));
             if let Some((prototype, ratio)) = part.twin.filter(|&(_, ratio)| ratio < TWIN_RATIO) {
                 out.push(Ambiguity::Twin { object, prototype, ratio });
             }
         }
         out
+    }
+
+    /// The doubt about an object that shares its segment with others.
+    fn merged(&self, found: &Found<T>, object: usize) -> Option<Ambiguity> {
+        let segment = found.objects[object].segment;
+        let is_other = |&k: &usize| k != object && found.objects[k].segment == segment;
+        let other = (0..found.objects.len()).find(is_other)?;
+        let drawing = &self.scratch.drawing;
+        let outline = drawing.outline(object);
+        let hidden = |&&vertex: &&[T; 2]| {
+            (0..found.objects.len()).filter(is_other).any(|k| contains(drawing.outline(k), vertex))
+        };
+        let visible = T::of_usize(outline.len() - outline.iter().filter(hidden).count());
+        Some(Ambiguity::Merged { object, other, visible: (visible / T::of_usize(outline.len().max(1))).as_f64() })
     }
 }

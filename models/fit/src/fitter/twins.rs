@@ -31,14 +31,14 @@ const MOST_FAILURES: usize = 6;
 /// Where parts of a union come from, the more reliable first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Way {
-    /// Common shapes posed on parts of the outline.
-    Common,
+    /// Simple shapes posed on parts of the outline.
+    Simple,
     /// A motion that takes one part to the other.
     Motion,
 }
 
 impl Way {
-    const ALL: [Self; 2] = [Self::Common, Self::Motion];
+    const ALL: [Self; 2] = [Self::Simple, Self::Motion];
 }
 
 /// An outline that may be that of a union.
@@ -92,7 +92,7 @@ impl<T: Real> Run<'_, T> {
         Ok(loss)
     }
 
-    /// Replaces outlines with a waist by two or three of common shapes, or two of one simpler shape, where that shortens the
+    /// Replaces outlines with a waist by two or three of simple shapes, or two of one simpler shape, where that shortens the
     /// description.
     pub(super) fn split_unknown(&mut self, found: &mut Found<T>) -> Result<(), FitError> {
         let (mut at, mut failures) = (0, 0);
@@ -145,7 +145,7 @@ impl<T: Real> Run<'_, T> {
         let samples = &self.scratch.segmentation.segments()[single.segment].samples;
         let misfit = misfit(&outline, samples);
         let most = T::of(MISFIT_RATIO) * misfit + T::of(MISFIT_SLACK);
-        if self.is_common(single.segment, most) {
+        if self.is_simple(single.segment, most) {
             return Ok(None);
         }
         let samples = &self.scratch.segmentation.segments()[single.segment].samples;
@@ -153,12 +153,12 @@ impl<T: Real> Run<'_, T> {
         Ok(Some(Waisted { contour, most, shape_bits }))
     }
 
-    /// Whether one common shape explains a segment.
-    fn is_common(&mut self, segment: usize, most: T) -> bool {
+    /// Whether one simple shape explains a segment.
+    fn is_simple(&mut self, segment: usize, most: T) -> bool {
         let scratch = &mut *self.scratch;
-        scratch.common.prepare();
+        scratch.simple.prepare();
         let (object, size) = (u32::try_from(segment).unwrap_or(u32::MAX), self.image.size());
-        let shapes = &scratch.common.prototypes;
+        let shapes = &scratch.simple.prototypes;
         search(object, shapes, size, &scratch.segmentation, Effort::Usual, &mut scratch.candidates);
         scratch.candidates.first().is_some_and(|best| best.cost <= most)
     }
@@ -178,14 +178,14 @@ impl<T: Real> Run<'_, T> {
             },
         };
         match way {
-            Way::Common => {
-                let sets = split(segment, &scratch.common.prototypes);
-                let mut out: Vec<_> = sets.iter().map(|set| set.of_common_shapes(&scratch.common)).collect();
+            Way::Simple => {
+                let sets = split(segment, &scratch.simple.prototypes);
+                let mut out: Vec<_> = sets.iter().map(|set| set.of_simple_shapes(&scratch.simple)).collect();
                 for set in &sets {
                     if let [first, second] = *set.parts
                         && first.prototype == second.prototype
                     {
-                        let prototype = &scratch.common.prototypes[first.prototype];
+                        let prototype = &scratch.simple.prototypes[first.prototype];
                         out.extend(union.twins_from([first, second], prototype, &mut scratch.twins));
                     }
                 }

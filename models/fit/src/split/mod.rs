@@ -7,10 +7,10 @@
 //! sample given to the outline nearest to it.
 
 mod assign;
-pub(crate) mod common;
 mod cover;
 pub(crate) mod motion;
 mod partial;
+pub(crate) mod simple_shapes;
 mod symmetry;
 #[cfg(test)]
 mod tests;
@@ -20,8 +20,8 @@ use alloc::vec::Vec;
 
 use dvp_core::Real;
 
-use common::CommonShapes;
 use motion::Motion;
+use simple_shapes::SimpleShapes;
 
 use crate::free::outline_fit::FreeOutline;
 use crate::pose::gauss_newton::PosePx;
@@ -61,8 +61,8 @@ pub(crate) struct Explanation<T> {
 }
 
 impl<T: Real> PartSet<T> {
-    /// The set as it is, of common shapes.
-    pub(crate) fn of_common_shapes(&self, shapes: &CommonShapes<T>) -> Explanation<T> {
+    /// The set as it is, of simple shapes.
+    pub(crate) fn of_simple_shapes(&self, shapes: &SimpleShapes<T>) -> Explanation<T> {
         let member = |part: &Part<T>| {
             let rows = shapes.rows[part.prototype].clone();
             (FreeOutline { center: [T::zero(); 2], rows }, Motion { pose: part.pose })

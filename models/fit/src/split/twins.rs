@@ -97,7 +97,7 @@ pub(crate) struct Union<'a, T> {
 }
 
 impl<T: Real> Union<'_, T> {
-    /// Pairs of one common shape, refined: their start is `part`, that `prototype` was posed as.
+    /// Pairs of one simple shape, refined: their start is `part`, that `prototype` was posed as.
     pub(crate) fn twins_from(
         &self,
         parts: [Part<T>; 2],

@@ -55,6 +55,7 @@ const HARD_PX: f32 = 0.2;
 #[serde(rename_all = "lowercase", tag = "kind")]
 enum AmbiguityReport {
     Symmetry { object: usize, order: usize },
+    Merged { object: usize, other: usize, visible: f64 },
     Cropped { object: usize, visible: f64 },
     Twin { object: usize, prototype: usize, ratio: f64 },
     Other,
@@ -113,6 +114,7 @@ impl AmbiguityReport {
         match *ambiguity {
             Ambiguity::Symmetry { object, order } => Self::Symmetry { object, order },
             Ambiguity::Cropped { object, visible } => Self::Cropped { object, visible },
+            Ambiguity::Merged { object, other, visible } => Self::Merged { object, other, visible },
             Ambiguity::Twin { object, prototype, ratio } => Self::Twin { object, prototype, ratio },
             _ => Self::Other,
         }

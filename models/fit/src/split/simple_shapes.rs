@@ -16,14 +16,14 @@ const RECTANGLES: [f64; 3] = [1.0, 0.6, 0.35];
 /// Harmonics of shapes with corners.
 const HARMONICS: usize = 20;
 
-/// Descriptors and outlines of the common shapes.
+/// Descriptors and outlines of the simple shapes.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct CommonShapes<T> {
+pub(crate) struct SimpleShapes<T> {
     pub(crate) rows: Vec<Vec<[T; 4]>>,
     pub(crate) prototypes: Vec<Prototype<T>>,
 }
 
-impl<T: Real> CommonShapes<T> {
+impl<T: Real> SimpleShapes<T> {
     /// Prepares the shapes, once.
     pub(crate) fn prepare(&mut self) {
         if !self.prototypes.is_empty() {
