@@ -2,6 +2,7 @@
 #![expect(clippy::unwrap_used, clippy::panic, reason = "what fails here is a failed test, in helpers too")]
 
 mod bad_input;
+mod edges;
 mod evaluate;
 mod fit;
 mod generate;

@@ -25,7 +25,8 @@ pub struct FitOptions<T> {
     pub max_harmonics: usize,
     /// Most joint Levenberg-Marquardt steps per image; 0 leaves the objects as they were found one by one.
     pub max_steps: usize,
-    /// Edge profile of the picture; none: the reference renderer's or area coverage, whichever the soft pixels speak for.
+    /// Edge profile of the picture; none: estimated from its soft pixels (the reference renderer's, area coverage, hard pixels,
+    /// or blur of any softness).
     pub edge: Option<EdgeProfile<T>>,
     /// How overlapping objects mix; none: as the picture shows.
     pub compositing: Option<Compositing>,

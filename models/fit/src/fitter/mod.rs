@@ -148,8 +148,9 @@ impl<T: Real> Fitter<T> {
         }
         scratch.segmentation.interpret(Compositing::Blend);
         let evidence = scratch.segmentation.evidence();
-        let (kind, other) =
-            self.options.edge.map_or(scratch.segmentation.edge_kinds(), |edge| (EdgeKind::of(edge), None));
+        let unit = T::of_usize(image.size().unit_px());
+        let kinds = || scratch.segmentation.edges(&image).kinds(unit);
+        let (kind, other) = self.options.edge.map_or_else(kinds, |edge| (EdgeKind::of(edge), None));
         // In doubt several readings are fitted; the shortest description wins.
         let mut best: Option<Fit<T>> = None;
         for kind in [Some(kind), other].into_iter().flatten() {

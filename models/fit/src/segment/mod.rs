@@ -19,7 +19,7 @@ use alloc::vec::Vec;
 use dvp_core::render::Compositing;
 use dvp_core::{ImageSize, ImageView, Real};
 
-use edge_kind::CoverageCounts;
+use edge_kind::EdgeEvidence;
 pub(crate) use edge_kind::EdgeKind;
 pub(crate) use interpret::{Border, Evidence, Stacking};
 pub(crate) use robust::noise_level;
@@ -40,6 +40,13 @@ pub(crate) const PIXEL_NOISE: f64 = 0.003;
 
 /// How far from the line between two colors a denoised pixel may lie, in units of the noise.
 const LINE_NOISE: f64 = 2.0;
+
+/// Soft pixels whose neighbors are looked at to find how soft edges are.
+const MEASURED_PIXELS: usize = 320;
+/// Least distance between two colors whose soft pixels are looked at, and the same in units of the noise.
+const LEAST_CONTRAST: f64 = 0.06;
+const LEAST_NOISES: f64 = 5.0;
+const GOLDEN_SECTION: f64 = 0.618_033_988_749_895;
 
 /// One object as the segmentation sees it.
 #[derive(Clone, Debug, Default)]
@@ -154,18 +161,30 @@ impl<T: Real> Segmentation<T> {
         self.reading.evidence(&self.regions)
     }
 
-    /// The edge kind that the soft pixels between background and objects speak for, and a second one in doubt.
-    pub(crate) fn edge_kinds(&self) -> (EdgeKind<T>, Option<EdgeKind<T>>) {
-        let mut counts = CoverageCounts::default();
+    /// What the soft pixels between background and objects say about the edges of the image.
+    pub(crate) fn edges(&self, image: &ImageView<'_, T>) -> EdgeEvidence<T> {
+        let mut evidence = EdgeEvidence::default();
+        let share = (T::of_usize(MEASURED_PIXELS) / T::of_usize(self.transitions.len().max(1))).as_f64();
+        let mut turns = 0.0;
+        // That of rounding changes nothing.
+        let noise = if self.noise > T::of(PIXEL_NOISE) { self.noise } else { T::zero() };
+        let least_contrast = (T::of(LEAST_NOISES) * noise).max(T::of(LEAST_CONTRAST));
         for transition in &self.transitions {
             if let Some(rim) = self.rim(transition)
                 && rim.others == 0
-                && rim.contrast > T::of(0.06)
+                && rim.contrast > least_contrast
             {
-                counts.add(rim.coverage);
+                evidence.count(rim.coverage);
+                // By turns of the golden section, so that no row or column of upright edges is left out.
+                turns += GOLDEN_SECTION;
+                turns -= if turns >= 1.0 { 1.0 } else { 0.0 };
+                if turns < share {
+                    let colors = transition.pair.map(|i| self.regions[i as usize].color);
+                    evidence.measure(image, transition.pixel, colors, noise);
+                }
             }
         }
-        counts.kinds()
+        evidence
     }
 
     /// Whether the object may go on behind what is seen at the pixel.

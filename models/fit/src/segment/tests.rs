@@ -1,9 +1,8 @@
 use alloc::vec::Vec;
 
-use dvp_core::render::{Compositing, EdgeProfile};
+use dvp_core::render::Compositing;
 use dvp_core::{Image, ImageSize};
 
-use super::edge_kind::{CoverageCounts, EdgeKind};
 use super::flat::FlatMap;
 use super::region::{Region, measure};
 use super::transition::{SoftScratch, Transition, find};
@@ -164,40 +163,4 @@ fn an_object_inside_another_shows_the_mean() {
     let [host, inner] = parts.map(|part| object_of(&found, part.2));
     assert_eq!([host, inner].map(|k| found.covers(15 * 32 + 15, k)), [Some(true); 2]);
     assert_eq!([host, inner].map(|k| found.covers(6 * 32 + 6, k)), [Some(true), Some(false)]);
-}
-
-#[test]
-fn the_edge_kind_follows_the_counts() {
-    let mut counts = CoverageCounts::default();
-    for coverage in [0.0149, 0.05, 0.5, 0.9, 0.95, 0.99] {
-        counts.add(coverage);
-    }
-    assert_eq!(counts, CoverageCounts { settled: 2, low: 1, middle: 2, high: 1 });
-    let kind = |settled, low, middle, high| CoverageCounts { settled, low, middle, high }.kinds::<f64>();
-    let reference = EdgeKind::Profile(EdgeProfile::reference());
-    assert_eq!(kind(0, 34, 100, 75), (reference, None));
-    // Between the two: both are to be tried.
-    assert_eq!(kind(0, 15, 139, 34), (reference, Some(EdgeKind::Area)));
-    assert_eq!(kind(0, 9, 100, 9), (EdgeKind::Area, None));
-    assert_eq!(kind(100, 2, 0, 2), (EdgeKind::Hard, None));
-    // Nothing to go by.
-    assert_eq!(kind(3, 1, 1, 1), (reference, None));
-}
-
-#[test]
-fn distance_inverts_coverage() {
-    let (edge, unit) = (EdgeProfile::<f64>::reference(), 128.0);
-    let coverage = |d: f64| {
-        let doubled = d / (0.5 * unit);
-        1.0 / (1.0 + ((doubled * doubled.abs() - edge.offset) / edge.sigma).exp())
-    };
-    // Coverage 0.985 lies 0.58 px outside the outline, 0.02 lies 1.9 px outside.
-    for d in [0.6, 0.9, 1.43, 1.7, 1.85] {
-        let (distance, slope) = EdgeKind::Profile(edge).distance(coverage(d), unit).unwrap();
-        assert_near(distance, d, 1e-9);
-        assert_near(slope, (coverage(d - 1e-5) - coverage(d + 1e-5)) / 2e-5, 1e-8);
-    }
-    assert!(EdgeKind::Profile(edge).distance(0.999, unit).is_none());
-    assert_eq!(EdgeKind::Area.distance(0.75, unit), Some((-0.25, 1.0)));
-    assert_eq!(EdgeKind::Hard.distance(0.0, unit), Some((0.5, 0.5)));
 }

@@ -1,11 +1,15 @@
-//! Which edge profile a picture was drawn with, told from its soft pixels.
+//! How coverage and distance belong together at the edges of a picture.
 //!
-//! Three kinds are told apart: the reference renderer's (lopsided: coverage lingers near 1 and drops off fast), area coverage
-//! (what drawing programs produce: even), and hard pixels (no soft ones). Only the ratio of counts matters, so the picture's
-//! size does not.
+//! In: coverages of soft pixels. Out: which law they follow (`evidence`), and their distances to the outline under it.
+
+mod evidence;
+#[cfg(test)]
+mod tests;
 
 use dvp_core::Real;
 use dvp_core::render::{EdgeLaw, EdgeProfile};
+
+pub(crate) use evidence::EdgeEvidence;
 
 /// How coverage and distance belong together at the edges of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,56 +21,6 @@ pub(crate) enum EdgeKind<T> {
     /// All or nothing by the pixel's center.
     Hard,
 }
-
-/// Counts of soft pixels between the background and one object, by coverage.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct CoverageCounts {
-    /// Below 0.015 or above 0.985.
-    pub(crate) settled: usize,
-    /// 0.015 to 0.1.
-    pub(crate) low: usize,
-    /// 0.1 to 0.9.
-    pub(crate) middle: usize,
-    /// 0.9 to 0.985.
-    pub(crate) high: usize,
-}
-
-impl CoverageCounts {
-    pub(crate) fn add<T: Real>(&mut self, coverage: T) {
-        if coverage < T::of(0.015) || coverage > T::of(0.985) {
-            self.settled += 1;
-        } else if coverage < T::of(0.1) {
-            self.low += 1;
-        } else if coverage <= T::of(0.9) {
-            self.middle += 1;
-        } else {
-            self.high += 1;
-        }
-    }
-
-    /// The kind that the counts speak for, and another one to try where they leave a doubt.
-    ///
-    /// At uniform distances the reference profile gives low : middle : high as 0.34 : 1 : 0.75, area coverage
-    /// 0.11 : 1 : 0.11; straight edges along the pixel grid stray from that.
-    pub(crate) fn kinds<T: Real>(&self) -> (EdgeKind<T>, Option<EdgeKind<T>>) {
-        let soft = self.low + self.middle + self.high;
-        let reference = EdgeKind::Profile(EdgeProfile::reference());
-        if soft + self.settled < FEW {
-            (reference, None)
-        } else if soft * 20 < self.settled {
-            (EdgeKind::Hard, None)
-        } else if 2 * self.high > self.middle {
-            (reference, None)
-        } else if 10 * self.high > self.middle && soft > FEW {
-            (reference, Some(EdgeKind::Area))
-        } else {
-            (EdgeKind::Area, None)
-        }
-    }
-}
-
-/// Fewer soft pixels than this tell nothing.
-const FEW: usize = 12;
 
 impl<T: Real> EdgeKind<T> {
     /// The kind that a profile paints.
@@ -86,7 +40,9 @@ impl<T: Real> EdgeKind<T> {
     /// Standard deviation (px) of distances read from noiseless pixels: what the inversion itself gets wrong.
     pub(crate) fn distance_noise(&self) -> T {
         match self {
-            Self::Profile(_) => T::of(0.01),
+            Self::Profile(edge) if edge.law == EdgeLaw::SquaredDistance => T::of(0.01),
+            // Blur is no logistic, and rounds corners.
+            Self::Profile(_) => T::of(0.02),
             // The direction of the outline is not known: up to 0.1 px along diagonals.
             Self::Area => T::of(0.05),
             // Uniform over a pixel.
