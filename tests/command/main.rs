@@ -9,6 +9,7 @@ mod generate;
 mod interrupted;
 mod picture_kinds;
 mod pictures;
+mod prototypes;
 mod raw_png;
 mod runner;
 mod svg;

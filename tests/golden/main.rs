@@ -9,6 +9,7 @@ mod loss;
 mod matching;
 mod metric;
 mod optim;
+mod prototypes;
 mod render_contour;
 mod scene;
 mod scene_pairs;

@@ -11,6 +11,7 @@ mod loss;
 mod matching;
 mod metric;
 mod optim;
+mod prototypes;
 mod refine;
 mod render_contour;
 mod scene;

@@ -3,15 +3,17 @@
 //! | module | does |
 //! |---|---|
 //! | [`mod@format`] | files in and out |
+//! | [`chart`] | line charts |
 //! | [`svg`] | scenes as vector graphics |
 //! | [`paint`] | scenes to images with a renderer chosen by name |
 //! | [`generate`] | random scenes |
 //! | [`command`] | the sub-commands: arguments, threads, tables |
 //!
-//! Everything but [`command`] has its own error enum; [`command`] alone uses anyhow.
+//! Everything but [`command`] and [`chart`] has its own error enum; those two use anyhow.
 
 extern crate alloc;
 
+pub mod chart;
 pub mod command;
 pub mod format;
 pub mod generate;

@@ -11,6 +11,7 @@
 //! | `split` | samples of a segment that no single shape explains | several shapes of one color and their poses |
 //! | `free` | samples, no bank | elliptic Fourier descriptors, as few as the samples support |
 //! | `fitter` | all of it | a [`Fit`] |
+//! | [`prototypes`] | fits without a bank | the few shapes they share, a [`Bank`] |
 //! | [`refine`] | an image, a start | a [`Fit`] by Levenberg-Marquardt |
 //! | [`opt_p`], [`opt_iter`], [`rand_opt_p`] | an image, for OptP and Rand-OptP a start | a [`Fit`] by the paper's Adam |
 #![no_std]
@@ -22,6 +23,7 @@ pub mod opt_iter;
 pub mod opt_p;
 pub mod parameters;
 pub mod plateau;
+pub mod prototypes;
 pub mod rand_opt_p;
 pub mod refine;
 

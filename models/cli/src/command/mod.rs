@@ -8,6 +8,7 @@ mod fit;
 mod generate;
 mod options;
 mod progress;
+mod prototypes;
 mod render;
 
 use std::ffi::OsString;
@@ -44,6 +45,7 @@ enum Command {
     Generate(generate::Arguments),
     Render(render::Arguments),
     Fit(fit::Arguments),
+    Prototypes(prototypes::Arguments),
     Evaluate(evaluate::Arguments),
 }
 
@@ -75,6 +77,7 @@ fn dispatch(command: Command, console: &mut Console<'_>) -> Result<Outcome> {
         Command::Generate(arguments) => generate::run(&arguments, console),
         Command::Render(arguments) => render::run(&arguments, console),
         Command::Fit(arguments) => fit::run(&arguments, console),
+        Command::Prototypes(arguments) => prototypes::run(&arguments, console),
         Command::Evaluate(arguments) => evaluate::run(&arguments, console),
     }
 }

@@ -63,6 +63,13 @@ pub struct FitScratch<T: Real> {
     differences: Vec<T>,
 }
 
+impl<T: Real> FitScratch<T> {
+    /// The segments of the last fit.
+    pub(crate) fn segments(&self) -> &[crate::segment::Segment<T>] {
+        self.segmentation.segments()
+    }
+}
+
 impl<T: Real> Default for FitScratch<T> {
     fn default() -> Self {
         Self {
