@@ -61,7 +61,8 @@ pub enum StopReason {
     Stalled,
     /// Nothing to fit: the image is one flat color.
     Empty,
-    /// Nothing to start from: no pixel is flat (noise, a gradient, a photo), the scene is its mean color.
+    /// The picture is not flat (a gradient, a texture, a photo): the scene is the best one of flat colors that was found,
+    /// and [`Fit::unexplained`] tells how much it leaves.
     NotFlat,
 }
 
@@ -118,6 +119,10 @@ pub struct Fit<T> {
     pub covariance: Vec<[T; 16]>,
     /// What remains open.
     pub ambiguity: Vec<Ambiguity>,
+    /// Share of the picture's variance that neither the scene nor noise explains, [0, 1]; NaN if it was not counted.
+    pub unexplained: f64,
+    /// Standard deviation of a channel that was taken for noise: at least the rounding of 8 bits; NaN if it was not estimated.
+    pub noise: T,
     /// Description length of the scene and what it leaves unexplained, in bits.
     pub bits: f64,
 }

@@ -65,6 +65,8 @@ pub(crate) fn fit_of<T: Real>(scene: Scene<T>, outcome: Outcome<T>, steps: usize
         stop: StopReason::StepLimit,
         covariance: Vec::new(),
         ambiguity: Vec::new(),
+        unexplained: f64::NAN,
+        noise: T::nan(),
         bits: f64::NAN,
     }
 }

@@ -25,6 +25,24 @@ impl<T: Real> Residual<T> {
         self.largest.iter().map(|&off| (off * off * scale).min(T::of(24.0)).as_f64()).sum()
     }
 
+    /// Share of the variance of `image` that neither `rendered` nor noise of standard deviation `noise` explains, [0, 1].
+    pub(crate) fn unexplained(image: &ImageView<'_, T>, rendered: &[T], noise: T) -> f64 {
+        let pixels = image.size().pixels();
+        let (mut missed, mut total) = (0.0, 0.0);
+        for channel in 0..3 {
+            let values = image.channel(channel);
+            let mean = values.iter().copied().sum::<T>() / T::of_usize(pixels);
+            // Sums of rows: those of large pictures in single precision would lose what they add.
+            for (row, drawn) in values.chunks(1024).zip(rendered[channel * pixels..].chunks(1024)) {
+                total += row.iter().map(|&v| (v - mean) * (v - mean)).sum::<T>().as_f64();
+                missed += row.iter().zip(drawn).map(|(&v, &w)| (v - w) * (v - w)).sum::<T>().as_f64();
+            }
+        }
+        let expected = (noise * noise).as_f64() * T::of_usize(3 * pixels).as_f64();
+        let (missed, total) = ((missed - expected).max(0.0), total - expected);
+        if total > missed { missed / total } else { f64::from(u8::from(missed > 0.0)) }
+    }
+
     /// Pixels within `reach` (px, a square) of `center` that are off by more than `threshold`.
     pub(crate) fn count_above(&self, size: ImageSize, center: [T; 2], reach: T, threshold: T) -> usize {
         let bounds = |middle: T, extent: usize| {

@@ -7,6 +7,7 @@
 mod known;
 mod order;
 mod pieces;
+mod readings;
 mod run;
 mod twins;
 mod unknown;
@@ -27,11 +28,11 @@ use crate::joint::JointScratch;
 use crate::pose::field::OutlineField;
 use crate::pose::search::{Candidate, Prototype};
 use crate::residual::Residual;
-use crate::segment::{EdgeKind, EdgeSample, Evidence, SegmentOptions, Segmentation, noise_level};
+use crate::segment::{EdgeKind, EdgeSample, Evidence, Segmentation};
 use crate::split::simple_shapes::SimpleShapes;
 use crate::split::twins::TwinScratch;
 use crate::{Fit, FitError, FitOptions};
-use run::Run;
+use run::{Care, Run};
 
 /// Fits images; prepared once from the options, shared between threads.
 #[derive(Clone, Debug)]
@@ -140,34 +141,7 @@ impl<T: Real> Fitter<T> {
         if let Err(dvp_core::image::ImageError::NotFinite { index }) = ImageView::new(image.size(), image.data()) {
             return Err(FitError::NotFinite { index });
         }
-        let noise = noise_level(&image, &mut scratch.differences);
-        let readable = if noise < T::of(QUIET) {
-            scratch.segmentation.read(&image, &SegmentOptions::default())
-        } else {
-            scratch.segmentation.read_noisy(&image, noise, usize::MAX)
-        };
-        if !readable {
-            let edge = self.options.edge.unwrap_or_else(EdgeProfile::reference);
-            let compositing = self.options.compositing.unwrap_or_default();
-            let run = Run { fitter: self, image, kind: EdgeKind::of(edge), edge, compositing, scratch };
-            let found = run.nothing();
-            return run.finish(found);
-        }
-        scratch.segmentation.interpret(Compositing::Blend);
-        let evidence = scratch.segmentation.evidence();
-        let unit = T::of_usize(image.size().unit_px());
-        let kinds = || scratch.segmentation.edges(&image).kinds(unit);
-        let (kind, other) = self.options.edge.map_or_else(kinds, |edge| (EdgeKind::of(edge), None));
-        // In doubt several readings are fitted; the shortest description wins.
-        let mut best: Option<Fit<T>> = None;
-        for kind in [Some(kind), other].into_iter().flatten() {
-            let (compositing, second) = self.compositings(evidence, &kind);
-            for compositing in [Some(compositing), second].into_iter().flatten() {
-                let fit = self.fit_with(image, kind, compositing, scratch)?;
-                best = Some(best.filter(|best| best.bits <= fit.bits).unwrap_or(fit));
-            }
-        }
-        best.ok_or(FitError::Setting { what: "edge", must: "known" })
+        self.best_reading(image, scratch)
     }
 
     /// How the objects seem to be composited, and a second way to try in doubt.
@@ -191,6 +165,7 @@ impl<T: Real> Fitter<T> {
         image: ImageView<'_, T>,
         kind: EdgeKind<T>,
         compositing: Compositing,
+        care: Care,
         scratch: &mut FitScratch<T>,
     ) -> Result<Fit<T>, FitError> {
         let edge = kind.profile(T::of_usize(image.size().unit_px()));
@@ -198,9 +173,13 @@ impl<T: Real> Fitter<T> {
         if scratch.segmentation.compositing() != compositing || compositing == Compositing::Over {
             scratch.segmentation.interpret(compositing);
         }
-        let mut run = Run { fitter: self, image, kind, edge, compositing, scratch };
-        run.join_pieces();
-        run.decide_order();
+        let mut run = Run { fitter: self, image, kind, edge, compositing, care, scratch };
+        if care == Care::Full {
+            run.join_pieces();
+            run.decide_order();
+        } else {
+            run.stack_by_size();
+        }
         run.scratch.segmentation.gather(image.size(), &kind);
         let found = if self.prototypes.is_empty() { run.unknown_shapes()? } else { run.known_shapes()? };
         run.finish(found)
@@ -210,9 +189,6 @@ impl<T: Real> Fitter<T> {
 /// So many soft pixels between two objects without their mean color between speak for one hiding the other; objects that
 /// merely touch have fewer.
 const DIRECT_PIXELS: u32 = 8;
-
-/// Below this noise a picture is read as if it had none.
-const QUIET: f64 = 0.0015;
 
 /// Harmonics that 64 vertices, two of them in one place, can carry.
 const MAX_HARMONICS: usize = 31;

@@ -12,6 +12,7 @@ use super::{FitScratch, Fitter, symmetry_order};
 use crate::colors::{MAX_COVERAGE_VALUES, is_rounded, refine_colors};
 use crate::doubt::{covariance, visible_share};
 use crate::price::scene_bits;
+use crate::residual::Residual;
 use crate::segment::EdgeKind;
 use crate::{Ambiguity, Fit, FitError, StopReason};
 
@@ -23,7 +24,17 @@ pub(super) struct Run<'a, T: Real> {
     /// The profile that renders this kind.
     pub(super) edge: EdgeProfile<T>,
     pub(super) compositing: Compositing,
+    pub(super) care: Care,
     pub(super) scratch: &'a mut FitScratch<T>,
+}
+
+/// How much time objects are worth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Care {
+    /// They are objects: which is in front is decided, doubtful ones must pay, folded outlines are done again.
+    Full,
+    /// They are segments of a picture that is not flat: one outline each.
+    Segments,
 }
 
 /// Objects as found, before the last touches.
@@ -102,6 +113,7 @@ impl<T: Real> Run<'_, T> {
         scene.draw(&self.fitter.outlines, &mut self.scratch.drawing)?;
         let mut loss = self.compare_drawing()?;
         let mut bits = self.bits(&scene);
+        let mut drawn = true;
         for at in (0..scene.objects.len()).rev() {
             if self.is_doubtful(&scene, &found.objects[at]) {
                 let object = scene.objects.remove(at);
@@ -110,16 +122,23 @@ impl<T: Real> Run<'_, T> {
                 if without.1 < bits {
                     (loss, bits) = without;
                     found.objects.remove(at);
+                    drawn = true;
                 } else {
                     scene.objects.insert(at, object);
+                    drawn = false;
                 }
             }
         }
         let covariance = self.covariances(&scene, &found)?;
         let ambiguity = self.ambiguities(&scene, &found);
+        if !drawn {
+            self.compare_drawing()?;
+        }
+        let noise = self.noise();
+        let unexplained = Residual::unexplained(&self.image, &self.scratch.pixels, noise);
         let stop =
             if scene.objects.is_empty() && found.stop != StopReason::NotFlat { StopReason::Empty } else { found.stop };
-        Ok(Fit { scene, loss, steps: found.steps, stop, covariance, ambiguity, bits })
+        Ok(Fit { scene, loss, steps: found.steps, stop, covariance, ambiguity, unexplained, noise, bits })
     }
 
     pub(super) fn scene_of(&self, found: &Found<T>) -> Scene<T> {
@@ -175,12 +194,22 @@ impl<T: Real> Run<'_, T> {
         Ok(())
     }
 
+    /// Description length of a scene and of what it leaves, at the given noise.
+    pub(super) fn bits_at(&mut self, scene: &Scene<T>, noise: T) -> Result<f64, FitError> {
+        scene.draw(&self.fitter.outlines, &mut self.scratch.drawing)?;
+        self.compare_drawing()?;
+        Ok(scene_bits(scene, self.fitter.prototypes.len()) + self.scratch.residual.bits(noise))
+    }
+
     /// Description length of the scene plus that of the residual last measured.
     fn bits(&self, scene: &Scene<T>) -> f64 {
         scene_bits(scene, self.fitter.prototypes.len()) + self.scratch.residual.bits(self.noise())
     }
 
     fn is_doubtful(&self, scene: &Scene<T>, part: &FoundObject<T>) -> bool {
+        if self.care == Care::Segments {
+            return false;
+        }
         let pixels = self.scratch.segmentation.segments()[part.segment].pixels;
         let contrast = (0..3).fold(T::zero(), |most, c| most.max((part.object.color[c] - scene.background[c]).abs()));
         pixels < SURE_PIXELS || contrast < T::of(SURE_CONTRAST).max(T::of(SURE_NOISE) * self.noise())

@@ -6,7 +6,7 @@ use dvp_core::scene::Pose;
 use dvp_core::shape::REFERENCE_VERTICES;
 use dvp_core::{Efd, Object, Real};
 
-use super::run::{Found, FoundObject, Run};
+use super::run::{Care, Found, FoundObject, Run};
 use crate::free::grow::{Freedom, GrowSettings, Grown, grow, hold_outside};
 use crate::free::start::{shrink, trace};
 use crate::{FitError, StopReason};
@@ -28,8 +28,10 @@ impl<T: Real> Run<'_, T> {
                 found.objects.push(FoundObject { object, segment, twin: None });
             }
         }
-        self.try_with_less_freedom(&mut found)?;
-        self.split_unknown(&mut found)?;
+        if self.care == Care::Full {
+            self.try_with_less_freedom(&mut found)?;
+            self.split_unknown(&mut found)?;
+        }
         Ok(found)
     }
 

@@ -13,6 +13,7 @@ use dvp_core::{ImageView, Real, Scene};
 use crate::joint::{JointProblem, continue_sigma};
 use crate::pose::search::Prototype;
 use crate::price::scene_bits;
+use crate::residual::Residual;
 use crate::segment::PIXEL_NOISE;
 use crate::{Fit, FitError};
 use covariance::covariances;
@@ -73,7 +74,10 @@ impl Refine {
         let covariance = covariances(&mut scratch.joint, posed.objects.len(), unit);
         let bits = scene_bits(&scene, scratch.shapes.len()) + scratch.residual.bits(T::of(PIXEL_NOISE));
         let ambiguity = scratch.ambiguities(&posed, image, unit);
-        Ok(Fit { scene, loss, steps: result.steps, stop: result.stop, covariance, ambiguity, bits })
+        let noise = T::of(PIXEL_NOISE);
+        let unexplained = Residual::unexplained(&image, &scratch.pixels, noise);
+        let (steps, stop) = (result.steps, result.stop);
+        Ok(Fit { scene, loss, steps, stop, covariance, ambiguity, unexplained, noise, bits })
     }
 
     fn problem<'a, T: Real>(

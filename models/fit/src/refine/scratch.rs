@@ -31,7 +31,7 @@ pub struct RefineScratch<T: Real> {
     pub(super) joint: JointScratch<T>,
     drawing: Drawing<T>,
     render: <ContourRenderer<T> as Renderer<T>>::Scratch,
-    pixels: Vec<T>,
+    pub(super) pixels: Vec<T>,
     pub(super) residual: Residual<T>,
 }
 

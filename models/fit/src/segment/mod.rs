@@ -8,6 +8,7 @@
 mod edge_kind;
 mod flat;
 mod interpret;
+mod noisy;
 mod region;
 mod robust;
 #[cfg(test)]
@@ -22,6 +23,7 @@ use dvp_core::{ImageSize, ImageView, Real};
 use edge_kind::EdgeEvidence;
 pub(crate) use edge_kind::EdgeKind;
 pub(crate) use interpret::{Border, Evidence, Stacking};
+pub(crate) use noisy::NoisyOptions;
 pub(crate) use robust::noise_level;
 
 /// Signed distance from a pixel center to the outline of an object, read from the pixel's color.
@@ -37,9 +39,6 @@ pub(crate) struct EdgeSample<T> {
 
 /// Noise of a pixel value that no outline explains, at least: rounding to 8 bits and the seams of the reference renderer.
 pub(crate) const PIXEL_NOISE: f64 = 0.003;
-
-/// How far from the line between two colors a denoised pixel may lie, in units of the noise.
-const LINE_NOISE: f64 = 2.0;
 
 /// Soft pixels whose neighbors are looked at to find how soft edges are.
 const MEASURED_PIXELS: usize = 320;
@@ -102,7 +101,7 @@ pub(crate) struct Segmentation<T> {
     map: flat::FlatMap,
     regions: Vec<region::Region<T>>,
     region_scratch: Vec<Vec<[T; 3]>>,
-    soft: transition::SoftScratch,
+    soft: transition::SoftScratch<T>,
     transitions: Vec<transition::Transition<T>>,
     reading: interpret::Reading<T>,
     segments: Vec<Segment<T>>,
@@ -119,19 +118,6 @@ impl<T: Real> Segmentation<T> {
         let tolerance = options.line_tolerance;
         transition::find(image, &self.map, &self.regions, tolerance, &mut self.soft, &mut self.transitions);
         self.noise = T::of(PIXEL_NOISE);
-        self.reading.prepare(&self.regions, &self.transitions)
-    }
-
-    /// As [`Self::read`], for a picture with noise of standard deviation `noise`, cut to `most_regions` regions.
-    pub(crate) fn read_noisy(&mut self, image: &ImageView<'_, T>, noise: T, most_regions: usize) -> bool {
-        self.noise = noise.max(T::of(PIXEL_NOISE));
-        robust::read_flat(image, self.noise, most_regions, &mut self.robust, &mut self.map);
-        // Clipping at black and white moves means, and the denoised picture with them: soft pixels lie between its colors.
-        let Ok(smooth) = ImageView::new(image.size(), &self.robust.smooth) else { return false };
-        region::measure(&smooth, &self.map, self.noise, &mut self.regions, &mut self.region_scratch);
-        let tolerance = T::of(LINE_NOISE) * self.noise + T::of(0.012);
-        transition::find(&smooth, &self.map, &self.regions, tolerance, &mut self.soft, &mut self.transitions);
-        region::measure(image, &self.map, self.noise, &mut self.regions, &mut self.region_scratch);
         self.reading.prepare(&self.regions, &self.transitions)
     }
 
@@ -299,11 +285,6 @@ impl<T: Real> Segmentation<T> {
         let (from, to) = (self.regions[a].color, self.regions[b].color);
         let contrast = (0..3).map(|c| (from[c] - to[c]) * (from[c] - to[c])).sum::<T>().sqrt();
         Some(Rim { object: object as usize, others, coverage, contrast })
-    }
-
-    /// Standard deviation of a pixel's channel that no outline explains.
-    pub(crate) fn noise(&self) -> T {
-        self.noise
     }
 
     pub(crate) fn background(&self) -> [T; 3] {

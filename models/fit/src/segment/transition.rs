@@ -31,9 +31,40 @@ struct Soft {
 
 /// Memory of [`find`].
 #[derive(Clone, Debug, Default)]
-pub(crate) struct SoftScratch {
+pub(crate) struct SoftScratch<T> {
     soft: Vec<Soft>,
     column: Vec<(u32, u32)>,
+    offs: Vec<T>,
+}
+
+impl<T: Real> SoftScratch<T> {
+    /// Number of soft pixels.
+    pub(crate) fn len(&self) -> usize {
+        self.soft.len()
+    }
+
+    /// Standard deviation of a channel beside edges, from how far soft pixels lie off the lines between their regions.
+    pub(crate) fn noise_across(
+        &mut self,
+        image: &ImageView<'_, T>,
+        regions: &[Region<T>],
+        transitions: &[Transition<T>],
+    ) -> T {
+        let width = image.size().width();
+        self.offs.clear();
+        for transition in transitions {
+            let color = image.pixel(transition.pixel[1] as usize * width + transition.pixel[0] as usize);
+            let [from, to] = transition.pair.map(|i| regions[i as usize].color);
+            self.offs.push(along(color, from, to).1);
+        }
+        if self.offs.is_empty() {
+            return T::zero();
+        }
+        let middle = self.offs.len() / 2;
+        let order = |a: &T, b: &T| a.partial_cmp(b).unwrap_or(core::cmp::Ordering::Equal);
+        // The median of the largest channel of noise across a line is about its standard deviation.
+        *self.offs.select_nth_unstable_by(middle, order).1
+    }
 }
 
 /// Fills `transitions` in reading order. `tolerance`: how far from the line between two colors a pixel may lie.
@@ -42,7 +73,7 @@ pub(crate) fn find<T: Real>(
     map: &FlatMap,
     regions: &[Region<T>],
     tolerance: T,
-    scratch: &mut SoftScratch,
+    scratch: &mut SoftScratch<T>,
     transitions: &mut Vec<Transition<T>>,
 ) {
     collect_soft(image.size().width(), image.size().height(), map, scratch);
@@ -93,8 +124,8 @@ fn along<T: Real>(color: [T; 3], from: [T; 3], to: [T; 3]) -> (T, T) {
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "an image has at most 2^28 pixels")]
-fn collect_soft(width: usize, height: usize, map: &FlatMap, scratch: &mut SoftScratch) {
-    let SoftScratch { soft, column } = scratch;
+fn collect_soft<T>(width: usize, height: usize, map: &FlatMap, scratch: &mut SoftScratch<T>) {
+    let SoftScratch { soft, column, .. } = scratch;
     soft.clear();
     column.clear();
     column.resize(width, (0, 0));

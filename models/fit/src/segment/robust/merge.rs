@@ -28,6 +28,8 @@ pub(crate) struct Merger<T> {
 pub(crate) struct Stop<T> {
     /// Squared error that a pixel of boundary must save.
     pub(crate) price: T,
+    /// Differences up to this share of the largest contrast around the smaller region are what compression left of it.
+    pub(crate) halo: T,
     /// Fewest regions that merging goes on for regardless of the price.
     pub(crate) most_regions: usize,
 }
@@ -140,18 +142,15 @@ impl<T: Real> Merger<T> {
 
     /// Squared error that merging adds, per boundary that it saves, as the bits of a number not below 0: they sort like it.
     fn cost(&self, a: u32, b: u32, length: u32) -> u64 {
-        let (a, b) = (a as usize, b as usize);
-        let [n, m] = [self.counts[a], self.counts[b]].map(|count| T::of_usize(count as usize));
-        let off = |c: usize| self.sums[a][c] / n - self.sums[b][c] / m;
-        let squared = (0..3).map(|c| off(c) * off(c)).sum::<T>();
-        let added = squared * n * m / (n + m);
+        let [n, m] = [a, b].map(|region| T::of_usize(self.counts[region as usize] as usize));
+        let added = self.contrast(a, b) * n * m / (n + m);
         (added.as_f64() / (f64::from(length) + FIXED_LENGTH)).max(0.0).to_bits()
     }
 
     fn merge(&mut self, stop: Stop<T>) {
         let price = stop.price.as_f64().to_bits();
         while let Some(Reverse((cost, a, b))) = self.queue.pop() {
-            if cost > price && self.left <= stop.most_regions {
+            if cost > price && self.left <= stop.most_regions && stop.halo <= T::zero() {
                 break;
             }
             let (a, b) = (self.top(a), self.top(b));
@@ -160,10 +159,31 @@ impl<T: Real> Merger<T> {
             if now > cost {
                 // It grew since; a pair that fell was queued again when it did.
                 self.queue.push(Reverse((now, a, b)));
-            } else {
+            } else if now <= price || self.left > stop.most_regions || self.is_halo(a, b, now, stop.halo) {
                 self.join(a, b);
             }
         }
+    }
+
+    /// Whether the smaller of two regions differs from the other by little, compared to the contrast that it stands beside.
+    fn is_halo(&mut self, a: u32, b: u32, cost: u64, halo: T) -> bool {
+        let small = if self.counts[a as usize] < self.counts[b as usize] { a } else { b };
+        let mut most = T::zero();
+        let neighbors = core::mem::take(&mut self.neighbors[small as usize]);
+        for &other in &neighbors {
+            let other = self.top(other);
+            most = most.max(self.contrast(small, other));
+        }
+        self.neighbors[small as usize] = neighbors;
+        cost <= (halo * halo * most).as_f64().to_bits()
+    }
+
+    /// Squared difference of the colors of two regions.
+    fn contrast(&self, a: u32, b: u32) -> T {
+        let (a, b) = (a as usize, b as usize);
+        let [n, m] = [self.counts[a], self.counts[b]].map(|count| T::of_usize(count as usize));
+        let off = |c: usize| self.sums[a][c] / n - self.sums[b][c] / m;
+        (0..3).map(|c| off(c) * off(c)).sum()
     }
 
     /// Merges two roots.

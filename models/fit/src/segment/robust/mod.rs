@@ -27,6 +27,8 @@ const REACH: usize = 5;
 const FIRST_LEFT: f64 = 0.25;
 /// Squared error (in units of the noise's variance) that a pixel of boundary must save.
 const BOUNDARY_PRICE: f64 = 3.0;
+/// Strips along the edges of a picture that is not compressed are up to this wide (px).
+const STRIP_WIDTH: f64 = 2.6;
 /// Rings of pixels beside a boundary that may still be soft.
 const SOFT_RINGS: usize = 3;
 /// Fewer flat pixels than this are no region.
@@ -34,6 +36,26 @@ const MIN_PIXELS: u32 = 4;
 
 /// Label of pixels that belong to no region.
 const SOFT: u32 = u32::MAX;
+
+/// Settings of [`read_flat`].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RobustSettings<T> {
+    /// Standard deviation of a channel that is averaged away.
+    pub(crate) noise: T,
+    /// Regions that differ from a neighbor by less than about this share of the contrast they stand beside are merged.
+    pub(crate) halo: T,
+    /// Regions up to this wide (px; twice the area over the boundary) may be strips along an edge.
+    pub(crate) strip_width: T,
+    /// Largest difference between denoised neighbors that are never cut apart.
+    pub(crate) zone: T,
+}
+
+impl<T: Real> RobustSettings<T> {
+    /// For noise that is everywhere alike.
+    pub(crate) fn of(noise: T) -> Self {
+        Self { noise, halo: T::zero(), strip_width: T::of(STRIP_WIDTH), zone: T::of(0.004) + T::of(0.1) * noise }
+    }
+}
 
 /// Memory of [`read_flat`].
 #[derive(Clone, Debug, Default)]
@@ -52,11 +74,12 @@ pub(crate) struct RobustScratch<T> {
 /// Fills `map` and the denoised picture.
 pub(crate) fn read_flat<T: Real>(
     image: &ImageView<'_, T>,
-    noise: T,
+    settings: RobustSettings<T>,
     most_regions: usize,
     scratch: &mut RobustScratch<T>,
     map: &mut FlatMap,
 ) {
+    let RobustSettings { noise, halo, strip_width, zone } = settings;
     let variance = noise * noise;
     let two = T::of(2.0);
     let first = DenoiseSettings { reach: REACH, expected: two * variance, limit: two * variance };
@@ -66,11 +89,10 @@ pub(crate) fn read_flat<T: Real>(
     let second = DenoiseSettings { reach: REACH, expected: left, limit: two * left };
     denoise(image, &guide, second, &mut scratch.denoise, &mut scratch.smooth);
     let Ok(smooth) = ImageView::new(image.size(), &scratch.smooth) else { return };
-    let stop = Stop { price: T::of(BOUNDARY_PRICE) * variance, most_regions };
-    let tolerance = T::of(0.004) + T::of(0.1) * noise;
-    let count = scratch.merger.partition(image, &smooth, tolerance, stop, &mut scratch.labels);
+    let stop = Stop { price: T::of(BOUNDARY_PRICE) * variance, halo, most_regions };
+    let count = scratch.merger.partition(image, &smooth, zone, stop, &mut scratch.labels);
     measure_zones(&smooth, count, &scratch.labels, &mut scratch.zones, &mut scratch.steps);
-    find_strips(&mut scratch.zones, &scratch.steps, T::of(0.02) + noise);
+    find_strips(&mut scratch.zones, &scratch.steps, strip_width, T::of(0.02) + noise);
     let deviation = T::of(0.008) + T::of(0.5) * noise;
     erode(&smooth, &scratch.zones, &mut scratch.labels, &mut scratch.eroded, deviation);
     restore_small(&mut scratch.zones, &scratch.labels, &mut scratch.eroded);

@@ -5,8 +5,6 @@ use alloc::vec::Vec;
 
 use dvp_core::{ImageView, Real};
 
-/// Regions up to this wide (px; twice the area over the boundary) may be strips along an edge.
-const STRIP_WIDTH: f64 = 2.6;
 /// A region of the partition.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Zone<T> {
@@ -54,13 +52,14 @@ pub(super) fn measure_zones<T: Real>(
     }
 }
 
-/// Marks thin zones whose color lies between those of two neighbors, `tolerance` off the line at most. A strip beside
+/// Marks zones up to `width` wide (px; twice the area over the boundary) whose color lies between those of two neighbors,
+/// `tolerance` off the line at most. A strip beside
 /// another strip looks beyond it, to the zones along the same edge that are not thin.
-pub(super) fn find_strips<T: Real>(zones: &mut [Zone<T>], steps: &[(u32, u32)], tolerance: T) {
+pub(super) fn find_strips<T: Real>(zones: &mut [Zone<T>], steps: &[(u32, u32)], width: T, tolerance: T) {
     let mut anchors: Vec<usize> = Vec::new();
     for own in steps.chunk_by(|a, b| a.0 == b.0) {
         let at = own[0].0 as usize;
-        if !is_thin(&zones[at]) {
+        if !is_thin(&zones[at], width) {
             continue;
         }
         let long = |n: usize| 6 * n >= zones[at].boundary as usize;
@@ -71,11 +70,11 @@ pub(super) fn find_strips<T: Real>(zones: &mut [Zone<T>], steps: &[(u32, u32)], 
         if !between {
             anchors.clear();
             for neighbor in same().map(|same| same[0].1) {
-                if is_thin(&zones[neighbor as usize]) {
+                if is_thin(&zones[neighbor as usize], width) {
                     let first = steps.partition_point(|step| step.0 < neighbor);
                     let beyond =
                         steps[first..].iter().take_while(|step| step.0 == neighbor).map(|step| step.1 as usize);
-                    anchors.extend(beyond.filter(|&zone| !is_thin(&zones[zone])));
+                    anchors.extend(beyond.filter(|&zone| !is_thin(&zones[zone], width)));
                 } else {
                     anchors.push(neighbor as usize);
                 }
@@ -88,8 +87,8 @@ pub(super) fn find_strips<T: Real>(zones: &mut [Zone<T>], steps: &[(u32, u32)], 
     }
 }
 
-fn is_thin<T: Real>(zone: &Zone<T>) -> bool {
-    T::of_usize(2 * zone.pixels as usize) <= T::of(STRIP_WIDTH) * T::of_usize(zone.boundary as usize)
+fn is_thin<T: Real>(zone: &Zone<T>, width: T) -> bool {
+    T::of_usize(2 * zone.pixels as usize) <= width * T::of_usize(zone.boundary as usize)
 }
 
 fn is_between_any<T: Real>(zones: &[Zone<T>], at: usize, anchors: &[usize], tolerance: T) -> bool {

@@ -4,7 +4,7 @@ use dvp_core::{Image, ImageSize};
 
 use super::denoise::{DenoiseScratch, DenoiseSettings, denoise};
 use super::merge::{Merger, Stop};
-use super::{RobustScratch, noise_level, read_flat};
+use super::{RobustScratch, RobustSettings, noise_level, read_flat};
 use crate::segment::flat::FlatMap;
 
 const SIDE: usize = 64;
@@ -97,7 +97,7 @@ fn regions_merge_in_the_order_of_what_it_costs() {
     let image = paint(|x, y| [[0.0, 0.1, 0.5, 0.6][x / 32 + 2 * (y / 32)]; 3]);
     let regions = |price: f64, most_regions: usize| {
         let mut labels = Vec::new();
-        let stop = Stop { price, most_regions };
+        let stop = Stop { price, halo: 0.0, most_regions };
         Merger::default().partition(&image.view(), &image.view(), 1e-3, stop, &mut labels)
     };
     assert_eq!(regions(0.37, usize::MAX), 4);
@@ -112,7 +112,7 @@ fn a_noisy_disk_is_one_region_on_another() {
     let mut image = soft_disk();
     add_noise(&mut image, 0.05);
     let (mut scratch, mut map) = (RobustScratch::default(), FlatMap::default());
-    read_flat(&image.view(), 0.05, usize::MAX, &mut scratch, &mut map);
+    read_flat(&image.view(), RobustSettings::of(0.05), usize::MAX, &mut scratch, &mut map);
     assert_eq!(map.region_count, 2);
     let at = |x: usize, y: usize| map.labels[y * SIDE + x];
     assert_eq!([at(1, 1), at(62, 62), at(32, 32), at(18, 32)], [1, 1, 2, 2]);

@@ -1,0 +1,181 @@
+//! Which reading of a picture wins: clean, freed from noise or from what compression left, or as segments of a picture that
+//! is not flat.
+//!
+//! A clean picture pays for an estimate of its noise and for counting its soft pixels. Others are read as the estimate says;
+//! where both a clean reading and one freed from noise are possible, the shorter description wins, at one noise level.
+
+use dvp_core::render::{Compositing, EdgeProfile};
+use dvp_core::{ImageView, Real};
+
+use super::run::{Care, Run};
+use super::{FitScratch, Fitter};
+use crate::segment::{EdgeKind, NoisyOptions, SegmentOptions, noise_level};
+use crate::{Fit, FitError, StopReason};
+
+/// Below this noise a picture is read as if it had none.
+const QUIET: f64 = 0.0015;
+/// What compression leaves beside edges is averaged away as noise of this standard deviation.
+const COMPRESSED: f64 = 0.06;
+/// A picture with more regions than this is not fitted as clean if most of its soft pixels lie between no two regions.
+const MOST_CLEAN_REGIONS: usize = 64;
+/// Compression it was if less than this share of the soft pixels is still soft when it is averaged away.
+const STILL_SOFT: f64 = 0.8;
+/// A scene that leaves a larger share of the variance unexplained may be the wrong reading.
+const SUSPICIOUS: f64 = 0.02;
+/// A picture of which flat objects leave a larger share of the variance is not flat.
+const NOT_FLAT: f64 = 0.05;
+/// Pictures with noise and more regions than this may be of another kind.
+const MANY_REGIONS: usize = 64;
+/// A picture that is not flat is cut between pixels that differ by more than this: half a step of 8 bits.
+const FINE_ZONE: f64 = 0.002;
+/// Texture finer than this is averaged away in a picture that is not flat.
+const TEXTURE: f64 = 0.03;
+
+impl<T: Real> Fitter<T> {
+    /// Fits the readings that the picture may need; the best one wins.
+    pub(super) fn best_reading(
+        &self,
+        image: ImageView<'_, T>,
+        scratch: &mut FitScratch<T>,
+    ) -> Result<Fit<T>, FitError> {
+        let most_regions = self.options.max_objects.saturating_add(1);
+        let noise = noise_level(&image, &mut scratch.differences);
+        let fit = if noise >= T::of(QUIET) {
+            let options = NoisyOptions { noise, compressed: false, zone: None, most_regions };
+            let readable = scratch.segmentation.read_noisy(&image, options);
+            self.fit_noisy(image, readable, scratch)?
+        } else {
+            let readable = scratch.segmentation.read(&image, &SegmentOptions::default());
+            let clean = readable && scratch.segmentation.is_clean();
+            let first = clean.then(|| self.fit_reading(image, true, scratch)).transpose()?;
+            match first {
+                Some(fit) if fit.unexplained <= SUSPICIOUS => return Ok(fit),
+                first => self.or_compressed(image, first, most_regions, scratch)?,
+            }
+        };
+        if fit.unexplained > NOT_FLAT && fit.stop != StopReason::NotFlat {
+            return self.or_not_flat(image, fit, most_regions, scratch);
+        }
+        Ok(fit)
+    }
+
+    /// Fits the noisy regions last read; many of them as segments first, for a picture that is not flat to cost no more.
+    fn fit_noisy(
+        &self,
+        image: ImageView<'_, T>,
+        readable: bool,
+        scratch: &mut FitScratch<T>,
+    ) -> Result<Fit<T>, FitError> {
+        if readable && scratch.segmentation.region_count() > MANY_REGIONS {
+            let segments = self.fit_segments(image, scratch)?;
+            if segments.unexplained > NOT_FLAT {
+                return Ok(segments);
+            }
+        }
+        self.fit_reading(image, readable, scratch)
+    }
+
+    /// The clean fit, or one freed from what compression left. The clean reading must be the last one.
+    fn or_compressed(
+        &self,
+        image: ImageView<'_, T>,
+        clean: Option<Fit<T>>,
+        most_regions: usize,
+        scratch: &mut FitScratch<T>,
+    ) -> Result<Fit<T>, FitError> {
+        let (soft, regions) = (scratch.segmentation.soft_count(), scratch.segmentation.region_count());
+        let options = NoisyOptions { noise: T::of(COMPRESSED), compressed: true, zone: None, most_regions };
+        let readable = scratch.segmentation.read_noisy(&image, options);
+        // What was soft in between edges is flat now: that was no edge.
+        let surely = T::of_usize(scratch.segmentation.soft_count()) < T::of(STILL_SOFT) * T::of_usize(soft);
+        let freed = self.fit_noisy(image, readable, scratch)?;
+        let clean = match clean {
+            Some(clean) => clean,
+            None if surely || regions > MOST_CLEAN_REGIONS => return Ok(freed),
+            None => {
+                let readable = scratch.segmentation.read(&image, &SegmentOptions::default());
+                self.fit_reading(image, readable, scratch)?
+            }
+        };
+        // At the lower level the clean reading's own description would count every trace of compression.
+        let bits = self.bits_at(image, &clean, freed.noise, scratch)?;
+        Ok(if bits <= freed.bits { clean } else { freed })
+    }
+
+    /// The fit, or segments of a picture that is not flat, if those leave less unexplained.
+    fn or_not_flat(
+        &self,
+        image: ImageView<'_, T>,
+        fit: Fit<T>,
+        most_regions: usize,
+        scratch: &mut FitScratch<T>,
+    ) -> Result<Fit<T>, FitError> {
+        let noise = T::of(TEXTURE).max(fit.noise);
+        let options = NoisyOptions { noise, compressed: false, zone: Some(T::of(FINE_ZONE)), most_regions };
+        if !scratch.segmentation.read_noisy(&image, options) {
+            return Ok(Fit { stop: StopReason::NotFlat, ..fit });
+        }
+        let segments = self.fit_segments(image, scratch)?;
+        let best = if segments.unexplained < fit.unexplained { segments } else { fit };
+        Ok(Fit { stop: StopReason::NotFlat, ..best })
+    }
+
+    /// Every region an outline, smaller ones in front.
+    fn fit_segments(&self, image: ImageView<'_, T>, scratch: &mut FitScratch<T>) -> Result<Fit<T>, FitError> {
+        let compositing = self.options.compositing.unwrap_or(Compositing::Over);
+        let kind = self.options.edge.map_or(EdgeKind::Area, EdgeKind::of);
+        let segments = self.fit_with(image, kind, compositing, Care::Segments, scratch)?;
+        Ok(Fit { stop: StopReason::NotFlat, ..segments })
+    }
+
+    /// Fits the regions last read; the edges and the way objects overlap that describe them best.
+    fn fit_reading(
+        &self,
+        image: ImageView<'_, T>,
+        readable: bool,
+        scratch: &mut FitScratch<T>,
+    ) -> Result<Fit<T>, FitError> {
+        let care = Care::Full;
+        if !readable {
+            let edge = self.options.edge.unwrap_or_else(EdgeProfile::reference);
+            let compositing = self.options.compositing.unwrap_or_default();
+            let run = Run { fitter: self, image, kind: EdgeKind::of(edge), edge, compositing, care, scratch };
+            let found = run.nothing();
+            return run.finish(found);
+        }
+        scratch.segmentation.interpret(Compositing::Blend);
+        let evidence = scratch.segmentation.evidence();
+        let unit = T::of_usize(image.size().unit_px());
+        let kinds = || scratch.segmentation.edges(&image).kinds(unit);
+        let (kind, mut other) = self.options.edge.map_or_else(kinds, |edge| (EdgeKind::of(edge), None));
+        let reference = EdgeKind::Profile(EdgeProfile::reference());
+        if self.options.edge.is_none() && scratch.segmentation.is_noisy() && kind != reference {
+            // Noise hides what tells the edges apart.
+            other = Some(reference);
+        }
+        // In doubt several readings are fitted; the shortest description wins.
+        let mut best: Option<Fit<T>> = None;
+        for kind in [Some(kind), other].into_iter().flatten() {
+            let (compositing, second) = self.compositings(evidence, &kind);
+            for compositing in [Some(compositing), second].into_iter().flatten() {
+                let fit = self.fit_with(image, kind, compositing, care, scratch)?;
+                best = Some(best.filter(|best| best.bits <= fit.bits).unwrap_or(fit));
+            }
+        }
+        best.ok_or(FitError::Setting { what: "edge", must: "known" })
+    }
+
+    /// Description length of a fit, at another noise level than its own.
+    fn bits_at(
+        &self,
+        image: ImageView<'_, T>,
+        fit: &Fit<T>,
+        noise: T,
+        scratch: &mut FitScratch<T>,
+    ) -> Result<f64, FitError> {
+        let (edge, compositing) = (fit.scene.edge, fit.scene.compositing);
+        let mut run =
+            Run { fitter: self, image, kind: EdgeKind::of(edge), edge, compositing, care: Care::Segments, scratch };
+        run.bits_at(&fit.scene, noise)
+    }
+}

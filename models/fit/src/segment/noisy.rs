@@ -1,0 +1,87 @@
+//! The reading of pictures that are not clean: with noise, compressed, or not flat at all.
+
+use dvp_core::{ImageView, Real};
+
+use super::robust::RobustSettings;
+use super::{PIXEL_NOISE, Segmentation, region, robust, transition};
+
+/// How far from the line between two colors a denoised pixel may lie, in units of the noise.
+const LINE_NOISE: f64 = 2.0;
+/// Compression moves the color of a whole region by up to a step of its coarsest quantization, about this.
+const COMPRESSED_COLOR: f64 = 0.004;
+/// In a clean picture this share of the soft pixels lies between two regions, at least.
+const CLEAN_SHARE: f64 = 0.8;
+/// Noise that compression leaves along edges, at least: it is measured across the lines between two colors only.
+const LEAST_COMPRESSED: f64 = 0.03;
+
+/// Compression leaves differences beside an edge, in units of the edge's contrast.
+const HALO: f64 = 0.8;
+/// Compression that halves the resolution of color leaves strips of mixed color as wide as this (px).
+const COMPRESSED_STRIP: f64 = 6.0;
+
+/// Settings of [`Segmentation::read_noisy`].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct NoisyOptions<T> {
+    /// Standard deviation of a channel that is averaged away.
+    pub(crate) noise: T,
+    /// Whether that noise stands beside edges only, and is to be measured there.
+    pub(crate) compressed: bool,
+    /// Largest difference between neighbors that are never cut apart; none: as much as is left of the noise.
+    pub(crate) zone: Option<T>,
+    /// Regions are merged until there are no more than this.
+    pub(crate) most_regions: usize,
+}
+
+impl<T: Real> Segmentation<T> {
+    /// As [`Self::read`], for a picture with noise.
+    pub(crate) fn read_noisy(&mut self, image: &ImageView<'_, T>, options: NoisyOptions<T>) -> bool {
+        let noise = options.noise.max(T::of(PIXEL_NOISE));
+        let settings = if options.compressed {
+            RobustSettings { halo: T::of(HALO), strip_width: T::of(COMPRESSED_STRIP), ..RobustSettings::of(noise) }
+        } else {
+            RobustSettings::of(noise)
+        };
+        let settings = RobustSettings { zone: options.zone.unwrap_or(settings.zone), ..settings };
+        robust::read_flat(image, settings, options.most_regions, &mut self.robust, &mut self.map);
+        // Clipping at black and white moves means, and the denoised picture with them: soft pixels lie between its colors.
+        let Ok(smooth) = ImageView::new(image.size(), &self.robust.smooth) else { return false };
+        region::measure(&smooth, &self.map, noise, &mut self.regions, &mut self.region_scratch);
+        let tolerance = T::of(LINE_NOISE) * noise + T::of(0.012);
+        transition::find(&smooth, &self.map, &self.regions, tolerance, &mut self.soft, &mut self.transitions);
+        region::measure(image, &self.map, noise, &mut self.regions, &mut self.region_scratch);
+        self.noise = noise;
+        if options.compressed {
+            let beside_edges = self.soft.noise_across(image, &self.regions, &self.transitions);
+            self.noise = beside_edges.max(T::of(LEAST_COMPRESSED)).min(noise);
+            for region in &mut self.regions {
+                region.doubt = T::of(COMPRESSED_COLOR);
+            }
+        }
+        self.reading.prepare(&self.regions, &self.transitions)
+    }
+
+    /// Whether nearly all soft pixels lie between two regions: if they do not, noise or compression made them.
+    pub(crate) fn is_clean(&self) -> bool {
+        T::of_usize(self.transitions.len()) >= T::of(CLEAN_SHARE) * T::of_usize(self.soft.len())
+    }
+
+    /// Number of soft pixels.
+    pub(crate) fn soft_count(&self) -> usize {
+        self.soft.len()
+    }
+
+    /// Number of regions.
+    pub(crate) fn region_count(&self) -> usize {
+        self.regions.len()
+    }
+
+    /// Whether pixels are off by more than rounding.
+    pub(crate) fn is_noisy(&self) -> bool {
+        self.noise > T::of(PIXEL_NOISE)
+    }
+
+    /// Standard deviation of a pixel's channel that no outline explains.
+    pub(crate) fn noise(&self) -> T {
+        self.noise
+    }
+}
