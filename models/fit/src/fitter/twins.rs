@@ -26,7 +26,7 @@ const MISFIT_RATIO: f64 = 2.0;
 const MISFIT_SLACK: f64 = 0.004;
 
 /// After so many outlines with a waist that were no unions, those left are taken as they are: the picture is made of such shapes.
-const MOST_FAILURES: usize = 6;
+const MOST_FAILURES: usize = 3;
 
 /// Where parts of a union come from, the more reliable first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,10 +60,10 @@ impl<T: Real> Run<'_, T> {
         sources: &mut Vec<Source>,
         mut loss: T,
     ) -> Result<T, FitError> {
-        let mut at = 0;
-        while at < sources.len() {
+        let (mut at, mut failures) = (0, 0);
+        while at < sources.len() && failures < MOST_FAILURES {
             let source = sources[at];
-            if source.sure || !self.misses_object(posed, at) {
+            if source.sure || !self.stands_alone(source.segment) || !self.misses_object(posed, at) {
                 at += 1;
                 continue;
             }
@@ -87,6 +87,7 @@ impl<T: Real> Run<'_, T> {
             posed.objects.splice(at..at + placed, best.1.iter().copied());
             sources.splice(at..=at, best.1.iter().map(|_| source));
             loss = self.compare(posed)?;
+            failures += usize::from(best.1.len() == 1);
             at += best.1.len();
         }
         Ok(loss)
@@ -133,14 +134,17 @@ impl<T: Real> Run<'_, T> {
 
     /// What is known of an object that narrows somewhere, as two that overlap do; none for others.
     fn waisted(&mut self, single: &FoundObject<T>) -> Result<Option<Waisted<T>>, FitError> {
-        let mut outline = alloc::vec![[T::zero(); 2]; self.fitter.outlines.vertex_count()];
-        self.fitter.outlines.outline(single.object.efd.rows(), &mut outline)?;
-        if !is_waisted(&outline) {
+        if !self.stands_alone(single.segment) {
             return Ok(None);
         }
+        let mut outline = alloc::vec![[T::zero(); 2]; self.fitter.outlines.vertex_count()];
+        self.fitter.outlines.outline(single.object.efd.rows(), &mut outline)?;
         single.object.pose.transform(&mut outline);
         let unit = self.unit_px();
         outline.iter_mut().for_each(|v| *v = v.map(|x| x * unit));
+        if !is_waisted(&outline, self.image.size()) {
+            return Ok(None);
+        }
         let Some(contour) = self.contour_of(single.segment) else { return Ok(None) };
         let samples = &self.scratch.segmentation.segments()[single.segment].samples;
         let misfit = misfit(&outline, samples);
@@ -151,6 +155,11 @@ impl<T: Real> Run<'_, T> {
         let samples = &self.scratch.segmentation.segments()[single.segment].samples;
         let shape_bits = free_shape_bits(single.object.efd.harmonic_count(), repeats(&contour, samples));
         Ok(Some(Waisted { contour, most, shape_bits }))
+    }
+
+    /// Outlines that others cover or cross are bent inward there by no union.
+    fn stands_alone(&self, segment: usize) -> bool {
+        u32::try_from(segment).is_ok_and(|object| self.scratch.segmentation.stands_alone(object))
     }
 
     /// Whether one simple shape explains a segment.

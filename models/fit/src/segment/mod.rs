@@ -188,6 +188,12 @@ impl<T: Real> Segmentation<T> {
     }
 
     /// Decides a border, or leaves it open.
+    /// Whether an object neither borders on another one nor overlaps with one.
+    pub(crate) fn stands_alone(&self, object: u32) -> bool {
+        let shared = |cover: &interpret::Cover| cover.members().len() > 1 && cover.members().contains(&object);
+        !self.borders().iter().any(|border| border.objects.contains(&object)) && !self.reading.covers.iter().any(shared)
+    }
+
     pub(crate) fn set_front(&mut self, border: usize, front: Option<u32>) {
         if let Some(border) = self.reading.borders.get_mut(border) {
             border.front = front;

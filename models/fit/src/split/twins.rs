@@ -34,6 +34,8 @@ const MARGIN: usize = 2;
 /// Turn (radians) over four edges from which an outline bends inward.
 const INWARD: f64 = 0.06;
 const SHARPLY_INWARD: f64 = 0.2;
+/// Nearer to the image border (px) an outline is held by samples on one side only.
+const BORDER_PX: f64 = 3.0;
 /// Distance (px) by which an outline may stand out of the union.
 const STANDS_OUT_PX: f64 = 0.8;
 /// Distance (px) beyond which a sample lies on neither outline.
@@ -49,8 +51,9 @@ pub(crate) struct TwinScratch<T> {
     samples: Vec<EdgeSample<T>>,
 }
 
-/// Whether a closed outline (the last vertex repeats the first) bends inward in at least two places, sharply in one.
-pub(crate) fn is_waisted<T: Real>(outline: &[[T; 2]]) -> bool {
+/// Whether a closed outline (px, the last vertex repeats the first) bends inward in at least two places that show, sharply in
+/// one; beyond the image border an outline is a guess.
+pub(crate) fn is_waisted<T: Real>(outline: &[[T; 2]], size: ImageSize) -> bool {
     let n = outline.len().saturating_sub(1);
     if n < 8 {
         return false;
@@ -62,9 +65,11 @@ pub(crate) fn is_waisted<T: Real>(outline: &[[T; 2]]) -> bool {
         (p[0] * q[1] - p[1] * q[0]).atan2(p[0] * q[0] + p[1] * q[1]) * sign
     };
     let turns: Vec<T> = (0..n).map(turn).collect();
+    let (margin, extents) = (T::of(BORDER_PX), [size.width(), size.height()].map(T::of_usize));
+    let shows = |i: usize| (0..2).all(|c| outline[i][c] > margin && outline[i][c] < extents[c] - margin);
     let inward = |i: &usize| {
         let own = turns[*i];
-        own < T::of(-INWARD) && (1..=2).all(|k| own <= turns[(i + k) % n] && own < turns[(i + n - k) % n])
+        shows(*i) && own < T::of(-INWARD) && (1..=2).all(|k| own <= turns[(i + k) % n] && own < turns[(i + n - k) % n])
     };
     let sharp = (0..n).filter(inward).any(|i| turns[i] < T::of(-SHARPLY_INWARD));
     sharp && (0..n).filter(inward).count() >= 2
