@@ -7,9 +7,10 @@
 //! a stroke of its own color, twice that wide. Under `blend`, the common part of overlapping objects shows the mean
 //! of their colors: it is drawn again, through a mask.
 //!
-//! Approximations: the softness of edges is left to the viewer's anti-aliasing; fully confident objects mix exactly
-//! except for the outermost pixel of the common part; objects with a confidence below 0.99 are drawn with that
-//! opacity, one over the other; outlines pass the 64 vertices that renderers paint within 0.2 px, but as smooth curves.
+//! Blurred edges are a Gaussian filter over all objects; other softness is left to the viewer's anti-aliasing.
+//!
+//! Approximations: fully confident objects mix exactly except for the outermost pixel of the common part; objects with a
+//! confidence below 0.99 are drawn with that opacity, one over the other; outlines pass the 64 vertices that renderers paint within 0.2 px, but as smooth curves.
 //!
 //! | file | holds |
 //! |---|---|

@@ -67,3 +67,20 @@ fn blended_objects_get_their_mean_color() {
     scene.compositing = Compositing::Over;
     assert!(!to_svg(&scene, size).unwrap().contains("mask"));
 }
+
+#[test]
+fn blurred_scenes_have_a_filter() {
+    // Sigma 1/64 of the doubled frame is 1 px of 128: a Gaussian of 1.702 px, of which 1/12 px^2 is anti-aliasing.
+    let with = |edge| {
+        let scene = Scene { edge, objects: vec![disk(0.4, [1.0, 0.0, 0.0])], ..Scene::empty([1.0; 3]) };
+        to_svg(&scene, ImageSize::new(128, 128).unwrap()).unwrap()
+    };
+    let text = with(EdgeProfile::distance(1.0 / 64.0));
+    assert!(text.contains("<feGaussianBlur stdDeviation=\"1.677\"/>"), "{text}");
+    assert!(text.contains("<rect x=\"-6\" y=\"-6\" width=\"140\" height=\"140\" fill=\"#ffffff\"/>"), "{text}");
+    assert_eq!(text.matches("<g").count(), text.matches("</g>").count());
+    for edge in [EdgeProfile::reference(), EdgeProfile::area(), EdgeProfile::hard(128.0), EdgeProfile::distance(0.003)]
+    {
+        assert!(!with(edge).contains("filter"), "{edge:?}");
+    }
+}

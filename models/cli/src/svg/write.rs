@@ -1,6 +1,6 @@
 //! The text of an SVG file.
 
-use dvp_core::render::Compositing;
+use dvp_core::render::{Compositing, EdgeLaw, EdgeProfile};
 use dvp_core::shape::{OutlineBasis, REFERENCE_VERTICES, ShapeError};
 use dvp_core::{ImageSize, Object, Real, Scene};
 
@@ -11,6 +11,13 @@ use super::path::{path_data, short};
 const TOLERANCE_PX: f64 = 0.2;
 /// Below it an object is drawn translucent instead of mixed; below its complement not at all.
 const SURE: f64 = 0.99;
+
+/// Standard deviation of the Gaussian nearest to a logistic, over its sigma.
+const GAUSSIAN: f64 = 1.702;
+/// Variance of the blur (px^2) that anti-aliasing by area is.
+const AREA_VARIANCE: f64 = 1.0 / 12.0;
+/// Less blur than this (px) is left to anti-aliasing.
+const LEAST_BLUR_PX: f64 = 0.3;
 
 /// What the text needs of an object.
 struct Shape {
@@ -39,19 +46,53 @@ pub fn to_svg<T: Real>(scene: &Scene<T>, size: ImageSize) -> Result<String, Shap
         shapes.push(Shape::of(k, object, unit, &basis)?);
     }
     shapes.retain(Shape::is_seen);
+    let background = hex(scene.background.map(T::as_f64));
     let mut text = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\">\n\
-         <rect id=\"background\" width=\"{width}\" height=\"{height}\" fill=\"{}\"/>\n",
-        hex(scene.background.map(T::as_f64))
+         <rect id=\"background\" width=\"{width}\" height=\"{height}\" fill=\"{background}\"/>\n"
     );
+    let deviation = blur_px(&scene.edge, unit);
+    if let Some(deviation) = deviation {
+        text.push_str(&blurring(deviation, [width, height], &background));
+    }
     for shape in &shapes {
         text.push_str(&shape.element(reach));
     }
     if scene.compositing == Compositing::Blend {
         text.push_str(&mixtures(&shapes, reach, [width, height]));
     }
+    if deviation.is_some() {
+        text.push_str("</g>\n");
+    }
     text.push_str("</svg>\n");
     Ok(text)
+}
+
+/// Standard deviation (px) of the Gaussian that makes edges as soft as the profile's, beyond the viewer's anti-aliasing; none
+/// if that is about soft enough.
+fn blur_px<T: Real>(edge: &EdgeProfile<T>, unit: f64) -> Option<f64> {
+    if edge.law != EdgeLaw::Distance {
+        return None;
+    }
+    let total = GAUSSIAN / edge.in_pixels(T::of(unit)).sharpness.as_f64();
+    let variance = total * total - AREA_VARIANCE;
+    (variance > LEAST_BLUR_PX * LEAST_BLUR_PX).then(|| variance.sqrt())
+}
+
+/// The start of a blurred group. The background is in it once more, beyond the border, so that nothing fades out there.
+fn blurring(deviation: f64, [width, height]: [f64; 2], background: &str) -> String {
+    let margin = (3.0 * deviation).ceil();
+    let place = format!(
+        "x=\"-{margin}\" y=\"-{margin}\" width=\"{}\" height=\"{}\"",
+        width + 2.0 * margin,
+        height + 2.0 * margin
+    );
+    format!(
+        "<filter id=\"blur\" filterUnits=\"userSpaceOnUse\" {place} color-interpolation-filters=\"sRGB\">\
+         <feGaussianBlur stdDeviation=\"{}\"/></filter>\n\
+         <g filter=\"url(#blur)\">\n<rect {place} fill=\"{background}\"/>\n",
+        short(deviation, 3.0)
+    )
 }
 
 impl Shape {

@@ -149,11 +149,11 @@ impl<T: Real> Segmentation<T> {
 
     /// What the soft pixels between background and objects say about the edges of the image.
     pub(crate) fn edges(&self, image: &ImageView<'_, T>) -> EdgeEvidence<T> {
-        let mut evidence = EdgeEvidence::default();
         let share = (T::of_usize(MEASURED_PIXELS) / T::of_usize(self.transitions.len().max(1))).as_f64();
         let mut turns = 0.0;
         // That of rounding changes nothing.
         let noise = if self.noise > T::of(PIXEL_NOISE) { self.noise } else { T::zero() };
+        let mut evidence = EdgeEvidence { noise, ..EdgeEvidence::default() };
         let least_contrast = (T::of(LEAST_NOISES) * noise).max(T::of(LEAST_CONTRAST));
         for transition in &self.transitions {
             if let Some(rim) = self.rim(transition)
@@ -166,7 +166,7 @@ impl<T: Real> Segmentation<T> {
                 turns -= if turns >= 1.0 { 1.0 } else { 0.0 };
                 if turns < share {
                     let colors = transition.pair.map(|i| self.regions[i as usize].color);
-                    evidence.measure(image, transition.pixel, colors, noise);
+                    evidence.measure(image, transition.pixel, colors);
                 }
             }
         }

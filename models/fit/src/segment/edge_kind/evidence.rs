@@ -41,6 +41,8 @@ const LOPSIDED_SURELY: f64 = 0.1;
 /// Counts and sums over soft pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct EdgeEvidence<T> {
+    /// Noise per channel; 0 where there is none but rounding.
+    pub(crate) noise: T,
     /// Coverage below 0.015 or above 0.985.
     pub(crate) settled: usize,
     /// 0.015 to 0.1.
@@ -100,16 +102,17 @@ impl<T: Real> EdgeEvidence<T> {
         let surely = many && (other == EdgeKind::Area || lopsided > LOPSIDED_SURELY);
         if surely {
             (reference, None)
-        } else if lopsided > least && 10 * self.high > self.middle {
+        } else if self.noise > T::zero() || (lopsided > least && 10 * self.high > self.middle) {
+            // Noise, and what takes it off, make coverages even.
             (reference, Some(other))
         } else {
             (other, None)
         }
     }
 
-    /// Measures a pixel between regions of the two colors in an image with that `noise` per channel; one at the border of
-    /// the image, or beside something else, tells nothing.
-    pub(crate) fn measure(&mut self, image: &ImageView<'_, T>, [x, y]: [u32; 2], [from, to]: [[T; 3]; 2], noise: T) {
+    /// Measures a pixel between regions of the two colors; one at the border of the image, or beside something else, tells
+    /// nothing.
+    pub(crate) fn measure(&mut self, image: &ImageView<'_, T>, [x, y]: [u32; 2], [from, to]: [[T; 3]; 2]) {
         let (width, height) = (image.size().width(), image.size().height());
         let (x, y) = (x as usize, y as usize);
         if x == 0 || y == 0 || x + 1 >= width || y + 1 >= height {
@@ -118,7 +121,7 @@ impl<T: Real> EdgeEvidence<T> {
         let line: [T; 3] = core::array::from_fn(|c| to[c] - from[c]);
         let per_length = line.iter().map(|&d| d * d).sum::<T>().recip();
         let at = y * width + x;
-        let tolerance = (noise * T::of(LINE_NOISE)).max(T::of(LINE_TOLERANCE)).powi(2);
+        let tolerance = (self.noise * T::of(LINE_NOISE)).max(T::of(LINE_TOLERANCE)).powi(2);
         let share = |index: usize| {
             let color = image.pixel(index);
             let from_start: [T; 3] = core::array::from_fn(|c| color[c] - from[c]);
@@ -131,7 +134,7 @@ impl<T: Real> EdgeEvidence<T> {
         {
             let [gx, gy] = [right - left, down - up];
             // What noise adds to squares on average is taken off.
-            let variance = noise * noise * per_length;
+            let variance = self.noise * self.noise * per_length;
             self.spread += p * (T::one() - p) + variance;
             self.length += T::of(0.5) * (gx * gx + gy * gy - T::of(4.0) * variance).max(T::zero()).sqrt();
         }

@@ -156,7 +156,7 @@ fn softness_of_a_ramp_by_hand() {
     let colors = [[0.0, 0.5, 0.0], [1.0, 0.5, 0.2]];
     for y in 0..20 {
         for x in 0..9 {
-            evidence.measure(&image.view(), [x, y], colors, 0.0);
+            evidence.measure(&image.view(), [x, y], colors);
         }
     }
     // The first and the last row tell nothing.
@@ -164,7 +164,7 @@ fn softness_of_a_ramp_by_hand() {
     assert_near(evidence.softness().unwrap(), 0.625, 1e-9);
     // Beside another color there is nothing to measure.
     let before = evidence;
-    evidence.measure(&image.view(), [4, 4], [[0.0, 0.5, 0.0], [0.0, 0.5, 1.0]], 0.0);
+    evidence.measure(&image.view(), [4, 4], [[0.0, 0.5, 0.0], [0.0, 0.5, 1.0]]);
     assert_eq!(evidence, before);
 }
 
