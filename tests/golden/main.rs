@@ -8,6 +8,7 @@ mod hard_geometry;
 mod loss;
 mod matching;
 mod metric;
+mod noise;
 mod optim;
 mod prototypes;
 mod render_contour;

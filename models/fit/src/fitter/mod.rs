@@ -178,7 +178,8 @@ impl<T: Real> Fitter<T> {
             run.join_pieces();
             run.decide_order();
         } else {
-            run.stack_by_size();
+            // Every segment shows its whole outline.
+            run.scratch.segmentation.forget_borders();
         }
         run.scratch.segmentation.gather(image.size(), &kind);
         let found = if self.prototypes.is_empty() { run.unknown_shapes()? } else { run.known_shapes()? };

@@ -53,16 +53,6 @@ impl<T: Real> Run<'_, T> {
         }
     }
 
-    /// Puts smaller objects in front of larger ones wherever that is open.
-    pub(super) fn stack_by_size(&mut self) {
-        for at in 0..self.scratch.segmentation.borders().len() {
-            let border = self.scratch.segmentation.borders()[at];
-            if border.front.is_none() {
-                self.scratch.segmentation.set_front(at, Some(border.objects[1]));
-            }
-        }
-    }
-
     /// Bits of the shape of an object and of what its samples miss, from the borders that are decided for it.
     pub(super) fn part_bits(&mut self, object: u32) -> f64 {
         let size = self.image.size();

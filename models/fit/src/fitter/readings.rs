@@ -26,8 +26,8 @@ const SUSPICIOUS: f64 = 0.02;
 const NOT_FLAT: f64 = 0.05;
 /// Pictures with noise and more regions than this may be of another kind.
 const MANY_REGIONS: usize = 64;
-/// A picture that is not flat is cut between pixels that differ by more than this: half a step of 8 bits.
-const FINE_ZONE: f64 = 0.002;
+/// A picture that is not flat is cut between pixels that differ by more than this: a tenth of a step of 8 bits.
+const FINE_ZONE: f64 = 0.0004;
 /// Texture finer than this is averaged away in a picture that is not flat.
 const TEXTURE: f64 = 0.03;
 

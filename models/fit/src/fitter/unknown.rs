@@ -2,6 +2,7 @@
 
 use alloc::vec::Vec;
 
+use dvp_core::contour::perimeter;
 use dvp_core::scene::Pose;
 use dvp_core::shape::REFERENCE_VERTICES;
 use dvp_core::{Efd, Object, Real};
@@ -16,21 +17,28 @@ const MISSED_PIXELS: usize = 16;
 /// An outline with less freedom has more harmonics: it must miss clearly less.
 const CLEARLY_LESS: f64 = 0.8;
 
+/// Outline (px) per harmonic of a segment of a picture that is not flat.
+const SEGMENT_HARMONIC_PX: f64 = 6.0;
+
 impl<T: Real> Run<'_, T> {
     /// Fits an outline to every segment.
     pub(super) fn unknown_shapes(&mut self) -> Result<Found<T>, FitError> {
         let background = self.scratch.segmentation.background();
         let mut found = Found { background, objects: Vec::new(), steps: 0, stop: StopReason::Converged };
+        let freedom = if self.care == Care::Full { Freedom::Full } else { Freedom::None };
         for segment in self.painting_order() {
             let segment = segment as usize;
-            if let Some((object, steps)) = self.object_of(segment, Freedom::Full) {
+            if let Some((object, steps)) = self.object_of(segment, freedom) {
                 found.steps += steps;
                 found.objects.push(FoundObject { object, segment, twin: None });
             }
         }
         if self.care == Care::Full {
             self.try_with_less_freedom(&mut found)?;
-            self.split_unknown(&mut found)?;
+            // What compression leaves along edges is no evidence of a shared outline.
+            if !self.scratch.segmentation.is_compressed() {
+                self.split_unknown(&mut found)?;
+            }
         }
         Ok(found)
     }
@@ -112,7 +120,11 @@ impl<T: Real> Run<'_, T> {
         if part.border > 0 {
             hold_outside(&contour, T::of_usize(size.width()), T::of_usize(size.height()), &mut scratch.samples);
         }
-        let max_harmonics = self.fitter.options.max_harmonics;
+        let mut max_harmonics = self.fitter.options.max_harmonics;
+        if self.care == Care::Segments {
+            // No samples decide how many pay.
+            max_harmonics = (perimeter(&contour) / T::of(SEGMENT_HARMONIC_PX)).to_count().clamp(1, max_harmonics);
+        }
         let settings = GrowSettings { vertex_count: REFERENCE_VERTICES, max_harmonics, freedom, noise };
         grow(&contour, &scratch.samples, &self.fitter.basis, settings, &mut scratch.free)
     }

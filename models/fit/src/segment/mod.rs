@@ -107,6 +107,7 @@ pub(crate) struct Segmentation<T> {
     segments: Vec<Segment<T>>,
     robust: robust::RobustScratch<T>,
     noise: T,
+    compressed: bool,
     count: usize,
 }
 
@@ -118,6 +119,7 @@ impl<T: Real> Segmentation<T> {
         let tolerance = options.line_tolerance;
         transition::find(image, &self.map, &self.regions, tolerance, &mut self.soft, &mut self.transitions);
         self.noise = T::of(PIXEL_NOISE);
+        self.compressed = false;
         self.reading.prepare(&self.regions, &self.transitions)
     }
 

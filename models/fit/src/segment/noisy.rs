@@ -50,6 +50,7 @@ impl<T: Real> Segmentation<T> {
         transition::find(&smooth, &self.map, &self.regions, tolerance, &mut self.soft, &mut self.transitions);
         region::measure(image, &self.map, noise, &mut self.regions, &mut self.region_scratch);
         self.noise = noise;
+        self.compressed = options.compressed;
         if options.compressed {
             let beside_edges = self.soft.noise_across(image, &self.regions, &self.transitions);
             self.noise = beside_edges.max(T::of(LEAST_COMPRESSED)).min(noise);
@@ -63,6 +64,16 @@ impl<T: Real> Segmentation<T> {
     /// Whether nearly all soft pixels lie between two regions: if they do not, noise or compression made them.
     pub(crate) fn is_clean(&self) -> bool {
         T::of_usize(self.transitions.len()) >= T::of(CLEAN_SHARE) * T::of_usize(self.soft.len())
+    }
+
+    /// Whether compression was averaged away.
+    pub(crate) fn is_compressed(&self) -> bool {
+        self.compressed
+    }
+
+    /// Forgets which objects touch: none is in front of another.
+    pub(crate) fn forget_borders(&mut self) {
+        self.reading.borders.clear();
     }
 
     /// Number of soft pixels.

@@ -35,5 +35,27 @@ pub(crate) fn noise_level<T: Real>(image: &ImageView<'_, T>, differences: &mut V
     }
     let middle = differences.len() / 2;
     let order = |a: &T, b: &T| a.partial_cmp(b).unwrap_or(core::cmp::Ordering::Equal);
-    *differences.select_nth_unstable_by(middle, order).1 / T::of(NORMAL_MEDIAN)
+    let median = *differences.select_nth_unstable_by(middle, order).1;
+    spread_ties(differences, median) / T::of(NORMAL_MEDIAN)
+}
+
+/// The median as if equal values, of a picture of few bits, were spread evenly around theirs.
+fn spread_ties<T: Real>(differences: &[T], median: T) -> T {
+    let tie = T::of(1e-5);
+    let (mut below, mut equal, mut next) = (0_usize, 0_usize, T::infinity());
+    for &value in differences {
+        if value < median - tie {
+            below += 1;
+        } else if value <= median + tie {
+            equal += 1;
+        } else {
+            next = next.min(value);
+        }
+    }
+    if median <= tie || !next.is_finite() || equal == 0 {
+        return median;
+    }
+    let half = T::of(0.5);
+    let share = (half * T::of_usize(differences.len()) - T::of_usize(below)) / T::of_usize(equal);
+    median + (next - median) * (share - half)
 }

@@ -43,6 +43,9 @@ fn the_noise_level_is_found() {
         add_noise(&mut image, sigma);
         let found = noise_level(&image.view(), &mut Vec::new());
         assert!((found / sigma - 1.0).abs() < 0.1, "{found} is not {sigma}");
+        image.data_mut().iter_mut().for_each(|value| *value = (*value * 255.0).round() / 255.0);
+        let found = noise_level(&image.view(), &mut Vec::new());
+        assert!((found / sigma - 1.0).abs() < 0.1, "{found} of 8 bits is not {sigma}");
     }
 }
 
