@@ -70,6 +70,19 @@ impl<T: Real> EdgeProfile<T> {
         Self::distance(T::of(HARD_SIGMA_PX * 2.0) / unit_px)
     }
 
+    /// The same edges in a frame with `factor` times as many units per length: what a window of the image sees, whose
+    /// shorter side is its own unit.
+    #[must_use]
+    pub fn magnified(&self, factor: T) -> Self {
+        let per_unit = match self.law {
+            EdgeLaw::SquaredDistance => factor * factor,
+            EdgeLaw::Distance => factor,
+            EdgeLaw::Area => T::one(),
+        };
+        let [offset, sigma, cut] = [self.offset, self.sigma, self.cut].map(|v| v * per_unit);
+        Self { law: self.law, offset, sigma, cut }
+    }
+
     /// Signed distance (positive outside) at which coverage is 1/2, scene units.
     #[must_use]
     pub fn half_coverage(&self) -> T {

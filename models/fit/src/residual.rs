@@ -1,13 +1,51 @@
 //! What a rendering leaves unexplained.
 
 use alloc::vec::Vec;
+use core::cell::Cell;
+use core::ops::Range;
 
 use dvp_core::{ImageSize, ImageView, Real, simd};
+
+/// A rectangle of pixels inside an image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct PixelBox {
+    /// First column and row.
+    pub(crate) low: [usize; 2],
+    /// Last column and row, plus 1.
+    pub(crate) high: [usize; 2],
+}
+
+impl PixelBox {
+    pub(crate) fn width(&self) -> usize {
+        self.high[0] - self.low[0]
+    }
+
+    pub(crate) fn height(&self) -> usize {
+        self.high[1] - self.low[1]
+    }
+
+    pub(crate) fn pixels(&self) -> usize {
+        self.width() * self.height()
+    }
+
+    pub(crate) fn meets(&self, other: &Self) -> bool {
+        (0..2).all(|c| self.low[c] < other.high[c] && other.low[c] < self.high[c])
+    }
+
+    /// The indices of each row, in an image of `width` columns.
+    pub(crate) fn rows(self, width: usize) -> impl Iterator<Item = Range<usize>> {
+        (self.low[1]..self.high[1]).map(move |row| row * width + self.low[0]..row * width + self.high[0])
+    }
+}
 
 /// Largest channel difference per pixel between an image and a rendering.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Residual<T> {
     largest: Vec<T>,
+    width: usize,
+    /// Bits of each row under the noise last asked for; NaN where the row has changed since.
+    bits: Vec<Cell<f64>>,
+    noise: Cell<f64>,
 }
 
 impl<T: Real> Residual<T> {
@@ -15,14 +53,42 @@ impl<T: Real> Residual<T> {
     pub(crate) fn measure(&mut self, image: &ImageView<'_, T>, rendered: &[T]) -> T {
         let pixels = image.size().pixels();
         self.largest.resize(pixels, T::zero());
+        self.width = image.size().width();
+        self.bits.clear();
+        self.bits.resize(image.size().height(), Cell::new(f64::NAN));
         simd::dispatch(Measure { image, rendered, largest: &mut self.largest }) / T::of_usize(3 * pixels)
+    }
+
+    /// Compares in a window; elsewhere the last comparison stands.
+    pub(crate) fn measure_window(&mut self, image: &ImageView<'_, T>, rendered: &[T], window: PixelBox) {
+        let plane = image.size().pixels();
+        let channels: [(&[T], &[T]); 3] =
+            core::array::from_fn(|c| (image.channel(c), &rendered[c * plane..(c + 1) * plane]));
+        for line in window.rows(self.width) {
+            for at in line {
+                let [r, g, b] = channels.map(|(image, rendered)| (image[at] - rendered[at]).abs());
+                self.largest[at] = r.max(g).max(b);
+            }
+        }
+        self.bits[window.low[1]..window.high[1]].iter().for_each(|row| row.set(f64::NAN));
     }
 
     /// Bits of what is unexplained: half the squared largest channel difference of each pixel in units of `noise`,
     /// capped at 24 (a pixel may be written down as it is).
     pub(crate) fn bits(&self, noise: T) -> f64 {
         let scale = T::of(0.5 * core::f64::consts::LOG2_E) / (noise * noise);
-        self.largest.iter().map(|&off| (off * off * scale).min(T::of(24.0)).as_f64()).sum()
+        if self.noise.replace(noise.as_f64()).to_bits() != noise.as_f64().to_bits() {
+            self.bits.iter().for_each(|row| row.set(f64::NAN));
+        }
+        let of_pixel = |&off: &T| (off * off * scale).min(T::of(24.0)).as_f64();
+        let rows = self.bits.iter().zip(self.largest.chunks_exact(self.width.max(1)));
+        rows.map(|(row, line)| {
+            if row.get().is_nan() {
+                row.set(line.iter().map(of_pixel).sum());
+            }
+            row.get()
+        })
+        .sum()
     }
 
     /// Share of the variance of `image` that neither `rendered` nor noise of standard deviation `noise` explains, [0, 1].

@@ -2,20 +2,22 @@
 //!
 //! `pieces` joins what another object cuts in two, `order` decides which objects are in front, `known` poses the
 //! prototypes of a bank, `unknown` fits free outlines, `twins` splits what is several objects of one color; `run` is what
-//! they share: rendering, colors, pruning, and the doubt that goes with the result.
+//! they share: rendering (`shown`: only where something changed), colors, pruning, and the doubt that goes with the result.
 
 mod known;
 mod order;
 mod pieces;
 mod readings;
 mod run;
+mod shown;
+#[cfg(test)]
+mod tests;
 mod twins;
 mod unknown;
 
 use alloc::vec::Vec;
 
-use dvp_core::render::contour::ContourRenderer;
-use dvp_core::render::{Compositing, EdgeProfile, Renderer};
+use dvp_core::render::{Compositing, EdgeProfile};
 use dvp_core::shape::{OutlineBasis, REFERENCE_VERTICES, SYMMETRY_TOLERANCE, Symmetry};
 use dvp_core::{Drawing, Efd, ImageView, Real};
 
@@ -33,6 +35,7 @@ use crate::split::simple_shapes::SimpleShapes;
 use crate::split::twins::TwinScratch;
 use crate::{Fit, FitError, FitOptions};
 use run::{Care, Run};
+use shown::Shown;
 
 /// Fits images; prepared once from the options, shared between threads.
 #[derive(Clone, Debug)]
@@ -51,8 +54,7 @@ pub struct FitScratch<T: Real> {
     joint: JointScratch<T>,
     drawing: Drawing<T>,
     outline: Vec<[T; 2]>,
-    render: <ContourRenderer<T> as Renderer<T>>::Scratch,
-    pixels: Vec<T>,
+    shown: Shown<T>,
     residual: Residual<T>,
     start: StartScratch<T>,
     free: GrowScratch<T>,
@@ -79,8 +81,7 @@ impl<T: Real> Default for FitScratch<T> {
             joint: JointScratch::default(),
             drawing: Drawing::default(),
             outline: Vec::new(),
-            render: Default::default(),
-            pixels: Vec::new(),
+            shown: Shown::default(),
             residual: Residual::default(),
             start: StartScratch::default(),
             free: GrowScratch::default(),
@@ -141,6 +142,7 @@ impl<T: Real> Fitter<T> {
         if let Err(dvp_core::image::ImageError::NotFinite { index }) = ImageView::new(image.size(), image.data()) {
             return Err(FitError::NotFinite { index });
         }
+        scratch.shown.forget();
         self.best_reading(image, scratch)
     }
 

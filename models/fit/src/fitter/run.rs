@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use dvp_core::contour::contains;
 use dvp_core::render::contour::ContourRenderer;
-use dvp_core::render::{Compositing, EdgeLaw, EdgeProfile, Renderer};
+use dvp_core::render::{Compositing, EdgeLaw, EdgeProfile};
 use dvp_core::shape::REFERENCE_VERTICES;
 use dvp_core::{ImageView, Object, Real, Scene};
 
@@ -87,11 +87,8 @@ impl<T: Real> Run<'_, T> {
 
     /// Renders the drawing of the scratch and keeps its residual; returns the mean absolute error.
     pub(super) fn compare_drawing(&mut self) -> Result<T, FitError> {
-        let scratch = &mut *self.scratch;
-        scratch.pixels.resize(self.image.data().len(), T::zero());
-        let renderer = ContourRenderer::new(self.edge, self.compositing);
-        renderer.render(&scratch.drawing, self.image.size(), &mut scratch.render, &mut scratch.pixels)?;
-        Ok(scratch.residual.measure(&self.image, &scratch.pixels))
+        let FitScratch { drawing, shown, residual, .. } = &mut *self.scratch;
+        shown.compare(drawing, &self.image, (self.edge, self.compositing), residual)
     }
 
     /// Pixels within `reach_px` of a point that the last rendering visibly misses.
@@ -135,7 +132,7 @@ impl<T: Real> Run<'_, T> {
             self.compare_drawing()?;
         }
         let noise = self.noise();
-        let unexplained = Residual::unexplained(&self.image, &self.scratch.pixels, noise);
+        let unexplained = Residual::unexplained(&self.image, self.scratch.shown.pixels(), noise);
         let stop =
             if scene.objects.is_empty() && found.stop != StopReason::NotFlat { StopReason::Empty } else { found.stop };
         Ok(Fit { scene, loss, steps: found.steps, stop, covariance, ambiguity, unexplained, noise, bits })
@@ -182,7 +179,7 @@ impl<T: Real> Run<'_, T> {
         scratch.colors.coverage.resize(values, T::zero());
         let renderer = ContourRenderer::new(self.edge, scene.compositing);
         let coverage = &mut scratch.colors.coverage[..values];
-        renderer.object_coverage(&scratch.drawing, self.image.size(), &mut scratch.render, coverage)?;
+        renderer.object_coverage(&scratch.drawing, self.image.size(), scratch.shown.render_scratch(), coverage)?;
         let mut colors: Vec<[T; 3]> = scene.objects.iter().map(|object| object.color).collect();
         colors.push(scene.background);
         let pixels = scratch.segmentation.soft_pixels(self.image.size().width());

@@ -23,7 +23,9 @@ const LEAST_SILHOUETTE: f64 = 0.5;
 const OUTLINE_NOISE_PX: f64 = 0.7;
 /// Outlines closer than this (root mean square, radii) are not told apart, however large.
 const SAME_SHAPE: f64 = 0.02;
-/// Outlines farther apart than this are different shapes, however noisy the fits.
+/// Typical distances larger than this are those of different shapes, not of one.
+const LARGEST_TYPICAL: f64 = 0.06;
+/// Outlines farther apart than this are different shapes, however small the objects.
 const OTHER_SHAPE: f64 = 0.15;
 /// Distances of members of one shape, in typical distances to the nearest other member.
 const SPREAD: f64 = 2.0;
@@ -149,10 +151,10 @@ pub fn learn(members: &[Member], options: &PrototypeOptions) -> Result<Learned, 
     used.sort_unstable();
     let distance = |i: usize, j: usize| members[i].form.distance(&members[j].form, options.mirror);
     let all = DistanceMatrix::new(used.len(), |i, j| distance(used[i], used[j]));
-    let typical = SPREAD * median(&neighbor_distances(&all, 1));
+    let typical = (SPREAD * median(&neighbor_distances(&all, 1))).min(LARGEST_TYPICAL);
     let spread = |i: usize, j: usize| {
         let from_pixels = OUTLINE_NOISE_PX * Float::hypot(members[i].radius_px.recip(), members[j].radius_px.recip());
-        typical.max(from_pixels).clamp(SAME_SHAPE, OTHER_SHAPE)
+        typical.max(from_pixels.min(OTHER_SHAPE)).max(SAME_SHAPE)
     };
     // In units of how far members of one shape may be apart.
     let relative = DistanceMatrix::new(used.len(), |i, j| all.row(i)[j] / spread(used[i], used[j]));
