@@ -106,15 +106,15 @@ fn kind_and_width_are_found_and_painted() {
         (96, "reference", 0.0, 0.48, 0.0012, 0.0045),
         (96, "hard", 0.0, 0.11, 0.0006, 0.0040),
         (96, "area", 0.0, 0.83, 0.0011, 0.0017),
-        (96, "blur", 0.5, gaussian(0.5), 0.0018, 0.0063),
-        (96, "blur", 1.0, gaussian(1.0), 0.0023, 0.0174),
-        (96, "blur", 1.5, gaussian(1.5), 0.0032, 0.0275),
+        (96, "blur", 0.5, gaussian(0.5), 0.0018, 0.0036),
+        (96, "blur", 1.0, gaussian(1.0), 0.0023, 0.0052),
+        (96, "blur", 1.5, gaussian(1.5), 0.0032, 0.0060),
         (200, "reference", 0.0, 1.01, 0.0008, 0.0020),
         (200, "hard", 0.0, 0.11, 0.0003, 0.0020),
         (200, "area", 0.0, 0.83, 0.0007, 0.0011),
-        (200, "blur", 0.5, gaussian(0.5), 0.0007, 0.0027),
-        (200, "blur", 1.0, gaussian(1.0), 0.0010, 0.0083),
-        (200, "blur", 1.5, gaussian(1.5), 0.0014, 0.0133),
+        (200, "blur", 0.5, gaussian(0.5), 0.0007, 0.0017),
+        (200, "blur", 1.0, gaussian(1.0), 0.0010, 0.0025),
+        (200, "blur", 1.5, gaussian(1.5), 0.0014, 0.0032),
     ] {
         let found = fitted(folder.path(), kind, deviation, side);
         let what = format!("{side} {kind} {deviation}: {found:?}");
