@@ -109,6 +109,11 @@ impl<T: Real> Residual<T> {
         if total > missed { missed / total } else { f64::from(u8::from(missed > 0.0)) }
     }
 
+    /// How many of `pixels` are off by more than `threshold`.
+    pub(crate) fn count_off(&self, pixels: &[usize], threshold: T) -> usize {
+        pixels.iter().filter(|&&index| self.largest.get(index).is_some_and(|&off| off > threshold)).count()
+    }
+
     /// Pixels within `reach` (px, a square) of `center` that are off by more than `threshold`.
     pub(crate) fn count_above(&self, size: ImageSize, center: [T; 2], reach: T, threshold: T) -> usize {
         let bounds = |middle: T, extent: usize| {

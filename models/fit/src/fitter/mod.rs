@@ -17,7 +17,7 @@ mod unknown;
 
 use alloc::vec::Vec;
 
-use dvp_core::render::{Compositing, EdgeProfile};
+use dvp_core::render::{Compositing, EdgeLaw};
 use dvp_core::shape::{OutlineBasis, REFERENCE_VERTICES, SYMMETRY_TOLERANCE, Symmetry};
 use dvp_core::{Drawing, Efd, ImageView, Real};
 
@@ -151,9 +151,11 @@ impl<T: Real> Fitter<T> {
         if let Some(known) = self.options.compositing {
             return (known, None);
         }
-        let reference = *kind == EdgeKind::Profile(EdgeProfile::reference());
+        let reference = matches!(kind, EdgeKind::Profile(edge) if edge.law == EdgeLaw::SquaredDistance);
         if evidence.direct >= DIRECT_PIXELS {
-            if evidence.mean > 0 { (Compositing::Blend, Some(Compositing::Over)) } else { (Compositing::Over, None) }
+            // Objects that mix in a stripe too narrow to be flat leave no mean color.
+            let doubt = evidence.mean > 0 || reference;
+            if doubt { (Compositing::Blend, Some(Compositing::Over)) } else { (Compositing::Over, None) }
         } else if evidence.mean == 0 && evidence.inside > 0 && !reference {
             // Drawings show one thing on another; only the reference renderer's data mixes their colors.
             (Compositing::Over, None)

@@ -4,11 +4,13 @@
 //! A clean picture pays for an estimate of its noise and for counting its soft pixels. Others are read as the estimate says;
 //! where both a clean reading and one freed from noise are possible, the shorter description wins, at one noise level.
 
+use alloc::vec::Vec;
+
 use dvp_core::render::{Compositing, EdgeProfile};
 use dvp_core::{ImageView, Real};
 
-use super::run::{Care, Run};
-use super::{FitScratch, Fitter};
+use super::run::{Care, Run, VISIBLE_ERROR};
+use super::{DIRECT_PIXELS, FitScratch, Fitter};
 use crate::segment::{EdgeKind, NoisyOptions, SegmentOptions, noise_level};
 use crate::{Fit, FitError, StopReason};
 
@@ -145,6 +147,11 @@ impl<T: Real> Fitter<T> {
         }
         scratch.segmentation.interpret(Compositing::Blend);
         let evidence = scratch.segmentation.evidence();
+        let direct = if evidence.direct < DIRECT_PIXELS {
+            Vec::new()
+        } else {
+            scratch.segmentation.direct_pixels(image.size().width())
+        };
         let unit = T::of_usize(image.size().unit_px());
         let kinds = || scratch.segmentation.edges(&image).kinds(unit);
         let (kind, mut other) = self.options.edge.map_or_else(kinds, |edge| (EdgeKind::of(edge), None));
@@ -160,6 +167,10 @@ impl<T: Real> Fitter<T> {
             for compositing in [Some(compositing), second].into_iter().flatten() {
                 let fit = self.fit_with(image, kind, compositing, care, scratch)?;
                 best = Some(best.filter(|best| best.bits <= fit.bits).unwrap_or(fit));
+                // Objects that hide one another cannot pass for ones that mix.
+                if 2 * scratch.residual.count_off(&direct, T::of(VISIBLE_ERROR)) < direct.len() {
+                    break;
+                }
             }
         }
         best.ok_or(FitError::Setting { what: "edge", must: "known" })

@@ -57,12 +57,14 @@ pub(super) struct FoundObject<T> {
 }
 
 /// A rendering that misses a pixel by this much in some channel does so visibly.
-const VISIBLE_ERROR: f64 = 0.03;
+pub(super) const VISIBLE_ERROR: f64 = 0.03;
 /// Under noise, this many standard deviations are visible; a picture has about one such pixel in 5000 by chance.
 const VISIBLE_NOISE: f64 = 4.0;
 /// Objects of fewer flat pixels, or of less contrast, must show that they pay for their description.
 const SURE_PIXELS: usize = 12;
 const SURE_CONTRAST: f64 = 0.03;
+/// Standard deviation of what the outlines of such objects miss.
+const ROUGH_NOISE: f64 = 0.015;
 /// The same in units of the noise.
 const SURE_NOISE: f64 = 10.0;
 /// A twin is worth telling if its squared error is below this many times that of the chosen prototype.
@@ -110,14 +112,15 @@ impl<T: Real> Run<'_, T> {
         scene.draw(&self.fitter.outlines, &mut self.scratch.drawing)?;
         let mut loss = self.compare_drawing()?;
         let mut bits = self.bits(&scene);
+        let mut rough_bits = self.rough_bits(&scene);
         let mut drawn = true;
         for at in (0..scene.objects.len()).rev() {
             if self.is_doubtful(&scene, &found.objects[at]) {
                 let object = scene.objects.remove(at);
                 scene.draw(&self.fitter.outlines, &mut self.scratch.drawing)?;
-                let without = (self.compare_drawing()?, self.bits(&scene));
-                if without.1 < bits {
-                    (loss, bits) = without;
+                let without = (self.compare_drawing()?, self.bits(&scene), self.rough_bits(&scene));
+                if without.2 < rough_bits {
+                    (loss, bits, rough_bits) = without;
                     found.objects.remove(at);
                     drawn = true;
                 } else {
@@ -129,6 +132,7 @@ impl<T: Real> Run<'_, T> {
         let covariance = self.covariances(&scene, &found)?;
         let ambiguity = self.ambiguities(&scene, &found);
         if !drawn {
+            // The residual of the scratch is that of the scene found.
             self.compare_drawing()?;
         }
         let noise = self.noise();
@@ -201,6 +205,13 @@ impl<T: Real> Run<'_, T> {
     /// Description length of the scene plus that of the residual last measured.
     fn bits(&self, scene: &Scene<T>) -> f64 {
         scene_bits(scene, self.fitter.prototypes.len()) + self.scratch.residual.bits(self.noise())
+    }
+
+    /// As [`Self::bits`], but a pixel that is nearly right counts as explained: outlines of a few pixels are not fitted
+    /// as exactly as those of many.
+    fn rough_bits(&self, scene: &Scene<T>) -> f64 {
+        let noise = self.noise().max(T::of(ROUGH_NOISE));
+        scene_bits(scene, self.fitter.prototypes.len()) + self.scratch.residual.bits(noise)
     }
 
     fn is_doubtful(&self, scene: &Scene<T>, part: &FoundObject<T>) -> bool {

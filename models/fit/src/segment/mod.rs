@@ -3,7 +3,7 @@
 //! In: an image. Out: background color and, per object, color, moments and [`EdgeSample`]s. A soft pixel between two
 //! regions tells the coverage of the object whose outline passes there, and the edge profile turns coverage into the
 //! signed distance from the pixel center to the outline. `flat` finds regions, `region` measures them, `transition` places
-//! soft pixels between them, `interpret` decides which objects cover which region.
+//! soft pixels between them, `thin` finds what has no flat pixel, `interpret` decides which objects cover which region.
 
 mod edge_kind;
 mod flat;
@@ -13,6 +13,7 @@ mod region;
 mod robust;
 #[cfg(test)]
 mod tests;
+mod thin;
 mod transition;
 
 use alloc::vec::Vec;
@@ -118,6 +119,15 @@ impl<T: Real> Segmentation<T> {
         region::measure(image, &self.map, T::zero(), &mut self.regions, &mut self.region_scratch);
         let tolerance = options.line_tolerance;
         transition::find(image, &self.map, &self.regions, tolerance, &mut self.soft, &mut self.transitions);
+        let thin = thin::label_thin(image, &mut self.map, &self.regions, &self.soft, tolerance);
+        if let Some(thin) = thin {
+            region::measure(image, &self.map, T::zero(), &mut self.regions, &mut self.region_scratch);
+            let first = self.regions.len() - thin.len();
+            for (region, color) in self.regions[first..].iter_mut().zip(thin) {
+                region.color = color;
+            }
+            transition::find(image, &self.map, &self.regions, tolerance, &mut self.soft, &mut self.transitions);
+        }
         self.noise = T::of(PIXEL_NOISE);
         self.compressed = false;
         self.reading.prepare(&self.regions, &self.transitions)
@@ -306,6 +316,13 @@ impl<T: Real> Segmentation<T> {
     /// Colors of all flat regions.
     pub(crate) fn region_colors(&self) -> impl Iterator<Item = [T; 3]> + '_ {
         self.regions.iter().map(|region| region.color)
+    }
+
+    /// Indices of the pixels that speak for one object hiding another; to be asked after interpreting as blended.
+    pub(crate) fn direct_pixels(&self, width: usize) -> Vec<usize> {
+        let pairs = self.reading.direct_pairs(&self.regions);
+        let direct = self.transitions.iter().filter(|transition| pairs.contains(&transition.pair));
+        direct.map(|transition| transition.pixel[1] as usize * width + transition.pixel[0] as usize).collect()
     }
 
     /// Indices of the pixels between two regions, for an image of `width` columns.

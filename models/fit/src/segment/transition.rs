@@ -6,6 +6,7 @@ use dvp_core::{ImageView, Real};
 
 use super::flat::FlatMap;
 use super::region::Region;
+use super::thin::Leftover;
 
 /// A pixel whose color lies on the line between the colors of two regions.
 #[derive(Clone, Copy, Debug)]
@@ -23,18 +24,31 @@ pub(crate) struct Transition<T> {
 /// Soft pixel with the nearest regions to the left, right, above and below (0: none, else region + 1), and the lengths
 /// of the soft runs through it.
 #[derive(Clone, Copy, Debug)]
-struct Soft {
-    pixel: [u32; 2],
-    ends: [u32; 4],
+pub(crate) struct Soft {
+    pub(crate) pixel: [u32; 2],
+    pub(crate) ends: [u32; 4],
     runs: [u32; 2],
+}
+
+impl Soft {
+    /// The region on both sides of the pixel, or on one side with the border of the image on the other.
+    fn host(&self) -> Option<u32> {
+        let [left, right, up, down] = self.ends;
+        let sides = [(left, right), (up, down)];
+        let both = sides.into_iter().find(|&(a, b)| a == b && a != 0);
+        let (a, b) = both.or_else(|| sides.into_iter().find(|&(a, b)| (a == 0) != (b == 0)))?;
+        Some(a.max(b))
+    }
 }
 
 /// Memory of [`find`].
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SoftScratch<T> {
-    soft: Vec<Soft>,
+    pub(crate) soft: Vec<Soft>,
     column: Vec<(u32, u32)>,
     offs: Vec<T>,
+    /// Soft pixels that lie between no two regions.
+    pub(crate) leftover: Vec<Leftover>,
 }
 
 impl<T: Real> SoftScratch<T> {
@@ -78,6 +92,7 @@ pub(crate) fn find<T: Real>(
 ) {
     collect_soft(image.size().width(), image.size().height(), map, scratch);
     transitions.clear();
+    scratch.leftover.clear();
     let width = image.size().width();
     for soft in &scratch.soft {
         let color = image.pixel(soft.pixel[1] as usize * width + soft.pixel[0] as usize);
@@ -99,12 +114,14 @@ pub(crate) fn find<T: Real>(
         }
         if let Some((_, transition)) = best {
             transitions.push(transition);
+        } else if let Some(host) = soft.host() {
+            scratch.leftover.push(Leftover { pixel: soft.pixel, host });
         }
     }
 }
 
 /// Position along the line from `from` to `to`, and the largest channel distance from it.
-fn along<T: Real>(color: [T; 3], from: [T; 3], to: [T; 3]) -> (T, T) {
+pub(crate) fn along<T: Real>(color: [T; 3], from: [T; 3], to: [T; 3]) -> (T, T) {
     let (mut dot, mut length) = (T::zero(), T::zero());
     for c in 0..3 {
         let d = to[c] - from[c];

@@ -83,6 +83,14 @@ pub(crate) struct Evidence {
     pub(crate) inside: u32,
 }
 
+/// What the soft pixels between two regions say of compositing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Touch {
+    Mean,
+    Direct,
+    Inside,
+}
+
 /// The reading of all regions.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Reading<T> {
@@ -171,26 +179,42 @@ impl<T: Real> Reading<T> {
     /// What the regions say of compositing; to be asked after [`Self::read_blend`].
     pub(crate) fn evidence(&self, regions: &[Region<T>]) -> Evidence {
         let mut evidence = Evidence::default();
-        let single = |i: usize| self.classes[i] != self.ground && self.overlaps[i].is_none();
         for &([a, b], pixels) in &self.contacts {
-            let [a, b] = [a as usize, b as usize];
-            if self.overlaps[a].is_some() || self.overlaps[b].is_some() {
-                evidence.mean += pixels;
-            } else if self.hole(regions, a).is_some() || self.hole(regions, b).is_some() {
-                evidence.direct += pixels;
-            } else if single(a) && single(b) && self.classes[a] != self.classes[b] {
-                let inside =
-                    |i: usize| self.lies_inside(regions, i).map(|outer| [regions[i].color, regions[outer].color]);
-                if let Some([color, host]) = inside(a).or_else(|| inside(b)) {
-                    // What no color mixed with the host's can show lies on top of it.
-                    let mixed = is_color(mixed_in(color, host));
-                    *if mixed { &mut evidence.inside } else { &mut evidence.direct } += pixels;
-                } else if !self.mix_somewhere(a, b) {
-                    evidence.direct += pixels;
-                }
+            match self.touch(regions, a as usize, b as usize) {
+                Some(Touch::Mean) => evidence.mean += pixels,
+                Some(Touch::Direct) => evidence.direct += pixels,
+                Some(Touch::Inside) => evidence.inside += pixels,
+                None => {}
             }
         }
         evidence
+    }
+
+    /// What two regions that touch say of compositing.
+    fn touch(&self, regions: &[Region<T>], a: usize, b: usize) -> Option<Touch> {
+        let single = |i: usize| self.classes[i] != self.ground && self.overlaps[i].is_none();
+        if self.overlaps[a].is_some() || self.overlaps[b].is_some() {
+            return Some(Touch::Mean);
+        }
+        if self.hole(regions, a).is_some() || self.hole(regions, b).is_some() {
+            return Some(Touch::Direct);
+        }
+        if !single(a) || !single(b) || self.classes[a] == self.classes[b] {
+            return None;
+        }
+        let inside = |i: usize| self.lies_inside(regions, i).map(|outer| [regions[i].color, regions[outer].color]);
+        match inside(a).or_else(|| inside(b)) {
+            // What no color mixed with the host's can show lies on top of it.
+            Some([color, host]) if is_color(mixed_in(color, host)) => Some(Touch::Inside),
+            Some(_) => Some(Touch::Direct),
+            None => (!self.mix_somewhere(a, b)).then_some(Touch::Direct),
+        }
+    }
+
+    /// Pairs of regions that speak for one object hiding the other; to be asked after [`Self::read_blend`].
+    pub(crate) fn direct_pairs(&self, regions: &[Region<T>]) -> Vec<[u32; 2]> {
+        let direct = |&[a, b]: &[u32; 2]| self.touch(regions, a as usize, b as usize) == Some(Touch::Direct);
+        self.contacts.iter().map(|(pair, _)| *pair).filter(direct).collect()
     }
 
     /// Whether some region shows the mean of the colors of regions `a` and `b`.
