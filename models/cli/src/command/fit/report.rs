@@ -31,6 +31,10 @@ pub(super) struct FoundScene {
     steps: usize,
     stop: &'static str,
     edge: EdgeReport,
+    /// Share of the picture's variance that neither the scene nor noise explains; null for methods that do not count it.
+    unexplained: Option<f64>,
+    /// Standard deviation taken for noise; null for methods that do not estimate it.
+    noise: Option<f32>,
     /// Description length; null for methods that do not count it.
     bits: Option<f64>,
     ambiguity: Vec<AmbiguityReport>,
@@ -84,9 +88,12 @@ impl FoundScene {
                 StopReason::StepLimit => "step limit",
                 StopReason::Stalled => "stalled",
                 StopReason::Empty => "empty",
+                StopReason::NotFlat => "not flat",
                 _ => "other",
             },
             edge: EdgeReport::of(&fit.scene.edge, size),
+            unexplained: fit.unexplained.is_finite().then_some(fit.unexplained),
+            noise: fit.noise.is_finite().then_some(fit.noise),
             bits: fit.bits.is_finite().then_some(fit.bits),
             ambiguity: fit.ambiguity.iter().map(AmbiguityReport::of).collect(),
             covariance: fit.covariance.clone(),
