@@ -124,9 +124,10 @@ fn other_shapes() {
 #[test]
 fn hard_edges_and_occlusion() {
     let truth = mdshr_bank();
-    let pictures = pictures(&SceneSettings::multi_dsprites(), &truth, 64, 96);
+    // 20 to 50 px across: at 64 x 64, half as large, hard pixels leave the shapes of the smallest open.
+    let pictures = pictures(&SceneSettings::multi_dsprites(), &truth, 128, 48);
     let learned = learn_from(&pictures);
     assert_eq!(learned.prototypes.len(), 3);
     let off = distances(&truth, &learned.bank());
-    assert!(off.iter().all(|&d| d < 0.08), "{off:?}");
+    assert!(off.iter().all(|&d| d < 0.04), "{off:?}");
 }
