@@ -35,21 +35,29 @@ pub struct Drawn {
 /// # Errors
 /// A sentence, if the text is no such SVG.
 pub fn draw_with_labels(text: &str) -> Result<Drawn, String> {
-    let tree = tree(text)?;
-    let size = tree.size().to_int_size();
-    let (width, height) = (size.width(), size.height());
-    let mut pixels = Pixmap::new(width, height).ok_or("an empty picture")?;
-    resvg::render(&tree, Transform::identity(), &mut pixels.as_mut());
-    let straight = pixels.pixels().iter().flat_map(|pixel| {
-        let color = pixel.demultiply();
-        [color.red(), color.green(), color.blue(), color.alpha()]
-    });
-    let picture = RgbaImage::from_raw(width, height, straight.collect()).ok_or("an empty picture")?;
-    let mut labels = ImageBuffer::new(width, height);
+    let picture = draw_enlarged(text, 1)?;
+    let mut labels = ImageBuffer::new(picture.width(), picture.height());
     for (label, mask) in masks(text)? {
         label_covered(&mask, label, &mut labels)?;
     }
     Ok(Drawn { picture, labels })
+}
+
+/// Draws a picture with `factor` pixels per pixel along each side.
+///
+/// # Errors
+/// A sentence, if the text is no SVG.
+pub fn draw_enlarged(text: &str, factor: u8) -> Result<RgbaImage, String> {
+    let tree = tree(text)?;
+    let size = tree.size().to_int_size();
+    let [width, height] = [size.width(), size.height()].map(|side| side * u32::from(factor));
+    let mut pixels = Pixmap::new(width, height).ok_or("an empty picture")?;
+    resvg::render(&tree, Transform::from_scale(factor.into(), factor.into()), &mut pixels.as_mut());
+    let straight = pixels.pixels().iter().flat_map(|pixel| {
+        let color = pixel.demultiply();
+        [color.red(), color.green(), color.blue(), color.alpha()]
+    });
+    Ok(RgbaImage::from_raw(width, height, straight.collect()).ok_or("an empty picture")?)
 }
 
 fn tree(text: &str) -> Result<Tree, String> {

@@ -27,7 +27,7 @@ mod score;
 mod spoil;
 
 pub use cases::{CASES, Case, Finish, Source};
-pub use drawn::{Drawn, draw_with_labels};
+pub use drawn::{Drawn, draw_enlarged, draw_with_labels};
 pub use random::{cropped, crowd, mds_hr, paint_mds_hr, twins};
 pub use score::{CaseScore, PictureScore, score_case, score_folder, table_head};
 pub use spoil::{add_noise, blurred, jpeg};
