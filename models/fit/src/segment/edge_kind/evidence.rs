@@ -96,7 +96,7 @@ impl<T: Real> EdgeEvidence<T> {
         }
         let count = T::of_usize(soft).as_f64();
         let lopsided = (T::of_usize(self.high) - T::of_usize(self.low)).as_f64() / count;
-        let least = (LOPSIDED - 3.0 * LOPSIDED_NOISE / count.sqrt()).min(LOPSIDED_LEAST);
+        let least = (LOPSIDED - 3.0 * LOPSIDED_NOISE / num_traits::Float::sqrt(count)).min(LOPSIDED_LEAST);
         // Edges along the grid show few coverages; where there are many, areas have far fewer high ones.
         let many = 20 * self.low > soft && 4 * self.middle > soft && 2 * self.high > self.middle;
         let surely = many && (other == EdgeKind::Area || lopsided > LOPSIDED_SURELY);
