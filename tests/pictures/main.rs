@@ -2,7 +2,9 @@
 //! scored by the command. A test per case; each prints its row of the table.
 #![expect(clippy::unwrap_used, reason = "what fails here is a failed test")]
 
-use std::collections::BTreeSet;
+extern crate alloc;
+
+use alloc::collections::BTreeSet;
 
 use dvp_tests::picture_set::{CASES, score_case, table_head};
 

@@ -138,6 +138,9 @@ fn agreement(a: &[bool], b: &[bool]) -> f64 {
 }
 
 /// The scene as the reference draws it, without seams.
+///
+/// # Panics
+/// If the scene cannot be drawn.
 #[must_use]
 pub fn paint(scene: &Scene<f32>) -> Image<f32> {
     let mut image = Image::zeros(size());
@@ -149,6 +152,9 @@ pub fn paint(scene: &Scene<f32>) -> Image<f32> {
 }
 
 /// The pixels each object owns.
+///
+/// # Panics
+/// If the scene cannot be drawn.
 #[must_use]
 pub fn ownership(scene: &Scene<f32>) -> Ownership {
     let drawing = draw(scene, &basis());
