@@ -97,12 +97,13 @@ impl<T: Real> Residual<T> {
         let (mut missed, mut total) = (0.0, 0.0);
         for channel in 0..3 {
             let values = image.channel(channel);
-            let mean = values.iter().copied().sum::<T>() / T::of_usize(pixels);
-            // Sums of rows: those of large pictures in single precision would lose what they add.
-            for (row, drawn) in values.chunks(1024).zip(rendered[channel * pixels..].chunks(1024)) {
-                total += row.iter().map(|&v| (v - mean) * (v - mean)).sum::<T>().as_f64();
-                missed += row.iter().zip(drawn).map(|(&v, &w)| (v - w) * (v - w)).sum::<T>().as_f64();
-            }
+            let mean = T::of(
+                simd::dispatch(Squares { values, drawn: values, mean: T::zero() })[2] / T::of_usize(pixels).as_f64(),
+            );
+            let drawn = &rendered[channel * pixels..(channel + 1) * pixels];
+            let sums = simd::dispatch(Squares { values, drawn, mean });
+            missed += sums[0];
+            total += sums[1];
         }
         let expected = (noise * noise).as_f64() * T::of_usize(3 * pixels).as_f64();
         let (missed, total) = ((missed - expected).max(0.0), total - expected);
@@ -129,6 +130,49 @@ impl<T: Real> Residual<T> {
             line[columns.clone()].iter().filter(|&&off| off > threshold).count()
         })
         .sum()
+    }
+}
+
+/// Sums of squared differences from a rendering, of those from a mean, and of the values.
+struct Squares<'a, T> {
+    values: &'a [T],
+    drawn: &'a [T],
+    mean: T,
+}
+
+/// Values summed in single precision: sums over large pictures would lose what they add.
+const BLOCK: usize = 1024;
+
+impl<T: Real> simd::Kernel for Squares<'_, T> {
+    type Output = [f64; 3];
+
+    #[inline(always)]
+    fn run(self) -> [f64; 3] {
+        let mut out = [0.0; 3];
+        for (values, drawn) in self.values.chunks(BLOCK).zip(self.drawn.chunks(BLOCK)) {
+            let mut sums = [[T::zero(); LANES]; 3];
+            for (values, drawn) in values.chunks(LANES).zip(drawn.chunks(LANES)) {
+                if let (Ok(values), Ok(drawn)) = (<&[T; LANES]>::try_from(values), <&[T; LANES]>::try_from(drawn)) {
+                    for i in 0..LANES {
+                        let (off, spread) = (values[i] - drawn[i], values[i] - self.mean);
+                        sums[0][i] += off * off;
+                        sums[1][i] += spread * spread;
+                        sums[2][i] += values[i];
+                    }
+                } else {
+                    for (&value, &drawn) in values.iter().zip(drawn) {
+                        let (off, spread) = (value - drawn, value - self.mean);
+                        sums[0][0] += off * off;
+                        sums[1][0] += spread * spread;
+                        sums[2][0] += value;
+                    }
+                }
+            }
+            for (total, sums) in out.iter_mut().zip(sums) {
+                *total += sums.into_iter().sum::<T>().as_f64();
+            }
+        }
+        out
     }
 }
 

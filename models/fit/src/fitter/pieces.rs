@@ -83,20 +83,27 @@ impl<T: Real> Run<'_, T> {
     /// Whether one shape that goes on behind what lies between explains all pieces for fewer bits; they are joined then.
     fn are_one(&mut self, pieces: &[u32]) -> bool {
         let covers = self.covers_of(pieces, 2);
-        let (mut behind, mut in_front, mut around) = (0.0, 0.0, 0.0);
-        for &cover in &covers {
-            around += self.bits_if_front(cover, pieces);
-            in_front += self.part_bits(cover);
-        }
-        for &piece in pieces {
-            behind += self.part_bits(piece);
-            in_front += self.bits_if_front(piece, &covers);
+        if covers.is_empty() {
+            return false;
         }
         let others = f64::from(u32::try_from(pieces.len() - 1).unwrap_or(u32::MAX));
-        let apart = OBJECT_BITS * others + in_front.min(behind + around);
-        // What covers the part between cannot be described for nothing.
-        if covers.is_empty() || around >= apart {
-            return false;
+        let mut apart = OBJECT_BITS * others;
+        for &piece in pieces {
+            apart += self.part_bits(piece);
+        }
+        // What the stretch between piece and cover adds to the one in front. One object is behind all of its covers; pieces
+        // on their own may be in front of some.
+        let mut around = 0.0;
+        for &cover in &covers {
+            let alone = self.part_bits(cover);
+            for &piece in pieces {
+                if self.touch(piece, cover) {
+                    let behind = self.bits_if_front(cover, &[piece]) - alone;
+                    let in_front = self.bits_if_front(piece, &[cover]) - self.part_bits(piece);
+                    around += behind;
+                    apart += behind.min(in_front);
+                }
+            }
         }
         let before = self.scratch.segmentation.join(pieces);
         let joined = self.part_bits(pieces[0]) + around;
@@ -105,6 +112,11 @@ impl<T: Real> Run<'_, T> {
         }
         self.scratch.segmentation.part(before);
         false
+    }
+
+    fn touch(&self, a: u32, b: u32) -> bool {
+        let objects = [a.min(b), a.max(b)];
+        self.scratch.segmentation.borders().iter().any(|border| border.objects == objects)
     }
 
     /// Bits of an object if it is in front of the others given.

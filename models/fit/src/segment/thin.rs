@@ -27,6 +27,9 @@ const SAME_COLOR: f64 = 0.008;
 /// A group this near to another region (px) is a part of it if it has its color, or a tip if its colors are on the way there.
 const TIP_REACH: usize = 2;
 
+/// Filters that sharpen leave a rim along an edge, off its color by at most this share of the edge's contrast.
+const OVERSHOOT: f64 = 0.25;
+
 /// A soft pixel that lies between no two regions.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Leftover {
@@ -178,7 +181,11 @@ fn read_group<T: Real>(
                 if (0..3).all(|c| (beside[c] - color[c]).abs() <= T::of(SAME_COLOR)) {
                     thin.parts.push(label);
                 } else {
-                    tip |= along(color, host_color(one), beside).1 <= tolerance;
+                    let host = host_color(one);
+                    let mirrored = core::array::from_fn(|c| host[c] + host[c] - color[c]);
+                    let (overshoot, off) = along(mirrored, host, beside);
+                    let rim = off <= tolerance + tolerance && overshoot < T::of(OVERSHOOT);
+                    tip |= rim || along(color, host, beside).1 <= tolerance;
                 }
             }
         }

@@ -32,7 +32,7 @@ const START_VERTICES: usize = 96;
 /// Rows and columns around the union while the intersection is traced.
 const MARGIN: usize = 2;
 /// Turn (radians) over four edges from which an outline bends inward.
-const INWARD: f64 = 0.06;
+const INWARD: f64 = 0.12;
 const SHARPLY_INWARD: f64 = 0.2;
 /// Nearer to the image border (px) an outline is held by samples on one side only.
 const BORDER_PX: f64 = 3.0;

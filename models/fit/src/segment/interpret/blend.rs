@@ -137,7 +137,7 @@ impl<T: Real> Reading<T> {
 
     /// The object that region `i` lies inside, if it touches nothing else, and the color that makes `i` the mean of both.
     fn host(&self, regions: &[Region<T>], i: usize) -> Option<(u32, [T; 3])> {
-        let outer = self.lies_inside(regions, i)?;
+        let outer = self.lies_mostly_inside(regions, i)?;
         let [host] = *self.covers[outer].members() else { return None };
         let color = mixed_in(regions[i].color, regions[outer].color);
         is_color(color).then(|| (host, within_unit(color)))

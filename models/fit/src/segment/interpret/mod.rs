@@ -119,6 +119,8 @@ const SAME_COLOR: f64 = 0.008;
 const BACKGROUND_CONTACT: f64 = 0.34;
 /// A hole touches the object around it with at least this share of its contacts.
 const HOLE_CONTACT: f64 = 0.6;
+/// What lies inside another region touches it with at least this share of its contacts.
+const MOSTLY_INSIDE: f64 = 0.75;
 
 fn distance<T: Real>(a: [T; 3], b: [T; 3]) -> T {
     (a[0] - b[0]).abs().max((a[1] - b[1]).abs()).max((a[2] - b[2]).abs())
@@ -202,7 +204,8 @@ impl<T: Real> Reading<T> {
         if !single(a) || !single(b) || self.classes[a] == self.classes[b] {
             return None;
         }
-        let inside = |i: usize| self.lies_inside(regions, i).map(|outer| [regions[i].color, regions[outer].color]);
+        let inside =
+            |i: usize| self.lies_mostly_inside(regions, i).map(|outer| [regions[i].color, regions[outer].color]);
         match inside(a).or_else(|| inside(b)) {
             // What no color mixed with the host's can show lies on top of it.
             Some([color, host]) if is_color(mixed_in(color, host)) => Some(Touch::Inside),
@@ -246,6 +249,13 @@ impl<T: Real> Reading<T> {
         let mut contacts = self.contacts_of(i);
         let (outer, _) = contacts.next()?;
         (contacts.next().is_none() && regions[i].border == 0).then_some(outer)
+    }
+
+    /// The region that region `i` lies inside, even if it reaches out of it a little, as one object drawn over another may.
+    fn lies_mostly_inside(&self, regions: &[Region<T>], i: usize) -> Option<usize> {
+        let (outer, most) = self.contacts_of(i).max_by_key(|&(_, pixels)| pixels)?;
+        let total: u32 = self.contacts_of(i).map(|(_, pixels)| pixels).sum();
+        (regions[i].border == 0 && f64::from(most) >= MOSTLY_INSIDE * f64::from(total)).then_some(outer)
     }
 
     /// Contacts of region `i`: (other region, number of soft pixels between).
