@@ -63,7 +63,9 @@ impl<T: Real> Run<'_, T> {
         let (mut at, mut failures) = (0, 0);
         while at < sources.len() && failures < MOST_FAILURES {
             let source = sources[at];
-            if source.sure || !self.stands_alone(source.segment) || !self.misses_object(posed, at) {
+            // Of a cropped object too little shows to tell one from two.
+            let cropped = self.scratch.segmentation.segments()[source.segment].border > 0;
+            if source.sure || cropped || !self.stands_alone(source.segment) || !self.misses_object(posed, at) {
                 at += 1;
                 continue;
             }

@@ -164,3 +164,72 @@ fn an_object_inside_another_shows_the_mean() {
     assert_eq!([host, inner].map(|k| found.covers(15 * 32 + 15, k)), [Some(true); 2]);
     assert_eq!([host, inner].map(|k| found.covers(6 * 32 + 6, k)), [Some(true), Some(false)]);
 }
+
+/// Hard rectangles in painter's order, with their opacity.
+fn stacked(side: usize, rectangles: &[(Rectangle, f64)]) -> Image<f64> {
+    paint(side, side, |x, y| {
+        rectangles.iter().fold(BACKGROUND, |below, &((columns, rows, color), opacity)| {
+            let inside = (columns[0]..columns[1]).contains(&x) && (rows[0]..rows[1]).contains(&y);
+            let share = if inside { opacity } else { 0.0 };
+            core::array::from_fn(|c| below[c] + share * (color[c] - below[c]))
+        })
+    })
+}
+
+fn read_over(image: &Image<f64>) -> Segmentation<f64> {
+    let mut segmentation = read(image);
+    segmentation.interpret(Compositing::Over);
+    segmentation
+}
+
+#[test]
+fn an_overlap_tells_the_opacity_of_what_is_in_front() {
+    // Red at 0.6 over blue: 0.4 blue + 0.6 red is seen in the overlap, 0.4 ground + 0.6 red beside it.
+    let (blue, red) = ([0.1, 0.2, 0.9], [0.9, 0.1, 0.0]);
+    let found = read_over(&stacked(40, &[(([4, 24], [4, 24], blue), 1.0), (([14, 34], [14, 34], red), 0.6)]));
+    assert_eq!(found.segments().len(), 2);
+    let [under, over] = [blue, red].map(|color| object_of(&found, color));
+    let confidence = |object: u32| found.segments()[object as usize].confidence;
+    assert_near(confidence(under), 1.0, 0.0);
+    assert_near(confidence(over), 0.6, 1e-9);
+    assert_eq!([under, over].map(|k| found.covers(19 * 40 + 19, k)), [Some(true); 2]);
+    assert_eq!(found.borders()[0].front, Some(over));
+}
+
+#[test]
+fn the_background_seen_through_an_object_is_an_object_on_it() {
+    let disk = [0.2, 0.3, 0.9];
+    let hole = [(([4, 28], [4, 28], disk), 1.0), (([10, 22], [10, 22], BACKGROUND), 1.0)];
+    let image = stacked(32, &hole);
+    let found = read_over(&image);
+    assert_eq!(found.segments().len(), 2);
+    let [ring, hole] = [disk, BACKGROUND].map(|color| object_of(&found, color));
+    assert_eq!(found.borders().iter().map(|border| border.front).collect::<Vec<_>>(), [Some(hole)]);
+    // The ring goes on behind the hole.
+    assert!(found.may_be_hidden(16 * 32 + 16, ring));
+    let evidence = read(&image).evidence();
+    assert!(evidence.direct > 0 && evidence.mean == 0, "{evidence:?}");
+}
+
+#[test]
+fn what_has_no_flat_pixel_is_found() {
+    // A line of two pixels, a dot of 3 x 3, and a stroke that is flat (4 pixels wide) but in its middle (2 pixels).
+    let (line, dot, stroke) = ([0.9, 0.1, 0.1], [0.1, 0.1, 0.9], [0.0, 0.0, 0.0]);
+    let image = stacked(
+        48,
+        &[
+            (([4, 44], [6, 8], line), 1.0),
+            (([20, 23], [14, 17], dot), 1.0),
+            (([4, 16], [24, 28], stroke), 1.0),
+            (([16, 30], [25, 27], stroke), 1.0),
+            (([30, 44], [24, 28], stroke), 1.0),
+        ],
+    );
+    let found = read_over(&image);
+    let pixels = [line, dot, stroke].map(|color| found.segments()[object_of(&found, color) as usize].pixels);
+    assert_eq!(found.segments().len(), 3);
+    assert_eq!(pixels[..2], [80, 9]);
+    // A ramp to the edge of a region is no thin region.
+    let ramp = [0.0, 0.0, 0.0, 0.0, 0.3, 0.8, 1.0, 1.0, 1.0, 1.0];
+    assert_eq!(read_over(&paint(10, 10, |x, _| [ramp[x]; 3])).segments().len(), 1);
+}
