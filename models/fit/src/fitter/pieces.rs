@@ -86,25 +86,27 @@ impl<T: Real> Run<'_, T> {
         if covers.is_empty() {
             return false;
         }
-        let others = f64::from(u32::try_from(pieces.len() - 1).unwrap_or(u32::MAX));
-        let mut apart = OBJECT_BITS * others;
+        let around = self.bits_around(&covers, pieces);
+        // Pieces on their own may be behind all covers, in front of all, or each where it fits best.
+        let (mut front, mut apart) = (Vec::new(), [0.0; 3]);
         for &piece in pieces {
-            apart += self.part_bits(piece);
-        }
-        // What the stretch between piece and cover adds to the one in front. One object is behind all of its covers; pieces
-        // on their own may be in front of some.
-        let mut around = 0.0;
-        for &cover in &covers {
-            let alone = self.part_bits(cover);
-            for &piece in pieces {
-                if self.touch(piece, cover) {
-                    let behind = self.bits_if_front(cover, &[piece]) - alone;
-                    let in_front = self.bits_if_front(piece, &[cover]) - self.part_bits(piece);
-                    around += behind;
-                    apart += behind.min(in_front);
-                }
+            let behind = [self.part_bits(piece), self.bits_around(&covers, &[piece])];
+            let before = [self.bits_if_front(piece, &covers), self.bits_around(&covers, &[])];
+            apart[0] += behind[0];
+            apart[1] += before[0];
+            if before[0] + before[1] < behind[0] + behind[1] {
+                front.push(piece);
+                apart[2] += before[0];
+            } else {
+                apart[2] += behind[0];
             }
         }
+        let behind: Vec<u32> = pieces.iter().copied().filter(|piece| !front.contains(piece)).collect();
+        apart[0] += around;
+        apart[1] += self.bits_around(&covers, &[]);
+        apart[2] += self.bits_around(&covers, &behind);
+        let others = f64::from(u32::try_from(pieces.len() - 1).unwrap_or(u32::MAX));
+        let apart = OBJECT_BITS * others + apart.into_iter().fold(f64::INFINITY, f64::min);
         let before = self.scratch.segmentation.join(pieces);
         let joined = self.part_bits(pieces[0]) + around;
         if joined < apart {
@@ -114,9 +116,9 @@ impl<T: Real> Run<'_, T> {
         false
     }
 
-    fn touch(&self, a: u32, b: u32) -> bool {
-        let objects = [a.min(b), a.max(b)];
-        self.scratch.segmentation.borders().iter().any(|border| border.objects == objects)
+    /// Bits of the covers if they are in front of the pieces given.
+    fn bits_around(&mut self, covers: &[u32], pieces: &[u32]) -> f64 {
+        covers.iter().map(|&cover| self.bits_if_front(cover, pieces)).sum()
     }
 
     /// Bits of an object if it is in front of the others given.

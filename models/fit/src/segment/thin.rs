@@ -29,6 +29,8 @@ const TIP_REACH: usize = 2;
 
 /// Filters that sharpen leave a rim along an edge, off its color by at most this share of the edge's contrast.
 const OVERSHOOT: f64 = 0.25;
+/// Such a rim is this near to the flat pixels beyond the edge (px).
+const RIM_REACH: usize = 4;
 
 /// A soft pixel that lies between no two regions.
 #[derive(Clone, Copy, Debug)]
@@ -171,21 +173,24 @@ fn read_group<T: Real>(
     let mut tip = false;
     for one in group {
         let [x, y] = one.pixel.map(|v| v as usize);
-        for row in y.saturating_sub(TIP_REACH)..(y + TIP_REACH + 1).min(image.size().height()) {
-            for column in x.saturating_sub(TIP_REACH)..(x + TIP_REACH + 1).min(width) {
+        for row in y.saturating_sub(RIM_REACH)..(y + RIM_REACH + 1).min(image.size().height()) {
+            for column in x.saturating_sub(RIM_REACH)..(x + RIM_REACH + 1).min(width) {
                 let label = map.labels[row * width + column].max(fringe.regions[row * width + column]);
                 if label == 0 || label == one.host || thin.parts.contains(&label) {
                     continue;
                 }
                 let beside = regions[label as usize - 1].color;
+                let near = row.abs_diff(y).max(column.abs_diff(x)) <= TIP_REACH;
                 if (0..3).all(|c| (beside[c] - color[c]).abs() <= T::of(SAME_COLOR)) {
-                    thin.parts.push(label);
+                    if near {
+                        thin.parts.push(label);
+                    }
                 } else {
                     let host = host_color(one);
                     let mirrored = core::array::from_fn(|c| host[c] + host[c] - color[c]);
                     let (overshoot, off) = along(mirrored, host, beside);
                     let rim = off <= tolerance + tolerance && overshoot < T::of(OVERSHOOT);
-                    tip |= rim || along(color, host, beside).1 <= tolerance;
+                    tip |= rim || near && along(color, host, beside).1 <= tolerance;
                 }
             }
         }
