@@ -113,7 +113,8 @@ fn others() -> Vec<(String, Efd<f32>)> {
 fn other_shapes() {
     for count in [1, 2, 5] {
         let truth = Bank { prototypes: others().into_iter().take(count).collect() };
-        let pictures = pictures(&SceneSettings::mds_hr(), &truth, 128, 40);
+        // Enough pictures that each of five shapes has several whole members.
+        let pictures = pictures(&SceneSettings::mds_hr(), &truth, 128, 64);
         let learned = learn_from(&pictures);
         assert_eq!(learned.prototypes.len(), count);
         let off = distances(&truth, &learned.bank());

@@ -15,6 +15,8 @@ use crate::price::OBJECT_BITS;
 const SAME_COLOR: f64 = 0.008;
 /// Most pieces that are tried together.
 const MOST_PIECES: usize = 8;
+/// Pieces some of which are in front and some behind must explain the outlines by so much better than one object does.
+const MIXED_BITS: f64 = 72.0;
 
 impl<T: Real> Run<'_, T> {
     /// Joins pieces while that makes the description shorter. To be done before the order is decided.
@@ -104,7 +106,7 @@ impl<T: Real> Run<'_, T> {
         let behind: Vec<u32> = pieces.iter().copied().filter(|piece| !front.contains(piece)).collect();
         apart[0] += around;
         apart[1] += self.bits_around(&covers, &[]);
-        apart[2] += self.bits_around(&covers, &behind);
+        apart[2] += self.bits_around(&covers, &behind) + MIXED_BITS;
         let others = f64::from(u32::try_from(pieces.len() - 1).unwrap_or(u32::MAX));
         let apart = OBJECT_BITS * others + apart.into_iter().fold(f64::INFINITY, f64::min);
         let before = self.scratch.segmentation.join(pieces);
