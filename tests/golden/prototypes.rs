@@ -111,10 +111,10 @@ fn others() -> Vec<(String, Efd<f32>)> {
 
 #[test]
 fn other_shapes() {
-    for count in [1, 2, 5] {
+    for (count, images) in [(1, 40), (2, 52), (5, 88)] {
         let truth = Bank { prototypes: others().into_iter().take(count).collect() };
-        // Enough pictures that each of five shapes has several whole members.
-        let pictures = pictures(&SceneSettings::mds_hr(), &truth, 128, 64);
+        // Each shape needs several whole members.
+        let pictures = pictures(&SceneSettings::mds_hr(), &truth, 128, images);
         let learned = learn_from(&pictures);
         assert_eq!(learned.prototypes.len(), count);
         let off = distances(&truth, &learned.bank());

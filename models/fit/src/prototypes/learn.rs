@@ -20,7 +20,7 @@ const MAX_MEMBERS: usize = 384;
 const LEAST_SILHOUETTE: f64 = 0.5;
 /// How far a free outline may be off (root mean square, px): soft edges hide notches, small objects are cut to few
 /// harmonics.
-const OUTLINE_NOISE_PX: f64 = 0.5;
+const OUTLINE_NOISE_PX: f64 = 0.7;
 /// Outlines closer than this (root mean square, radii) are not told apart, however large.
 const SAME_SHAPE: f64 = 0.02;
 /// Typical distances larger than this are those of different shapes, not of one.
