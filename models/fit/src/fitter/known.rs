@@ -54,7 +54,10 @@ impl<T: Real> Run<'_, T> {
                 loss = self.search_again(&mut posed, at, source, loss)?;
             }
         }
-        loss = self.split_known(&mut posed, &mut sources, loss)?;
+        // What compression leaves along edges is no evidence of a shared outline.
+        if !self.scratch.segmentation.is_compressed() {
+            loss = self.split_known(&mut posed, &mut sources, loss)?;
+        }
         let mut stop = StopReason::Converged;
         let everywhere = T::of_usize(self.image.size().width().max(self.image.size().height()));
         let missed = self.missed_pixels([T::zero(); 2], everywhere);

@@ -6,10 +6,10 @@
 
 use alloc::vec::Vec;
 
-use dvp_core::render::{Compositing, EdgeProfile};
+use dvp_core::render::{Compositing, EdgeLaw, EdgeProfile};
 use dvp_core::{ImageView, Real};
 
-use super::run::{Care, Run, VISIBLE_ERROR};
+use super::run::{Care, Run, visible_error};
 use super::{DIRECT_PIXELS, FitScratch, Fitter};
 use crate::segment::{EdgeKind, NoisyOptions, SegmentOptions, noise_level};
 use crate::{Fit, FitError, StopReason};
@@ -22,6 +22,8 @@ const COMPRESSED: f64 = 0.06;
 const MOST_CLEAN_REGIONS: usize = 64;
 /// Compression it was if less than this share of the soft pixels is still soft when it is averaged away.
 const STILL_SOFT: f64 = 0.8;
+/// Compression blurs edges by up to about this much (scale of a logistic curve, px).
+const COMPRESSED_BLUR: f64 = 1.0;
 /// A scene that leaves a larger share of the variance unexplained may be the wrong reading.
 const SUSPICIOUS: f64 = 0.02;
 /// A picture of which flat objects leave a larger share of the variance is not flat.
@@ -154,11 +156,15 @@ impl<T: Real> Fitter<T> {
         };
         let unit = T::of_usize(image.size().unit_px());
         let kinds = || scratch.segmentation.edges(&image).kinds(unit);
-        let (kind, mut other) = self.options.edge.map_or_else(kinds, |edge| (EdgeKind::of(edge), None));
+        let (mut kind, mut other) = self.options.edge.map_or_else(kinds, |edge| (EdgeKind::of(edge), None));
         let reference = EdgeKind::Profile(EdgeProfile::reference());
         if self.options.edge.is_none() && scratch.segmentation.is_noisy() && kind != reference {
             // Noise hides what tells the edges apart.
             other = Some(reference);
+        }
+        if self.options.edge.is_none() && scratch.segmentation.is_compressed() && !is_blur(&kind, unit) {
+            // Compression spreads edges itself: the softness measured is not that of the drawing.
+            (kind, other) = (EdgeKind::Area, Some(reference));
         }
         // In doubt several readings are fitted; the shortest description wins.
         let mut best: Option<Fit<T>> = None;
@@ -168,7 +174,7 @@ impl<T: Real> Fitter<T> {
                 let fit = self.fit_with(image, kind, compositing, care, scratch)?;
                 best = Some(best.filter(|best| best.bits <= fit.bits).unwrap_or(fit));
                 // Objects that hide one another cannot pass for ones that mix.
-                if 2 * scratch.residual.count_off(&direct, T::of(VISIBLE_ERROR)) < direct.len() {
+                if 2 * scratch.residual.count_off(&direct, visible_error(scratch.segmentation.noise())) < direct.len() {
                     break;
                 }
             }
@@ -189,4 +195,11 @@ impl<T: Real> Fitter<T> {
             Run { fitter: self, image, kind: EdgeKind::of(edge), edge, compositing, care: Care::Segments, scratch };
         run.bits_at(&fit.scene, noise)
     }
+}
+
+/// Whether edges are softer than compression alone makes them.
+fn is_blur<T: Real>(kind: &EdgeKind<T>, unit_px: T) -> bool {
+    // Sigma is that of twice the distance.
+    let most = T::of(2.0 * COMPRESSED_BLUR);
+    matches!(kind, EdgeKind::Profile(edge) if edge.law == EdgeLaw::Distance && edge.sigma * unit_px > most)
 }

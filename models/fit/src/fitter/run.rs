@@ -57,9 +57,14 @@ pub(super) struct FoundObject<T> {
 }
 
 /// A rendering that misses a pixel by this much in some channel does so visibly.
-pub(super) const VISIBLE_ERROR: f64 = 0.03;
+const VISIBLE_ERROR: f64 = 0.03;
 /// Under noise, this many standard deviations are visible; a picture has about one such pixel in 5000 by chance.
 const VISIBLE_NOISE: f64 = 4.0;
+/// Residual that is visible at the given noise (standard deviation of a channel).
+pub(super) fn visible_error<T: Real>(noise: T) -> T {
+    T::of(VISIBLE_ERROR).max(T::of(VISIBLE_NOISE) * noise)
+}
+
 /// Objects of fewer flat pixels, or of less contrast, must show that they pay for their description.
 const SURE_PIXELS: usize = 12;
 const SURE_CONTRAST: f64 = 0.03;
@@ -95,12 +100,7 @@ impl<T: Real> Run<'_, T> {
 
     /// Pixels within `reach_px` of a point that the last rendering visibly misses.
     pub(super) fn missed_pixels(&self, center_px: [T; 2], reach_px: T) -> usize {
-        self.scratch.residual.count_above(
-            self.image.size(),
-            center_px,
-            reach_px,
-            T::of(VISIBLE_ERROR).max(T::of(VISIBLE_NOISE) * self.noise()),
-        )
+        self.scratch.residual.count_above(self.image.size(), center_px, reach_px, visible_error(self.noise()))
     }
 
     /// Cuts to the number of objects allowed, refines colors, drops what does not pay, and adds the doubt.
