@@ -35,6 +35,7 @@ fn motion() -> impl Strategy<Value = [f64; 3]> {
     (0.0..TAU, 0.0..TAU, 0.01..100.0).prop_map(|(phase, rotation, scale)| [phase, rotation, scale])
 }
 
+#[expect(clippy::unwrap_used, reason = "what fails here is a failed test")]
 fn form(efd: &Efd<f64>) -> Form {
     Form::new(efd).unwrap()
 }
