@@ -140,7 +140,9 @@ mod tests {
         // The right side of b at 6.6 covers more than half of pixel 6; the strip over it is background.
         assert_eq!(row(0), [1, 1, 2, 2, 2, 0, 2, 0]);
         assert_eq!(row(3), [3, 1, 2, 2, 2, 0, 2, 0]);
-        assert_eq!(drawn.picture.get_pixel(0, 0).0, [255, 127, 127, 255]);
+        // Half of red over white: 127.5, which may be rounded either way.
+        let [red, green, ..] = drawn.picture.get_pixel(0, 0).0;
+        assert!(red == 255 && (127..=128).contains(&green), "{red} {green}");
     }
 
     #[test]
