@@ -1,6 +1,6 @@
 //! Prototypes: the few shapes that many fitted objects have.
 //!
-//! In: fits without a bank. Out: a [`Bank`], with the evidence for its size. Nothing is learned by descent: objects are
+//! In: fits without a bank. Out: a [`Bank`](crate::Bank), with the evidence for its size. Nothing is learned by descent: objects are
 //! fitted once, and the shapes are read off.
 //!
 //! ```text
