@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use dvp::format::{DataSet, Place, read_scene};
+use dvp::format::{DataSet, Place, encode_png, read_scene};
 use dvp_core::Scene;
 use serde_json::Value;
 
@@ -101,4 +101,32 @@ fn every_method_runs_and_the_number_of_threads_changes_nothing() {
     }
     let run = dvp(["fit", text(&data), "--method", "opt-p", "--out", text(&start)]);
     assert!(run.code == 1 && run.err.contains("--start"), "{}", run.err);
+}
+
+#[test]
+fn what_is_hidden_and_what_objects_buy_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let svg = concat!(
+        r#"<svg xmlns="http://www.w3.org/2000/svg" width="128" height="128">"#,
+        r##"<rect width="128" height="128" fill="#f0f0f0"/><circle cx="50" cy="60" r="32" fill="#c03030"/>"##,
+        r##"<rect x="50.5" y="20" width="60" height="80" fill="#3050a0"/></svg>"##
+    );
+    let image = dvp_tests::draw_svg::draw_svg(svg).unwrap();
+    let values: Vec<f32> = image.data().iter().map(|&v| dvp_core::Real::as_f32(v)).collect();
+    let image = dvp_core::Image::from_planar(image.size(), values).unwrap();
+    let (picture, out) = (folder.path().join("half.png"), folder.path().join("out"));
+    fs::write(&picture, encode_png(image.view()).unwrap()).unwrap();
+    let arguments = ["fit", text(&picture), "--out", text(&out)];
+    let said: Value = serde_json::from_str(&dvp_done(arguments.into_iter().chain(["--json"]))).unwrap();
+    let found = &said["images"][0];
+    let hidden = found["ambiguity"].as_array().unwrap().iter().find(|open| open["kind"] == "hidden").unwrap();
+    assert_eq!((&hidden["by"], &hidden["order"]), (&Value::from("rotation"), &Value::from(0)));
+    assert!((hidden["share"].as_f64().unwrap() - 0.5).abs() < 0.03, "{hidden}");
+    let buys: Vec<f64> = found["buys"].as_array().unwrap().iter().map(|value| value.as_f64().unwrap()).collect();
+    // The square is darker and larger than what is seen of the disk, which is painted first.
+    assert!(buys.len() == 2 && buys[1] > buys[0] && buys[0] > 0.1, "{buys:?}");
+    assert_eq!(found["ranking"], serde_json::json!([1, 0]));
+    assert!(said["summary"]["unexplained"].as_f64().unwrap() < 0.01);
+    let table = dvp_done(arguments);
+    assert!(table.contains("unexplained") && table.contains("1, to "), "{table}");
 }

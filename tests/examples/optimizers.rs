@@ -24,7 +24,8 @@ use dvp_fit::opt_iter::OptIter;
 use dvp_fit::opt_p::OptP;
 use dvp_fit::rand_opt_p::{RandOptP, random_scene};
 use dvp_fit::refine::{Refine, RefineScratch};
-use rand::{RngExt, SeedableRng};
+use dvp_tests::perturb::perturbed;
+use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 type Failure = Box<dyn Error>;
@@ -86,25 +87,6 @@ impl Judge {
     }
 }
 
-/// The truth with t + N(0, 0.02), s (1 + N(0, 0.1)), angle + N(0, 0.2), colors and background + N(0, 0.05).
-fn perturbed(truth: &Scene<f32>, seed: u64) -> Scene<f32> {
-    let mut rng = ChaCha8Rng::seed_from_u64(seed);
-    // Box and Muller's transform of two uniform numbers.
-    let mut normal = |sigma: f32| {
-        let (u, v): (f32, f32) = (1.0 - rng.random::<f32>(), rng.random());
-        sigma * (-2.0 * u.ln()).sqrt() * (core::f32::consts::TAU * v).cos()
-    };
-    let mut scene = truth.clone();
-    for object in &mut scene.objects {
-        object.pose.translation.iter_mut().for_each(|value| *value += normal(0.02));
-        object.pose.scale *= 1.0 + normal(0.1);
-        object.pose.rotation += normal(0.2);
-        object.color.iter_mut().for_each(|value| *value += normal(0.05));
-    }
-    scene.background.iter_mut().for_each(|value| *value += normal(0.05));
-    scene
-}
-
 /// The float images beside the data set, if they are there.
 fn float_images(folder: &Path, size: ImageSize) -> Result<Vec<Image<f32>>, Failure> {
     let path = folder.join("../val_first32_f32.npy");
@@ -159,8 +141,8 @@ fn main() -> Result<(), Failure> {
         }
         let (image, seed) = (target.view(), u64::from(i));
         let [opt_p, refine, rand_opt_p, opt_iter, published] = &mut rows;
-        judge.score(opt_p, image, &truth, || OptP::default().fit(&mut known, image, &perturbed(&truth, seed)))?;
-        let start = perturbed(&truth, seed);
+        let start = perturbed(&truth, &mut ChaCha8Rng::seed_from_u64(seed));
+        judge.score(opt_p, image, &truth, || OptP::default().fit(&mut known, image, &start))?;
         judge.score(refine, image, &truth, || Refine::default().fit(image, &start, &mut refining))?;
         let start = random_scene(truth.objects.len(), &shapes, seed);
         judge.score(rand_opt_p, image, &truth, || RandOptP::default().fit(&mut free, image, &start))?;

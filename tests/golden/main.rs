@@ -5,6 +5,7 @@ extern crate alloc;
 mod efd;
 mod fit;
 mod hard_geometry;
+mod hidden;
 mod loss;
 mod matching;
 mod metric;

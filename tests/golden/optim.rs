@@ -3,8 +3,8 @@
 #![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test with a line number")]
 
 use dvp_core::Real;
+use dvp_core::optim::{Plateau, PlateauSettings};
 use dvp_fit::adam::{Adam, AdamSettings};
-use dvp_fit::plateau::{Plateau, PlateauSettings};
 use serde::Deserialize;
 
 #[derive(Deserialize)]

@@ -6,23 +6,17 @@ use core::f64::consts::TAU;
 
 use dvp::format::mdshr_bank;
 use dvp::generate::{SceneSettings, sample_scene};
-use dvp_core::render::{ContourRenderer, Renderer};
-use dvp_core::shape::{OutlineBasis, REFERENCE_VERTICES};
-use dvp_core::{Drawing, Efd, Image, ImageSize, Real};
+use dvp::paint::Painter;
+use dvp_core::{Efd, Image, ImageSize, Real};
 use dvp_fit::prototypes::{Form, Learned, Pool, PrototypeOptions, learn, members};
 use dvp_fit::{Bank, FitOptions, FitScratch, Fitter};
 
 /// Pictures of `bank`'s shapes, rounded to 8 bits.
 fn pictures(settings: &SceneSettings, bank: &Bank<f32>, side: usize, count: u64) -> Vec<Image<f32>> {
     let size = ImageSize::new(side, side).unwrap();
-    let basis = OutlineBasis::new(REFERENCE_VERTICES, 64).unwrap();
-    let mut drawing = Drawing::default();
     let picture = |index| {
         let scene = sample_scene(settings, bank, size, 3, index);
-        scene.draw(&basis, &mut drawing).unwrap();
-        let mut image = Image::zeros(size);
-        let renderer = ContourRenderer::new(scene.edge, scene.compositing);
-        renderer.render(&drawing, size, &mut Default::default(), image.data_mut()).unwrap();
+        let mut image = Painter::default().paint(&scene, size).unwrap();
         image.data_mut().iter_mut().for_each(|value| *value = (*value * 255.0).round() / 255.0);
         image
     };

@@ -4,24 +4,24 @@
 
 use core::f64::consts::TAU;
 
-use dvp_core::render::contour::ContourRenderer;
-use dvp_core::render::{EdgeProfile, Renderer};
-use dvp_core::shape::{MDSHR_NAMES, OutlineBasis, REFERENCE_VERTICES, mdshr_bank};
-use dvp_core::{Drawing, Image, ImageSize, Object, Pose, Real, Scene};
+use dvp::paint::{Painter, RendererName};
+use dvp_core::render::EdgeProfile;
+use dvp_core::shape::{MDSHR_NAMES, mdshr_bank};
+use dvp_core::{Image, ImageSize, Object, Pose, Real, Scene};
 use dvp_fit::{Bank, Fit, FitError, FitOptions, FitScratch, Fitter, StopReason, fit_image};
 use proptest::prelude::*;
 
 const SIDE: usize = 128;
-const HARMONICS: usize = 31;
+pub(super) const HARMONICS: usize = 31;
 /// Symmetry orders of heart, square and ellipse.
-const ORDERS: [f64; 3] = [1.0, 4.0, 2.0];
+pub(super) const ORDERS: [f64; 3] = [1.0, 4.0, 2.0];
 
-fn bank<T: Real>() -> Bank<T> {
+pub(super) fn bank<T: Real>() -> Bank<T> {
     let prototypes = mdshr_bank(HARMONICS).prototypes().to_vec();
     Bank { prototypes: MDSHR_NAMES.iter().map(|name| (*name).to_owned()).zip(prototypes).collect() }
 }
 
-fn known<T: Real>() -> Fitter<T> {
+pub(super) fn known<T: Real>() -> Fitter<T> {
     Fitter::new(FitOptions { bank: Some(bank()), ..FitOptions::default() }).unwrap()
 }
 
@@ -29,16 +29,11 @@ fn free<T: Real>() -> Fitter<T> {
     Fitter::new(FitOptions::default()).unwrap()
 }
 
-fn paint<T: Real>(scene: &Scene<T>, size: ImageSize) -> Image<T> {
-    let mut drawing = Drawing::default();
-    scene.draw(&OutlineBasis::new(REFERENCE_VERTICES, HARMONICS).unwrap(), &mut drawing).unwrap();
-    let mut image = Image::zeros(size);
-    let renderer = ContourRenderer::new(scene.edge, scene.compositing);
-    renderer.render(&drawing, image.size(), &mut Default::default(), image.data_mut()).unwrap();
-    image
+pub(super) fn paint<T: Real>(scene: &Scene<T>, size: ImageSize) -> Image<T> {
+    Painter::default().paint(scene, size).unwrap()
 }
 
-fn square_size() -> ImageSize {
+pub(super) fn square_size() -> ImageSize {
     ImageSize::new(SIDE, SIDE).unwrap()
 }
 
@@ -273,6 +268,21 @@ fn the_edge_profile_is_told_from_few_distances() {
     let scene = Scene { objects: vec![object], ..Scene::empty([0.06, 0.06, 0.27]) };
     let fit = known().fit(paint(&scene, square_size()).view(), &mut FitScratch::default()).unwrap();
     agrees(&fit, &scene).unwrap();
+}
+
+#[test]
+fn fractions_of_a_step_of_color_do_not_speak_against_the_edge() {
+    let pose = Pose { translation: [0.428_589_4, 0.857_140_66], scale: 0.129_943_25, rotation: 1.264_529_2 };
+    let efd = mdshr_bank(HARMONICS).prototypes()[2].clone();
+    let color = [0.933_562_04, 0.814_987_54, 0.332_457_6];
+    let object = Object { pose, color, confidence: 1.0, efd, prototype: Some(2) };
+    // The last channel of the background is 0.43 steps above what 8 bits show.
+    let scene = Scene { objects: vec![object], ..Scene::empty([0.526_051_16, 0.924_945_3, 0.997_761_13]) };
+    let painter = Painter { renderer: RendererName::Triangles, ..Painter::default() };
+    let mut image: Image<f32> = painter.paint(&scene, square_size()).unwrap();
+    image.data_mut().iter_mut().for_each(|value| *value = (*value * 255.0).round() / 255.0);
+    let fit = known().fit(image.view(), &mut FitScratch::default()).unwrap();
+    assert_eq!((fit.scene.objects.len(), fit.scene.edge), (1, EdgeProfile::reference()));
 }
 
 #[test]

@@ -15,5 +15,6 @@ mod prototypes;
 mod refine;
 mod render_contour;
 mod scene;
+mod split;
 mod symmetry;
 mod triangles;

@@ -2,12 +2,13 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test with a line number")]
 
-use dvp_core::render::contour::ContourRenderer;
-use dvp_core::render::{Compositing, Renderer};
-use dvp_core::shape::{OutlineBasis, REFERENCE_VERTICES, mdshr_bank};
-use dvp_core::{Drawing, Efd, Image, ImageSize, Object, Pose, Scene};
+use dvp::paint::Painter;
+use dvp_core::render::Compositing;
+use dvp_core::shape::mdshr_bank;
+use dvp_core::{Efd, Image, ImageSize, Object, Pose, Scene};
 use dvp_fit::refine::{Refine, RefineScratch};
 use dvp_fit::{Ambiguity, FitError};
+use dvp_tests::perturb::perturbed;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -15,12 +16,7 @@ const SIDE: usize = 128;
 const HARMONICS: usize = 16;
 
 fn paint(scene: &Scene<f32>) -> Image<f32> {
-    let mut drawing = Drawing::default();
-    scene.draw(&OutlineBasis::new(REFERENCE_VERTICES, HARMONICS).unwrap(), &mut drawing).unwrap();
-    let mut image = Image::zeros(ImageSize::new(SIDE, SIDE).unwrap());
-    let renderer = ContourRenderer::new(scene.edge, scene.compositing);
-    renderer.render(&drawing, image.size(), &mut Default::default(), image.data_mut()).unwrap();
-    image
+    Painter::default().paint(scene, ImageSize::new(SIDE, SIDE).unwrap()).unwrap()
 }
 
 /// Two to four objects of MDS-HR's shapes, a quarter of the image each, as many colors as objects.
@@ -40,21 +36,6 @@ fn scene(rng: &mut ChaCha8Rng) -> Scene<f32> {
         Object { pose, color, confidence: 1.0, efd, prototype: Some(prototype) }
     });
     Scene { objects: objects.collect(), ..Scene::empty([0.5, 0.45, 0.55]) }
-}
-
-/// Off by N(0, 0.02) in position, N(0, 10 %) in size, N(0, 0.2) in angle, N(0, 0.05) in color.
-fn perturbed(truth: &Scene<f32>, rng: &mut ChaCha8Rng) -> Scene<f32> {
-    // Of variance 1 to two digits: the sum of twelve uniform numbers.
-    let mut normal = |sigma: f32| sigma * ((0..12).map(|_| rng.random::<f32>()).sum::<f32>() - 6.0);
-    let mut scene = truth.clone();
-    for object in &mut scene.objects {
-        object.pose.translation.iter_mut().for_each(|value| *value += normal(0.02));
-        object.pose.scale *= 1.0 + normal(0.1);
-        object.pose.rotation += normal(0.2);
-        object.color.iter_mut().for_each(|value| *value += normal(0.05));
-    }
-    scene.background.iter_mut().for_each(|value| *value += normal(0.05));
-    scene
 }
 
 #[test]

@@ -38,6 +38,13 @@ pub(crate) fn is_rounded<T: Real>(values: impl IntoIterator<Item = T>) -> bool {
     })
 }
 
+/// The nearest color of whole steps.
+pub(crate) fn round_color<T: Real>(color: &mut [T; 3]) {
+    for value in color {
+        *value = (*value * T::of(STEPS)).round() / T::of(STEPS);
+    }
+}
+
 /// Moves background (last) and object colors by at most half a step, so that the soft `pixels` are explained best.
 ///
 /// `coverage` of the scratch holds a plane per object; objects are fully confident and `blend` into each other.

@@ -22,11 +22,12 @@ pub mod adam;
 pub mod opt_iter;
 pub mod opt_p;
 pub mod parameters;
-pub mod plateau;
 pub mod prototypes;
 pub mod rand_opt_p;
 pub mod refine;
 
+mod block_code;
+mod buys;
 mod cholesky;
 mod colors;
 mod doubt;
@@ -84,6 +85,15 @@ pub enum Ambiguity {
         /// Visible share of the outline, [0, 1].
         visible: f64,
     },
+    /// A part of the object lies behind others that are painted later: what of its outline is there is a guess.
+    Hidden {
+        /// Index of the object.
+        object: usize,
+        /// Share of the length of its outline that is hidden, (0, 1].
+        share: f64,
+        /// Where the guess comes from.
+        completion: Completion,
+    },
     /// The object has run together with another one of its color: what of its outline does not show is a guess.
     Merged {
         /// Index of the object.
@@ -104,6 +114,23 @@ pub enum Ambiguity {
     },
 }
 
+/// What completes the hidden part of an outline.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Completion {
+    /// The prototype that fits what is seen.
+    Prototype,
+    /// What is seen repeats itself when it is turned: the shape has this symmetry order (0: a disk).
+    Rotation {
+        /// Symmetry order; 0 for a disk.
+        order: usize,
+    },
+    /// What is seen is its own mirror image.
+    Mirror,
+    /// Nothing but the shortest way across.
+    Straight,
+}
+
 /// The result of a fit, with its doubt.
 #[derive(Clone, Debug)]
 pub struct Fit<T> {
@@ -121,8 +148,20 @@ pub struct Fit<T> {
     pub ambiguity: Vec<Ambiguity>,
     /// Share of the picture's variance that neither the scene nor noise explains, [0, 1]; NaN if it was not counted.
     pub unexplained: f64,
+    /// Per object, what it buys: the share of the picture's variance that would be unexplained as well without it, the others
+    /// staying. Negative if the picture would be met better without it; empty if it was not counted. Pixels count as covered
+    /// in whole or not at all.
+    pub buys: Vec<f64>,
     /// Standard deviation of a channel that was taken for noise: at least the rounding of 8 bits; NaN if it was not estimated.
     pub noise: T,
     /// Description length of the scene and what it leaves unexplained, in bits.
     pub bits: f64,
+}
+
+impl<T> Fit<T> {
+    /// Indices of the objects, those that buy most first. The scene itself is in the order in which it is painted.
+    #[must_use]
+    pub fn ranking(&self) -> Vec<usize> {
+        buys::ranking(&self.buys)
+    }
 }

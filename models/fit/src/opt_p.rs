@@ -66,6 +66,7 @@ pub(crate) fn fit_of<T: Real>(scene: Scene<T>, outcome: Outcome<T>, steps: usize
         covariance: Vec::new(),
         ambiguity: Vec::new(),
         unexplained: f64::NAN,
+        buys: Vec::new(),
         noise: T::nan(),
         bits: f64::NAN,
     }

@@ -3,9 +3,10 @@
 use alloc::string::String;
 use alloc::vec::Vec;
 
-use dvp_core::Real;
+use dvp_core::image::ImageError;
 use dvp_core::render::{Compositing, EdgeProfile, RenderError};
 use dvp_core::shape::{Efd, ShapeError};
+use dvp_core::{ImageView, Real};
 
 /// Shapes that objects are known to have.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -19,7 +20,7 @@ pub struct Bank<T> {
 pub struct FitOptions<T> {
     /// The shapes objects have; none: shapes are unknown and fitted freely.
     pub bank: Option<Bank<T>>,
-    /// More objects than this are not reported; those that explain most come first.
+    /// More objects than this are not reported; those that buy most stay.
     pub max_objects: usize,
     /// Most harmonics of a free shape.
     pub max_harmonics: usize,
@@ -80,6 +81,14 @@ pub enum FitError {
     Shape(ShapeError),
     /// A scene on the way could not be rendered.
     Render(RenderError),
+}
+
+/// Refuses an image with NaN or infinity: a view may be made of an image that was written to since it was checked.
+pub(crate) fn check_finite<T: Real>(image: &ImageView<'_, T>) -> Result<(), FitError> {
+    match ImageView::new(image.size(), image.data()) {
+        Err(ImageError::NotFinite { index }) => Err(FitError::NotFinite { index }),
+        _ => Ok(()),
+    }
 }
 
 impl core::fmt::Display for FitError {

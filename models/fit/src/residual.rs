@@ -80,34 +80,26 @@ impl<T: Real> Residual<T> {
         if self.noise.replace(noise.as_f64()).to_bits() != noise.as_f64().to_bits() {
             self.bits.iter().for_each(|row| row.set(f64::NAN));
         }
-        let of_pixel = |&off: &T| (off * off * scale).min(T::of(24.0)).as_f64();
-        let rows = self.bits.iter().zip(self.largest.chunks_exact(self.width.max(1)));
-        rows.map(|(row, line)| {
-            if row.get().is_nan() {
-                row.set(line.iter().map(of_pixel).sum());
-            }
-            row.get()
-        })
-        .sum()
+        simd::dispatch(Bits { largest: &self.largest, width: self.width.max(1), scale, rows: &self.bits })
     }
 
-    /// Share of the variance of `image` that neither `rendered` nor noise of standard deviation `noise` explains, [0, 1].
-    pub(crate) fn unexplained(image: &ImageView<'_, T>, rendered: &[T], noise: T) -> f64 {
+    /// Share of the variance of `image` that neither `rendered` nor noise of standard deviation `noise` explains, [0, 1], and
+    /// that variance, noise excepted, as a sum of squares over all values.
+    pub(crate) fn unexplained(image: &ImageView<'_, T>, rendered: &[T], noise: T) -> (f64, f64) {
         let pixels = image.size().pixels();
         let (mut missed, mut total) = (0.0, 0.0);
         for channel in 0..3 {
             let values = image.channel(channel);
-            let mean = T::of(
-                simd::dispatch(Squares { values, drawn: values, mean: T::zero() })[2] / T::of_usize(pixels).as_f64(),
-            );
             let drawn = &rendered[channel * pixels..(channel + 1) * pixels];
-            let sums = simd::dispatch(Squares { values, drawn, mean });
-            missed += sums[0];
-            total += sums[1];
+            // About a value of the picture, so that little cancels: most pictures are mostly background.
+            let origin = values.first().copied().unwrap_or_else(T::zero);
+            let [squares, spread, sum] = simd::dispatch(Squares { values, drawn, origin });
+            missed += squares;
+            total += spread - sum * sum / T::of_usize(pixels).as_f64();
         }
         let expected = (noise * noise).as_f64() * T::of_usize(3 * pixels).as_f64();
         let (missed, total) = ((missed - expected).max(0.0), total - expected);
-        if total > missed { missed / total } else { f64::from(u8::from(missed > 0.0)) }
+        (if total > missed { missed / total } else { f64::from(u8::from(missed > 0.0)) }, total)
     }
 
     /// How many of `pixels` are off by more than `threshold`.
@@ -133,11 +125,44 @@ impl<T: Real> Residual<T> {
     }
 }
 
-/// Sums of squared differences from a rendering, of those from a mean, and of the values.
+/// Fills the rows that are NaN, and sums all.
+struct Bits<'a, T> {
+    largest: &'a [T],
+    width: usize,
+    scale: T,
+    rows: &'a [Cell<f64>],
+}
+
+impl<T: Real> simd::Kernel for Bits<'_, T> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn run(self) -> f64 {
+        let of_pixel = |off: T| (off * off * self.scale).min(T::of(24.0));
+        let mut total = 0.0;
+        for (row, line) in self.rows.iter().zip(self.largest.chunks_exact(self.width)) {
+            if row.get().is_nan() {
+                let mut sums = [T::zero(); LANES];
+                let (parts, rest) = line.as_chunks::<LANES>();
+                for part in parts {
+                    for i in 0..LANES {
+                        sums[i] += of_pixel(part[i]);
+                    }
+                }
+                let rest: T = rest.iter().map(|&off| of_pixel(off)).sum();
+                row.set((sums.into_iter().sum::<T>() + rest).as_f64());
+            }
+            total += row.get();
+        }
+        total
+    }
+}
+
+/// Sums of squared differences from a rendering, of those from an origin, and of the latter as they are.
 struct Squares<'a, T> {
     values: &'a [T],
     drawn: &'a [T],
-    mean: T,
+    origin: T,
 }
 
 /// Values summed in single precision: sums over large pictures would lose what they add.
@@ -154,17 +179,17 @@ impl<T: Real> simd::Kernel for Squares<'_, T> {
             for (values, drawn) in values.chunks(LANES).zip(drawn.chunks(LANES)) {
                 if let (Ok(values), Ok(drawn)) = (<&[T; LANES]>::try_from(values), <&[T; LANES]>::try_from(drawn)) {
                     for i in 0..LANES {
-                        let (off, spread) = (values[i] - drawn[i], values[i] - self.mean);
+                        let (off, spread) = (values[i] - drawn[i], values[i] - self.origin);
                         sums[0][i] += off * off;
                         sums[1][i] += spread * spread;
-                        sums[2][i] += values[i];
+                        sums[2][i] += spread;
                     }
                 } else {
                     for (&value, &drawn) in values.iter().zip(drawn) {
-                        let (off, spread) = (value - drawn, value - self.mean);
+                        let (off, spread) = (value - drawn, value - self.origin);
                         sums[0][0] += off * off;
                         sums[1][0] += spread * spread;
-                        sums[2][0] += value;
+                        sums[2][0] += spread;
                     }
                 }
             }

@@ -7,8 +7,10 @@ use clap::{Args, ValueEnum};
 use dvp_core::render::Compositing;
 use dvp_core::{ImageSize, Real};
 use dvp_fit::Bank;
+use rayon::prelude::*;
 
-use crate::format::{mdshr_bank, read_bank};
+use super::progress;
+use crate::format::{DEFAULT_MAX_PIXELS, mdshr_bank, read_bank};
 use crate::paint::{Painter, RendererName};
 
 /// How scenes are painted.
@@ -25,6 +27,40 @@ pub(super) struct PaintArguments {
 impl PaintArguments {
     pub(super) fn painter(self) -> Painter {
         Painter { renderer: self.renderer, vertices: usize::from(self.vertices) }
+    }
+}
+
+/// How commands that work through many pictures do so.
+#[derive(Clone, Copy, Debug, Args)]
+pub(super) struct BatchArguments {
+    /// Largest picture that is read
+    #[arg(long, default_value_t = DEFAULT_MAX_PIXELS, value_name = "N")]
+    pub(super) max_pixels: usize,
+    /// Threads; 0 means one per core
+    #[arg(long, default_value_t = 0, value_name = "N")]
+    threads: usize,
+    /// Print the figures as JSON
+    #[arg(long)]
+    pub(super) json: bool,
+}
+
+impl BatchArguments {
+    /// What `work` makes of each item and its index, in their order; on all threads, each with memory of its own, under a
+    /// progress bar.
+    pub(super) fn each<S: Default, I: Sync, R: Send>(
+        &self,
+        items: &[I],
+        work: impl Fn(&mut S, usize, &I) -> R + Sync,
+    ) -> Result<Vec<R>> {
+        let bar = progress::bar(items.len());
+        let one = |scratch: &mut S, (index, item)| {
+            let result = work(scratch, index, item);
+            bar.inc(1);
+            result
+        };
+        let results = with_threads(self.threads, || items.par_iter().enumerate().map_init(S::default, one).collect())?;
+        bar.finish_and_clear();
+        Ok(results)
     }
 }
 

@@ -13,7 +13,7 @@ use super::contour_length::mean_length_and_grad;
 use super::fixed_shapes::FixedShapes;
 use super::{Adam, AdamSettings};
 use crate::parameters::{Free, Parameters};
-use crate::plateau::{Plateau, PlateauSettings};
+use dvp_core::optim::{Plateau, PlateauSettings};
 
 /// One run of Adam with fresh moments and a fresh schedule.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,7 +6,7 @@
 //! | file | |
 //! |---|---|
 //! | `mod` | [`Adam`] |
-//! | `descent` | Adam joined with a renderer, the schedule of [`crate::plateau`] and the vector of [`crate::parameters`] |
+//! | `descent` | Adam joined with a renderer, the schedule of [`dvp_core::optim`] and the vector of [`crate::parameters`] |
 //! | `fixed_shapes` | drawings while the shapes stay |
 //! | `contour_length` | the price on long outlines |
 
@@ -20,22 +20,7 @@ use alloc::vec::Vec;
 
 use dvp_core::Real;
 
-/// Settings of [`Adam`]; the defaults are PyTorch's.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AdamSettings {
-    /// Decay of the mean of the gradient, [0, 1).
-    pub beta1: f64,
-    /// Decay of the mean of the squared gradient, [0, 1).
-    pub beta2: f64,
-    /// Added to the root of the squared mean; above 0.
-    pub epsilon: f64,
-}
-
-impl Default for AdamSettings {
-    fn default() -> Self {
-        Self { beta1: 0.9, beta2: 0.999, epsilon: 1e-8 }
-    }
-}
+pub use dvp_core::optim::AdamSettings;
 
 /// Adam with bias correction, as PyTorch computes it:
 /// p <- p - lr / (1 - beta1^k) m / (sqrt(v) / sqrt(1 - beta2^k) + epsilon).

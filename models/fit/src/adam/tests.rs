@@ -1,7 +1,7 @@
 use alloc::vec::Vec;
 
 use super::{Adam, AdamSettings};
-use crate::plateau::{Plateau, PlateauSettings};
+use dvp_core::optim::{Plateau, PlateauSettings};
 
 #[test]
 fn first_steps_by_hand() {

@@ -7,9 +7,9 @@ use dvp_core::{Object, Real};
 
 use super::run::{Found, FoundObject, Run};
 use crate::joint::{JointObject, JointProblem, JointScene, refine};
-use crate::pose::gauss_newton::Frame;
+use crate::pose::gauss_newton::{Frame, wrapped};
 use crate::pose::search::{Candidate, Effort, search};
-use crate::{FitError, StopReason};
+use crate::{Completion, FitError, StopReason};
 
 /// An object with more visibly missed pixels around is searched for again.
 const MISSED_PIXELS: usize = 4;
@@ -152,16 +152,15 @@ impl<T: Real> Run<'_, T> {
         let efd = bank.and_then(|bank| bank.prototypes.get(part.shape)).map(|(_, efd)| efd.clone());
         let object = Object {
             pose: Pose {
-                translation: part.pose.translation.map(|v| v / unit),
-                scale: part.pose.log_scale.exp() / unit,
-                rotation: wrapped(part.pose.rotation),
+                rotation: wrapped(part.pose.rotation, T::of(core::f64::consts::TAU)),
+                ..part.pose.in_scene(unit)
             },
             color: part.color,
             confidence: part.confidence,
             efd: efd.unwrap_or_default(),
             prototype: Some(part.shape),
         };
-        FoundObject { object, segment: source.segment, twin: source.twin }
+        FoundObject { object, segment: source.segment, twin: source.twin, completion: Completion::Prototype }
     }
 }
 
@@ -171,10 +170,4 @@ fn twin<T: Real>(candidates: &[Candidate<T>]) -> Option<(usize, f64)> {
     let other = candidates.iter().find(|candidate| candidate.prototype != best.prototype)?;
     let floor = T::of(1e-6);
     Some((other.prototype, (other.cost.max(floor) / best.cost.max(floor)).as_f64()))
-}
-
-/// The angle in (-pi, pi].
-fn wrapped<T: Real>(angle: T) -> T {
-    let turn = T::of(core::f64::consts::TAU);
-    angle - turn * (angle / turn).round()
 }

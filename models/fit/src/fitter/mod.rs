@@ -1,9 +1,13 @@
 //! Segment-and-fit: the pipeline from an image to a [`Fit`].
 //!
-//! `pieces` joins what another object cuts in two, `order` decides which objects are in front, `known` poses the
+//! `pieces` joins what another object cuts in two, `order` decides which objects are in front (`junction`: by
+//! how their outlines meet), `known` poses the
 //! prototypes of a bank, `unknown` fits free outlines, `twins` splits what is several objects of one color; `run` is what
-//! they share: rendering (`shown`: only where something changed), colors, pruning, and the doubt that goes with the result.
+//! they share: rendering (`shown`: only where something changed), colors, pruning, and the doubt that goes with the result
+//! (`ambiguity`: what it leaves open).
 
+mod ambiguity;
+mod junction;
 mod known;
 mod order;
 mod pieces;
@@ -18,16 +22,17 @@ mod unknown;
 use alloc::vec::Vec;
 
 use dvp_core::render::{Compositing, EdgeLaw};
-use dvp_core::shape::{OutlineBasis, REFERENCE_VERTICES, SYMMETRY_TOLERANCE, Symmetry};
-use dvp_core::{Drawing, Efd, ImageView, Real};
+use dvp_core::shape::{OutlineBasis, REFERENCE_VERTICES};
+use dvp_core::{Drawing, ImageView, Real};
 
+use crate::block_code::{BlockCode, CodeScratch};
 use crate::colors::ColorScratch;
 use crate::free::basis::Basis;
 use crate::free::foot::EdgeLanes;
 use crate::free::grow::GrowScratch;
 use crate::free::start::StartScratch;
 use crate::joint::JointScratch;
-use crate::pose::field::OutlineField;
+use crate::options::check_finite;
 use crate::pose::search::{Candidate, Prototype};
 use crate::residual::Residual;
 use crate::segment::{EdgeKind, EdgeSample, Evidence, Segmentation};
@@ -47,7 +52,7 @@ pub struct Fitter<T> {
 }
 
 /// Memory of a [`Fitter`], one per thread, kept between images.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct FitScratch<T: Real> {
     segmentation: Segmentation<T>,
     candidates: Vec<Candidate<T>>,
@@ -64,34 +69,15 @@ pub struct FitScratch<T: Real> {
     samples: Vec<EdgeSample<T>>,
     colors: ColorScratch<T>,
     differences: Vec<T>,
+    /// The coder that wrote the image, if one is known.
+    code: Option<BlockCode<T>>,
+    code_bits: CodeScratch<T>,
 }
 
 impl<T: Real> FitScratch<T> {
     /// The segments of the last fit.
     pub(crate) fn segments(&self) -> &[crate::segment::Segment<T>] {
         self.segmentation.segments()
-    }
-}
-
-impl<T: Real> Default for FitScratch<T> {
-    fn default() -> Self {
-        Self {
-            segmentation: Segmentation::default(),
-            candidates: Vec::new(),
-            joint: JointScratch::default(),
-            drawing: Drawing::default(),
-            outline: Vec::new(),
-            shown: Shown::default(),
-            residual: Residual::default(),
-            start: StartScratch::default(),
-            free: GrowScratch::default(),
-            simple: SimpleShapes::default(),
-            twins: TwinScratch::default(),
-            lanes: EdgeLanes::default(),
-            samples: Vec::new(),
-            colors: ColorScratch::default(),
-            differences: Vec::new(),
-        }
     }
 }
 
@@ -124,10 +110,8 @@ impl<T: Real> Fitter<T> {
         let outlines = OutlineBasis::new(REFERENCE_VERTICES, harmonics.max(options.max_harmonics))?;
         let mut prototypes = Vec::with_capacity(bank.len());
         for (index, (_, efd)) in bank.iter().enumerate() {
-            let mut outline = alloc::vec![[T::zero(); 2]; REFERENCE_VERTICES];
-            outlines.outline(efd.rows(), &mut outline).map_err(|source| FitError::Prototype { index, source })?;
-            let field = OutlineField::new(&outline).ok_or(FitError::FlatPrototype { index })?;
-            prototypes.push(Prototype { outline, field, symmetry: symmetry_order(efd) });
+            let prototype = Prototype::new(efd, &outlines).map_err(|source| FitError::Prototype { index, source })?;
+            prototypes.push(prototype.ok_or(FitError::FlatPrototype { index })?);
         }
         let basis = Basis::new(REFERENCE_VERTICES, options.max_harmonics);
         Ok(Self { options, prototypes, outlines, basis })
@@ -138,11 +122,10 @@ impl<T: Real> Fitter<T> {
     /// # Errors
     /// [`FitError::NotFinite`] for an image with NaN or infinity.
     pub fn fit(&self, image: ImageView<'_, T>, scratch: &mut FitScratch<T>) -> Result<Fit<T>, FitError> {
-        // A view may be made of an image that was written to since it was checked.
-        if let Err(dvp_core::image::ImageError::NotFinite { index }) = ImageView::new(image.size(), image.data()) {
-            return Err(FitError::NotFinite { index });
-        }
+        check_finite(&image)?;
         scratch.shown.forget();
+        scratch.code = None;
+        scratch.code_bits.forget();
         self.best_reading(image, scratch)
     }
 
@@ -197,11 +180,3 @@ const DIRECT_PIXELS: u32 = 8;
 
 /// Harmonics that 64 vertices, two of them in one place, can carry.
 const MAX_HARMONICS: usize = 31;
-
-/// Symmetry order of a shape, 0 for a disk.
-pub(crate) fn symmetry_order<T: Real>(efd: &Efd<T>) -> usize {
-    match efd.symmetry(T::of(SYMMETRY_TOLERANCE)) {
-        Symmetry::Finite(order) => order,
-        Symmetry::Continuous => 0,
-    }
-}

@@ -2,7 +2,8 @@
 //!
 //! The outline between them belongs to the one in front; the other goes on behind it, unseen. Each is fitted with and
 //! without the shared stretch: a disk keeps its circle, while the crescent left of the one behind needs many harmonics, or
-//! fits no prototype. The assignment with the shorter description wins.
+//! fits no prototype. The assignment with the shorter description wins; if they are as long, how the outlines meet decides
+//! (`junction`).
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -10,6 +11,7 @@ use alloc::vec::Vec;
 use dvp_core::Real;
 
 use super::run::Run;
+use super::unknown::Guess;
 use crate::free::grow::Freedom;
 use crate::pose::search::Effort;
 use crate::price::{coefficient_bits, equal_bits, misfit_bits};
@@ -37,16 +39,18 @@ impl<T: Real> Run<'_, T> {
             let [a, b] = border.objects;
             let [behind_a, behind_b] = [a, b].map(|object| {
                 let held = alone[object as usize];
-                held.unwrap_or_else(|| *alone[object as usize].insert(self.part_bits(object)))
+                held.unwrap_or_else(|| *alone[object as usize].insert(self.part_bits(object, Guess::Likely)))
             });
             let [before_a, before_b] = [a, b].map(|object| {
                 self.scratch.segmentation.set_front(at, Some(object));
-                self.part_bits(object)
+                self.part_bits(object, Guess::Likely)
             });
             self.scratch.segmentation.set_front(at, None);
             let gain = (behind_a + before_b) - (before_a + behind_b);
+            let says_nothing = gain.abs() <= CLEARLY_SHORTER_BITS && self.fitter.prototypes.is_empty();
+            let junctions = if says_nothing { self.front_by_junctions(at) } else { None };
             // Objects are numbered by size: of two that could both be in front, the smaller is taken to be.
-            decided.push((at, if gain > CLEARLY_SHORTER_BITS { a } else { b }));
+            decided.push((at, junctions.unwrap_or(if gain > CLEARLY_SHORTER_BITS { a } else { b })));
         }
         for (at, front) in decided {
             self.scratch.segmentation.set_front(at, Some(front));
@@ -54,12 +58,12 @@ impl<T: Real> Run<'_, T> {
     }
 
     /// Bits of the shape of an object and of what its samples miss, from the borders that are decided for it.
-    pub(super) fn part_bits(&mut self, object: u32) -> f64 {
+    pub(super) fn part_bits(&mut self, object: u32, guess: Guess) -> f64 {
         let size = self.image.size();
         self.scratch.segmentation.gather_object(object, size, &self.kind);
         if self.fitter.prototypes.is_empty() {
-            let grown = self.outline_of(object as usize, Freedom::Full);
-            return grown.map_or(NO_FIT_BITS, |grown| {
+            let grown = self.outline_of(object as usize, Freedom::Full, guess);
+            return grown.map_or(NO_FIT_BITS, |(grown, _)| {
                 let rows = &grown.outline.rows;
                 grown.bits.as_f64() - equal_bits(rows.len()) + coefficient_bits(rows)
             });

@@ -9,10 +9,10 @@ use alloc::vec::Vec;
 use dvp_core::Real;
 
 use super::run::Run;
+use super::unknown::Guess;
 use crate::price::OBJECT_BITS;
+use crate::segment::color::may_be_same;
 
-/// Channel difference of pieces of one object (two rounding errors of 8 bits).
-const SAME_COLOR: f64 = 0.008;
 /// Most pieces that are tried together.
 const MOST_PIECES: usize = 8;
 /// Pieces some of which are in front and some behind must explain the outlines by so much better than one object does.
@@ -50,7 +50,7 @@ impl<T: Real> Run<'_, T> {
         }
         let same = |other: u32| {
             let part = &segments[other as usize];
-            part.pixels > 0 && (0..3).all(|c| (whole.color[c] - part.color[c]).abs() <= T::of(SAME_COLOR))
+            part.pixels > 0 && may_be_same((whole.color, whole.doubt), (part.color, part.doubt))
         };
         let mut open: Vec<u32> = (first + 1..segments.len() as u32).filter(|&other| same(other)).collect();
         while group.len() < MOST_PIECES {
@@ -92,7 +92,7 @@ impl<T: Real> Run<'_, T> {
         // Pieces on their own may be behind all covers, in front of all, or each where it fits best.
         let (mut front, mut apart) = (Vec::new(), [0.0; 3]);
         for &piece in pieces {
-            let behind = [self.part_bits(piece), self.bits_around(&covers, &[piece])];
+            let behind = [self.part_bits(piece, Guess::Shortest), self.bits_around(&covers, &[piece])];
             let before = [self.bits_if_front(piece, &covers), self.bits_around(&covers, &[])];
             apart[0] += behind[0];
             apart[1] += before[0];
@@ -110,7 +110,7 @@ impl<T: Real> Run<'_, T> {
         let others = f64::from(u32::try_from(pieces.len() - 1).unwrap_or(u32::MAX));
         let apart = OBJECT_BITS * others + apart.into_iter().fold(f64::INFINITY, f64::min);
         let before = self.scratch.segmentation.join(pieces);
-        let joined = self.part_bits(pieces[0]) + around;
+        let joined = self.part_bits(pieces[0], Guess::Shortest) + around;
         if joined < apart {
             return true;
         }
@@ -134,7 +134,7 @@ impl<T: Real> Run<'_, T> {
                 self.scratch.segmentation.set_front(at, Some(object));
             }
         }
-        let bits = self.part_bits(object);
+        let bits = self.part_bits(object, Guess::Shortest);
         for (at, front) in changed {
             self.scratch.segmentation.set_front(at, front);
         }

@@ -9,8 +9,10 @@ use alloc::vec::Vec;
 use dvp_core::render::{Compositing, EdgeLaw, EdgeProfile};
 use dvp_core::{ImageView, Real};
 
-use super::run::{Care, Run, visible_error};
+use super::run::{Care, Run, has_fractions, visible_error};
 use super::{DIRECT_PIXELS, FitScratch, Fitter};
+use crate::block_code::BlockCode;
+use crate::colors::{is_rounded, round_color};
 use crate::segment::{EdgeKind, NoisyOptions, SegmentOptions, noise_level};
 use crate::{Fit, FitError, StopReason};
 
@@ -18,14 +20,14 @@ use crate::{Fit, FitError, StopReason};
 const QUIET: f64 = 0.0015;
 /// What compression leaves beside edges is averaged away as noise of this standard deviation.
 const COMPRESSED: f64 = 0.06;
+/// In a picture whose coder is known, this much is averaged away in a second reading, for faint objects.
+const CODED: f64 = 0.03;
 /// A picture with more regions than this is not fitted as clean if most of its soft pixels lie between no two regions.
 const MOST_CLEAN_REGIONS: usize = 64;
 /// Compression it was if less than this share of the soft pixels is still soft when it is averaged away.
 const STILL_SOFT: f64 = 0.8;
 /// Compression blurs edges by up to about this much (scale of a logistic curve, px).
 const COMPRESSED_BLUR: f64 = 1.0;
-/// A scene that leaves a larger share of the variance unexplained may be the wrong reading.
-const SUSPICIOUS: f64 = 0.02;
 /// A picture of which flat objects leave a larger share of the variance is not flat.
 const NOT_FLAT: f64 = 0.05;
 /// Pictures with noise and more regions than this may be of another kind.
@@ -44,21 +46,23 @@ impl<T: Real> Fitter<T> {
     ) -> Result<Fit<T>, FitError> {
         let most_regions = self.options.max_objects.saturating_add(1);
         let noise = noise_level(&image, &mut scratch.differences);
+        let mut clean = false;
         let fit = if noise >= T::of(QUIET) {
             let options = NoisyOptions { noise, compressed: false, zone: None, most_regions };
             let readable = scratch.segmentation.read_noisy(&image, options);
             self.fit_noisy(image, readable, scratch)?
         } else {
             let readable = scratch.segmentation.read(&image, &SegmentOptions::default());
-            let clean = readable && scratch.segmentation.is_clean();
-            let first = clean.then(|| self.fit_reading(image, true, scratch)).transpose()?;
-            match first {
-                Some(fit) if fit.unexplained <= SUSPICIOUS => return Ok(fit),
-                first => self.or_compressed(image, first, most_regions, scratch)?,
+            let sharpened = readable && scratch.segmentation.is_sharpened();
+            clean = readable && !sharpened && scratch.segmentation.is_clean();
+            if clean {
+                self.fit_reading(image, true, scratch)?
+            } else {
+                self.or_compressed(image, sharpened, most_regions, scratch)?
             }
         };
         if fit.unexplained > NOT_FLAT && fit.stop != StopReason::NotFlat {
-            return self.or_not_flat(image, fit, most_regions, scratch);
+            return self.or_not_flat(image, fit, clean, most_regions, scratch);
         }
         Ok(fit)
     }
@@ -79,38 +83,48 @@ impl<T: Real> Fitter<T> {
         self.fit_reading(image, readable, scratch)
     }
 
-    /// The clean fit, or one freed from what compression left. The clean reading must be the last one.
+    /// A fit freed from what compression or a filter that sharpens left, or one of the picture as it is. The clean reading
+    /// must be the last one.
     fn or_compressed(
         &self,
         image: ImageView<'_, T>,
-        clean: Option<Fit<T>>,
+        sharpened: bool,
         most_regions: usize,
         scratch: &mut FitScratch<T>,
     ) -> Result<Fit<T>, FitError> {
+        scratch.code = BlockCode::of(&image);
         let (soft, regions) = (scratch.segmentation.soft_count(), scratch.segmentation.region_count());
         let options = NoisyOptions { noise: T::of(COMPRESSED), compressed: true, zone: None, most_regions };
         let readable = scratch.segmentation.read_noisy(&image, options);
         // What was soft in between edges is flat now: that was no edge.
         let surely = T::of_usize(scratch.segmentation.soft_count()) < T::of(STILL_SOFT) * T::of_usize(soft);
-        let freed = self.fit_noisy(image, readable, scratch)?;
-        let clean = match clean {
-            Some(clean) => clean,
-            None if surely || regions > MOST_CLEAN_REGIONS => return Ok(freed),
-            None => {
-                let readable = scratch.segmentation.read(&image, &SegmentOptions::default());
-                self.fit_reading(image, readable, scratch)?
+        let mut freed = self.fit_noisy(image, readable, scratch)?;
+        if scratch.code.is_some() {
+            // Faint objects are averaged away with the rest; the coder tells whether they are there.
+            let options = NoisyOptions { noise: T::of(CODED), ..options };
+            let readable = scratch.segmentation.read_noisy(&image, options);
+            let finer = self.fit_noisy(image, readable, scratch)?;
+            if finer.bits < freed.bits {
+                freed = finer;
             }
-        };
+        }
+        if surely || scratch.code.is_some() || sharpened || regions > MOST_CLEAN_REGIONS {
+            return Ok(freed);
+        }
+        let readable = scratch.segmentation.read(&image, &SegmentOptions::default());
+        let clean = self.fit_reading(image, readable, scratch)?;
         // At the lower level the clean reading's own description would count every trace of compression.
         let bits = self.bits_at(image, &clean, freed.noise, scratch)?;
         Ok(if bits <= freed.bits { clean } else { freed })
     }
 
-    /// The fit, or segments of a picture that is not flat, if those leave less unexplained.
+    /// The fit, or segments of a picture that is not flat, if those leave less unexplained; of a clean picture, if they
+    /// describe it in fewer bits: where objects are small or thin, their edges are most of the variance.
     fn or_not_flat(
         &self,
         image: ImageView<'_, T>,
         fit: Fit<T>,
+        clean: bool,
         most_regions: usize,
         scratch: &mut FitScratch<T>,
     ) -> Result<Fit<T>, FitError> {
@@ -120,7 +134,11 @@ impl<T: Real> Fitter<T> {
             return Ok(Fit { stop: StopReason::NotFlat, ..fit });
         }
         let segments = self.fit_segments(image, scratch)?;
-        let best = if segments.unexplained < fit.unexplained { segments } else { fit };
+        if (clean || scratch.code.is_some()) && self.bits_at(image, &fit, segments.noise, scratch)? <= segments.bits {
+            return Ok(fit);
+        }
+        let best =
+            if clean || scratch.code.is_some() || segments.unexplained < fit.unexplained { segments } else { fit };
         Ok(Fit { stop: StopReason::NotFlat, ..best })
     }
 
@@ -172,14 +190,40 @@ impl<T: Real> Fitter<T> {
             let (compositing, second) = self.compositings(evidence, &kind);
             for compositing in [Some(compositing), second].into_iter().flatten() {
                 let fit = self.fit_with(image, kind, compositing, care, scratch)?;
-                best = Some(best.filter(|best| best.bits <= fit.bits).unwrap_or(fit));
                 // Objects that hide one another cannot pass for ones that mix.
-                if 2 * scratch.residual.count_off(&direct, visible_error(scratch.segmentation.noise())) < direct.len() {
+                let off = scratch.residual.count_off(&direct, visible_error(scratch.segmentation.noise()));
+                best = Some(match best {
+                    Some(best) => self.shorter(image, best, fit, scratch)?,
+                    None => fit,
+                });
+                if 2 * off < direct.len() {
                     break;
                 }
             }
         }
         best.ok_or(FitError::Setting { what: "edge", must: "known" })
+    }
+
+    /// The fit of shorter description. Fractions of a step of color lie up to half a step off every flat pixel of a rounded
+    /// image: those of one fit must not speak against it.
+    fn shorter(
+        &self,
+        image: ImageView<'_, T>,
+        one: Fit<T>,
+        other: Fit<T>,
+        scratch: &mut FitScratch<T>,
+    ) -> Result<Fit<T>, FitError> {
+        let rounded = is_rounded(scratch.segmentation.region_colors().flatten());
+        let mut bits = |fit: &Fit<T>| {
+            if !rounded || !has_fractions(fit.scene.edge, fit.scene.compositing) {
+                return Ok(fit.bits);
+            }
+            let mut plain = fit.clone();
+            let colors = plain.scene.objects.iter_mut().map(|object| &mut object.color);
+            colors.chain([&mut plain.scene.background]).for_each(round_color);
+            self.bits_at(image, &plain, fit.noise, scratch)
+        };
+        Ok(if bits(&one)? <= bits(&other)? { one } else { other })
     }
 
     /// Description length of a fit, at another noise level than its own.
@@ -193,7 +237,7 @@ impl<T: Real> Fitter<T> {
         let (edge, compositing) = (fit.scene.edge, fit.scene.compositing);
         let mut run =
             Run { fitter: self, image, kind: EdgeKind::of(edge), edge, compositing, care: Care::Segments, scratch };
-        run.bits_at(&fit.scene, noise)
+        run.bits_of(&fit.scene, noise)
     }
 }
 

@@ -2,19 +2,19 @@
 
 use alloc::vec::Vec;
 
-use dvp_core::contour::contains;
 use dvp_core::render::contour::ContourRenderer;
 use dvp_core::render::{Compositing, EdgeLaw, EdgeProfile};
-use dvp_core::shape::REFERENCE_VERTICES;
 use dvp_core::{ImageView, Object, Real, Scene};
 
-use super::{FitScratch, Fitter, symmetry_order};
+use super::{FitScratch, Fitter};
+use crate::buys::{buys, ranking, squared_errors};
 use crate::colors::{MAX_COVERAGE_VALUES, is_rounded, refine_colors};
-use crate::doubt::{covariance, visible_share};
-use crate::price::scene_bits;
+use crate::doubt::covariance;
+use crate::price::{equal_bits, scene_bits};
 use crate::residual::Residual;
 use crate::segment::EdgeKind;
-use crate::{Ambiguity, Fit, FitError, StopReason};
+use crate::segment::color::distance;
+use crate::{Completion, Fit, FitError, StopReason};
 
 /// One image being fitted.
 pub(super) struct Run<'a, T: Real> {
@@ -54,26 +54,36 @@ pub(super) struct FoundObject<T> {
     pub(super) segment: usize,
     /// The next best prototype and its squared error over that of the chosen one.
     pub(super) twin: Option<(usize, f64)>,
+    /// What goes on where it is hidden, if it is.
+    pub(super) completion: Completion,
 }
 
 /// A rendering that misses a pixel by this much in some channel does so visibly.
 const VISIBLE_ERROR: f64 = 0.03;
 /// Under noise, this many standard deviations are visible; a picture has about one such pixel in 5000 by chance.
 const VISIBLE_NOISE: f64 = 4.0;
+/// Objects of fewer flat pixels, or of less contrast, must show that they pay for their description.
+const SURE_PIXELS: usize = 12;
+const SURE_CONTRAST: f64 = 0.03;
+/// Standard deviation of what the outlines of such objects miss: those of a few pixels are not fitted as exactly as those of
+/// many.
+const ROUGH_NOISE: f64 = 0.015;
+
+/// Harmonics of a plain shape.
+const PLAIN_HARMONICS: usize = 3;
+
 /// Residual that is visible at the given noise (standard deviation of a channel).
 pub(super) fn visible_error<T: Real>(noise: T) -> T {
     T::of(VISIBLE_ERROR).max(T::of(VISIBLE_NOISE) * noise)
 }
 
-/// Objects of fewer flat pixels, or of less contrast, must show that they pay for their description.
-const SURE_PIXELS: usize = 12;
-const SURE_CONTRAST: f64 = 0.03;
-/// Standard deviation of what the outlines of such objects miss.
-const ROUGH_NOISE: f64 = 0.015;
-/// The same in units of the noise.
-const SURE_NOISE: f64 = 10.0;
-/// A twin is worth telling if its squared error is below this many times that of the chosen prototype.
-const TWIN_RATIO: f64 = 4.0;
+/// Of the objects that are too many, one in so many goes before the others are judged again.
+const ROUND: usize = 4;
+
+/// Whether colors are fitted to a part of a step: proportions must be known as well, so only where the edge profile is exact.
+pub(super) fn has_fractions<T: Real>(edge: EdgeProfile<T>, compositing: Compositing) -> bool {
+    edge.law == EdgeLaw::SquaredDistance && compositing == Compositing::Blend
+}
 
 impl<T: Real> Run<'_, T> {
     pub(super) fn unit_px(&self) -> T {
@@ -105,26 +115,32 @@ impl<T: Real> Run<'_, T> {
 
     /// Cuts to the number of objects allowed, refines colors, drops what does not pay, and adds the doubt.
     pub(super) fn finish(mut self, mut found: Found<T>) -> Result<Fit<T>, FitError> {
-        self.keep_the_best(&mut found);
+        self.keep_the_best(&mut found)?;
         let mut scene = self.scene_of(&found);
         scene.draw(&self.fitter.outlines, &mut self.scratch.drawing)?;
         self.refine_colors(&mut scene)?;
         scene.draw(&self.fitter.outlines, &mut self.scratch.drawing)?;
         let mut loss = self.compare_drawing()?;
-        let mut bits = self.bits(&scene);
-        let mut rough_bits = self.rough_bits(&scene);
+        // A pixel that is nearly right counts as explained.
+        let rough = self.noise().max(T::of(ROUGH_NOISE));
+        let mut bits = None;
         let mut drawn = true;
         for at in (0..scene.objects.len()).rev() {
             if self.is_doubtful(&scene, &found.objects[at]) {
+                let before = match bits {
+                    Some(bits) => bits,
+                    None => self.bits(&scene, rough),
+                };
                 let object = scene.objects.remove(at);
                 scene.draw(&self.fitter.outlines, &mut self.scratch.drawing)?;
-                let without = (self.compare_drawing()?, self.bits(&scene), self.rough_bits(&scene));
-                if without.2 < rough_bits {
-                    (loss, bits, rough_bits) = without;
+                let without = (self.compare_drawing()?, self.bits(&scene, rough));
+                if without.1 < before {
+                    (loss, bits) = (without.0, Some(without.1));
                     found.objects.remove(at);
                     drawn = true;
                 } else {
                     scene.objects.insert(at, object);
+                    bits = Some(before);
                     drawn = false;
                 }
             }
@@ -136,10 +152,12 @@ impl<T: Real> Run<'_, T> {
             self.compare_drawing()?;
         }
         let noise = self.noise();
-        let unexplained = Residual::unexplained(&self.image, self.scratch.shown.pixels(), noise);
+        let bits = self.bits(&scene, noise);
+        let (unexplained, total) = Residual::unexplained(&self.image, self.scratch.shown.pixels(), noise);
+        let buys = buys(&self.scratch.drawing, &self.image, self.compositing, total);
         let stop =
             if scene.objects.is_empty() && found.stop != StopReason::NotFlat { StopReason::Empty } else { found.stop };
-        Ok(Fit { scene, loss, steps: found.steps, stop, covariance, ambiguity, unexplained, noise, bits })
+        Ok(Fit { scene, loss, steps: found.steps, stop, covariance, ambiguity, unexplained, buys, noise, bits })
     }
 
     pub(super) fn scene_of(&self, found: &Found<T>) -> Scene<T> {
@@ -151,23 +169,21 @@ impl<T: Real> Run<'_, T> {
         }
     }
 
-    /// If there are too many objects, keeps those that explain most: flat pixels times squared contrast.
-    fn keep_the_best(&self, found: &mut Found<T>) {
+    /// If there are too many objects, keeps those that buy most. What one buys depends on which others there are, so they go
+    /// in rounds; the order in which they are painted stays.
+    fn keep_the_best(&mut self, found: &mut Found<T>) -> Result<(), FitError> {
         let most = self.fitter.options.max_objects;
-        if found.objects.len() <= most {
-            return;
+        while found.objects.len() > most {
+            let excess = found.objects.len() - most;
+            self.scene_of(found).draw(&self.fitter.outlines, &mut self.scratch.drawing)?;
+            let ranked = ranking(&squared_errors(&self.scratch.drawing, &self.image, self.compositing));
+            let mut dropped = ranked[ranked.len() - excess.div_ceil(ROUND)..].to_vec();
+            dropped.sort_unstable();
+            for at in dropped.into_iter().rev() {
+                found.objects.remove(at);
+            }
         }
-        let background = found.background;
-        let gain = |part: &FoundObject<T>| {
-            let pixels = T::of_usize(self.scratch.segmentation.segments()[part.segment].pixels);
-            pixels * (0..3).map(|c| (part.object.color[c] - background[c]).powi(2)).sum::<T>()
-        };
-        let gains: Vec<T> = found.objects.iter().map(gain).collect();
-        let mut ranked: Vec<usize> = (0..gains.len()).collect();
-        ranked.sort_by(|&a, &b| gains[b].partial_cmp(&gains[a]).unwrap_or(core::cmp::Ordering::Equal));
-        // The order in which they are painted stays.
-        let mut at = 0..;
-        found.objects.retain(|_| at.next().is_some_and(|index| ranked[..most].contains(&index)));
+        Ok(())
     }
 
     /// Gives the colors of a rounded image back their fractions of a step.
@@ -175,9 +191,11 @@ impl<T: Real> Run<'_, T> {
         let scratch = &mut *self.scratch;
         let values = scene.objects.len() * self.image.size().pixels();
         let rounded = is_rounded(scratch.segmentation.region_colors().flatten());
-        // Proportions must be known to a part of a step: only where the edge profile is exact.
-        let known = self.edge.law == EdgeLaw::SquaredDistance && scene.compositing == Compositing::Blend;
-        if !known || !rounded || values > MAX_COVERAGE_VALUES || scene.objects.is_empty() {
+        if !has_fractions(self.edge, scene.compositing)
+            || !rounded
+            || values > MAX_COVERAGE_VALUES
+            || scene.objects.is_empty()
+        {
             return Ok(());
         }
         scratch.colors.coverage.resize(values, T::zero());
@@ -195,32 +213,43 @@ impl<T: Real> Run<'_, T> {
         Ok(())
     }
 
-    /// Description length of a scene and of what it leaves, at the given noise.
-    pub(super) fn bits_at(&mut self, scene: &Scene<T>, noise: T) -> Result<f64, FitError> {
+    /// Renders a scene; returns the length of its description and of what it leaves, at the given noise.
+    pub(super) fn bits_of(&mut self, scene: &Scene<T>, noise: T) -> Result<f64, FitError> {
         scene.draw(&self.fitter.outlines, &mut self.scratch.drawing)?;
         self.compare_drawing()?;
-        Ok(scene_bits(scene, self.fitter.prototypes.len()) + self.scratch.residual.bits(noise))
+        Ok(self.bits(scene, noise))
     }
 
-    /// Description length of the scene plus that of the residual last measured.
-    fn bits(&self, scene: &Scene<T>) -> f64 {
-        scene_bits(scene, self.fitter.prototypes.len()) + self.scratch.residual.bits(self.noise())
+    /// Description length of the scene plus that of the residual last measured, at the given noise; of a coded picture, of
+    /// what its coder cannot have thrown away.
+    fn bits(&mut self, scene: &Scene<T>, noise: T) -> f64 {
+        let spared: f64 = scene.objects.iter().map(|object| self.spared(object)).sum();
+        let FitScratch { code, code_bits, shown, residual, .. } = &mut *self.scratch;
+        let left = match code {
+            Some(code) => code.bits(&self.image, shown.pixels(), code_bits),
+            None => residual.bits(noise),
+        };
+        scene_bits(scene, self.fitter.prototypes.len()) - spared + left
     }
 
-    /// As [`Self::bits`], but a pixel that is nearly right counts as explained: outlines of a few pixels are not fitted
-    /// as exactly as those of many.
-    fn rough_bits(&self, scene: &Scene<T>) -> f64 {
-        let noise = self.noise().max(T::of(ROUGH_NOISE));
-        scene_bits(scene, self.fitter.prototypes.len()) + self.scratch.residual.bits(noise)
+    /// Bits that a plain shape would spare: in a coded picture, fine detail of an outline says how coarse its edge is and
+    /// not that there is no object.
+    fn spared(&self, object: &Object<T>) -> f64 {
+        let fine = object.efd.harmonic_count().saturating_sub(PLAIN_HARMONICS);
+        if self.scratch.code.is_some() && object.prototype.is_none() { equal_bits(fine) } else { 0.0 }
     }
 
     fn is_doubtful(&self, scene: &Scene<T>, part: &FoundObject<T>) -> bool {
         if self.care == Care::Segments {
             return false;
         }
+        if self.scratch.segmentation.is_noisy() {
+            // Its segment may be a piece of another object that noise cut off.
+            return true;
+        }
         let pixels = self.scratch.segmentation.segments()[part.segment].pixels;
-        let contrast = (0..3).fold(T::zero(), |most, c| most.max((part.object.color[c] - scene.background[c]).abs()));
-        pixels < SURE_PIXELS || contrast < T::of(SURE_CONTRAST).max(T::of(SURE_NOISE) * self.noise())
+        let contrast = distance(part.object.color, scene.background);
+        pixels < SURE_PIXELS || contrast < T::of(SURE_CONTRAST)
     }
 
     fn covariances(&mut self, scene: &Scene<T>, found: &Found<T>) -> Result<Vec<[T; 16]>, FitError> {
@@ -237,43 +266,5 @@ impl<T: Real> Run<'_, T> {
             out.push(covariance(&scratch.outline, center, samples, unit, noise, &mut scratch.lanes));
         }
         Ok(out)
-    }
-
-    fn ambiguities(&self, scene: &Scene<T>, found: &Found<T>) -> Vec<Ambiguity> {
-        let mut out = Vec::new();
-        let unit = self.unit_px();
-        for (object, part) in found.objects.iter().enumerate() {
-            let order = match part.object.prototype {
-                Some(k) => self.fitter.prototypes[k].symmetry,
-                None => symmetry_order(&scene.objects[object].efd),
-            };
-            if order != 1 {
-                out.push(Ambiguity::Symmetry { object, order });
-            }
-            if self.scratch.segmentation.segments()[part.segment].border > 0 {
-                let outline: [[T; 2]; REFERENCE_VERTICES] =
-                    core::array::from_fn(|i| self.scratch.drawing.outline(object)[i].map(|x| x * unit));
-                out.push(Ambiguity::Cropped { object, visible: visible_share(&outline, self.image.size()) });
-            }
-            out.extend(self.merged(found, object));
-            if let Some((prototype, ratio)) = part.twin.filter(|&(_, ratio)| ratio < TWIN_RATIO) {
-                out.push(Ambiguity::Twin { object, prototype, ratio });
-            }
-        }
-        out
-    }
-
-    /// The doubt about an object that shares its segment with others.
-    fn merged(&self, found: &Found<T>, object: usize) -> Option<Ambiguity> {
-        let segment = found.objects[object].segment;
-        let is_other = |&k: &usize| k != object && found.objects[k].segment == segment;
-        let other = (0..found.objects.len()).find(is_other)?;
-        let drawing = &self.scratch.drawing;
-        let outline = drawing.outline(object);
-        let hidden = |&&vertex: &&[T; 2]| {
-            (0..found.objects.len()).filter(is_other).any(|k| contains(drawing.outline(k), vertex))
-        };
-        let visible = T::of_usize(outline.len() - outline.iter().filter(hidden).count());
-        Some(Ambiguity::Merged { object, other, visible: (visible / T::of_usize(outline.len().max(1))).as_f64() })
     }
 }

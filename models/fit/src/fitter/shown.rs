@@ -21,7 +21,7 @@ const LARGE_WINDOW: usize = 2;
 const SLACK_PX: f64 = 2.0;
 
 /// The drawing last rendered, the rendering, and how far it is from the image.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Shown<T: Real> {
     drawing: Drawing<T>,
     setting: Option<(EdgeProfile<T>, Compositing)>,
@@ -32,21 +32,6 @@ pub(super) struct Shown<T: Real> {
     window: Drawing<T>,
     window_pixels: Vec<T>,
     outline: Vec<[T; 2]>,
-}
-
-impl<T: Real> Default for Shown<T> {
-    fn default() -> Self {
-        Self {
-            drawing: Drawing::default(),
-            setting: None,
-            pixels: Vec::new(),
-            error: 0.0,
-            render: Default::default(),
-            window: Drawing::default(),
-            window_pixels: Vec::new(),
-            outline: Vec::new(),
-        }
-    }
 }
 
 impl<T: Real> Shown<T> {

@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 
 use dvp_core::scene::Pose;
-use dvp_core::shape::REFERENCE_VERTICES;
+use dvp_core::shape::{REFERENCE_VERTICES, SYMMETRY_TOLERANCE, Symmetry};
 use dvp_core::{Efd, Object, Real};
 
 use super::known::Source;
@@ -12,10 +12,12 @@ use crate::FitError;
 use crate::free::grow::{Freedom, GrowSettings};
 use crate::free::outline_fit::FreeOutline;
 use crate::joint::{JointObject, JointScene};
+use crate::pose::field::OutlineField;
 use crate::pose::search::{Effort, search};
 use crate::price::{OBJECT_BITS, free_shape_bits, known_object_bits};
 use crate::split::motion::Motion;
-use crate::split::twins::{Union, is_waisted, misfit, repeats};
+use crate::split::twins::{Union, misfit, repeats};
+use crate::split::waist::{is_convex, is_waisted};
 use crate::split::{Explanation, split};
 
 /// Noise of a pixel value that free outlines leave: harmonics cut corners, by more the sharper they are, which says nothing of
@@ -45,6 +47,8 @@ impl Way {
 #[derive(Clone, Debug)]
 struct Waisted<T> {
     contour: Vec<[T; 2]>,
+    /// Its signed distance (px).
+    field: OutlineField<T>,
     /// Most robust mean squared distance error (px^2) that a union may have.
     most: T,
     /// Bits of its shape as one object.
@@ -72,7 +76,8 @@ impl<T: Real> Run<'_, T> {
             let sets = split(&self.scratch.segmentation.segments()[source.segment], &self.fitter.prototypes);
             let single = posed.objects[at];
             let mut placed = 1;
-            let mut best = (self.residual_bits(), Vec::from([single]));
+            let noise = self.noise();
+            let mut best = (self.scratch.residual.bits(noise), Vec::from([single]));
             for set in sets {
                 let parts = set.parts.iter();
                 let objects: Vec<JointObject<T>> =
@@ -81,7 +86,7 @@ impl<T: Real> Run<'_, T> {
                 placed = objects.len();
                 self.compare(posed)?;
                 let price = known_object_bits(self.fitter.prototypes.len()) * f64::of_usize(placed - 1);
-                let bits = self.residual_bits() + price;
+                let bits = self.scratch.residual.bits(noise) + price;
                 if bits < best.0 {
                     best = (bits, objects);
                 }
@@ -98,13 +103,15 @@ impl<T: Real> Run<'_, T> {
     /// Replaces outlines with a waist by two or three of simple shapes, or two of one simpler shape, where that shortens the
     /// description.
     pub(super) fn split_unknown(&mut self, found: &mut Found<T>) -> Result<(), FitError> {
+        // What cut corners leave is no evidence of a union.
+        let noise = self.noise().max(T::of(CORNER_NOISE));
         let (mut at, mut failures) = (0, 0);
         while at < found.objects.len() && failures < MOST_FAILURES {
             let single = found.objects[at].clone();
             let mut placed = 1;
             if let Some(waisted) = self.waisted(&single)? {
                 self.compare_found(found)?;
-                let mut best = (waisted.shape_bits + self.coarse_residual_bits(), Vec::from([single.clone()]));
+                let mut best = (waisted.shape_bits + self.scratch.residual.bits(noise), Vec::from([single.clone()]));
                 for way in Way::ALL {
                     for explanation in self.explanations(&waisted, &single, way) {
                         if explanation.cost > waisted.most {
@@ -115,7 +122,7 @@ impl<T: Real> Run<'_, T> {
                         placed = objects.len();
                         self.compare_found(found)?;
                         let poses = OBJECT_BITS * f64::of_usize(placed - 1);
-                        let bits = explanation.shape_bits + poses + self.coarse_residual_bits();
+                        let bits = explanation.shape_bits + poses + self.scratch.residual.bits(noise);
                         if bits < best.0 {
                             best = (bits, objects);
                         }
@@ -148,15 +155,26 @@ impl<T: Real> Run<'_, T> {
             return Ok(None);
         }
         let Some(contour) = self.contour_of(single.segment) else { return Ok(None) };
+        // Outlines of harmonics ripple beside corners, and bend inward there.
+        if is_convex(&contour) {
+            return Ok(None);
+        }
         let samples = &self.scratch.segmentation.segments()[single.segment].samples;
-        let misfit = misfit(&outline, samples);
+        let misfit = misfit(&outline, samples, &mut self.scratch.lanes);
         let most = T::of(MISFIT_RATIO) * misfit + T::of(MISFIT_SLACK);
         if self.is_simple(single.segment, most) {
             return Ok(None);
         }
+        let Some(field) = OutlineField::new(&contour) else { return Ok(None) };
         let samples = &self.scratch.segmentation.segments()[single.segment].samples;
-        let shape_bits = free_shape_bits(single.object.efd.harmonic_count(), repeats(&contour, samples));
-        Ok(Some(Waisted { contour, most, shape_bits }))
+        // The samples of a sharpened or noisy picture hide what the outline shows.
+        let turns = match single.object.efd.symmetry(T::of(SYMMETRY_TOLERANCE)) {
+            Symmetry::Finite(order) => order,
+            Symmetry::Continuous => 1,
+        };
+        let repeats = repeats(&contour, &field, samples).max(turns);
+        let shape_bits = free_shape_bits(single.object.efd.harmonic_count(), repeats);
+        Ok(Some(Waisted { contour, field, most, shape_bits }))
     }
 
     /// Outlines that others cover or cross are bent inward there by no union.
@@ -179,6 +197,7 @@ impl<T: Real> Run<'_, T> {
         let segment = &scratch.segmentation.segments()[single.segment];
         let union = Union {
             contour: &waisted.contour,
+            field: &waisted.field,
             samples: &segment.samples,
             basis: &self.fitter.basis,
             settings: GrowSettings {
@@ -219,14 +238,5 @@ impl<T: Real> Run<'_, T> {
             Some(FoundObject { object, ..single.clone() })
         };
         explanation.members.iter().map(place).collect()
-    }
-
-    /// Bits of the residual against the noise that cut corners of free outlines leave.
-    fn coarse_residual_bits(&self) -> f64 {
-        self.scratch.residual.bits(self.noise().max(T::of(CORNER_NOISE)))
-    }
-
-    fn residual_bits(&self) -> f64 {
-        self.scratch.residual.bits(self.noise())
     }
 }

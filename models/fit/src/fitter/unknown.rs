@@ -8,17 +8,40 @@ use dvp_core::shape::REFERENCE_VERTICES;
 use dvp_core::{Efd, Object, Real};
 
 use super::run::{Care, Found, FoundObject, Run};
-use crate::free::grow::{Freedom, GrowSettings, Grown, grow, hold_outside};
+use crate::free::conic::ellipse_through;
+use crate::free::foot::{EdgeLanes, foot};
+use crate::free::grow::{Freedom, GrowSettings, Grown, grow, hold, hold_outside};
+use crate::free::repeat::complete;
+use crate::free::sight::Sight;
 use crate::free::start::{shrink, trace};
-use crate::{FitError, StopReason};
+use crate::pose::search::symmetry_order;
+use crate::{Completion, FitError, StopReason};
 
 /// An outline with more visibly missed pixels around may have folded; a corner that is cut misses fewer.
 const MISSED_PIXELS: usize = 16;
 /// An outline with less freedom has more harmonics: it must miss clearly less.
 const CLEARLY_LESS: f64 = 0.8;
 
+/// An outline of which a larger share is seen needs no completion.
+const MOSTLY_SEEN: f64 = 0.97;
+
 /// Outline (px) per harmonic of a segment of a picture that is not flat.
 const SEGMENT_HARMONIC_PX: f64 = 6.0;
+
+/// Points of a completed outline this close (px) to the shortest way are no other guess.
+const SAME_PX: f64 = 1.5;
+
+/// Noise of independent samples that says as little of an outline as that of a coded picture, in units of the latter.
+const CODED_ALIKE: f64 = 2.0;
+
+/// How an outline goes on where it is hidden.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Guess {
+    /// The shortest way.
+    Shortest,
+    /// As what is seen has it, if that is an ellipse or repeats itself.
+    Likely,
+}
 
 impl<T: Real> Run<'_, T> {
     /// Fits an outline to every segment.
@@ -28,9 +51,9 @@ impl<T: Real> Run<'_, T> {
         let freedom = if self.care == Care::Full { Freedom::Full } else { Freedom::None };
         for segment in self.painting_order() {
             let segment = segment as usize;
-            if let Some((object, steps)) = self.object_of(segment, freedom) {
+            if let Some((object, steps, completion)) = self.object_of(segment, freedom) {
                 found.steps += steps;
-                found.objects.push(FoundObject { object, segment, twin: None });
+                found.objects.push(FoundObject { object, segment, twin: None, completion });
             }
         }
         if self.care == Care::Full {
@@ -55,19 +78,19 @@ impl<T: Real> Run<'_, T> {
                 continue;
             }
             let segment = part.segment;
-            let mut best = part.object.clone();
+            let mut best = (part.object.clone(), part.completion);
             for freedom in [Freedom::Normals, Freedom::None] {
-                if let Some((object, steps)) = self.object_of(segment, freedom) {
+                if let Some((object, steps, completion)) = self.object_of(segment, freedom) {
                     found.steps += steps;
                     found.objects[at].object = object;
                     let tried = self.compare_found(found)?;
                     if tried < T::of(CLEARLY_LESS) * loss {
                         loss = tried;
-                        best = found.objects[at].object.clone();
+                        best = (found.objects[at].object.clone(), completion);
                     }
                 }
             }
-            found.objects[at].object = best;
+            (found.objects[at].object, found.objects[at].completion) = best;
             loss = self.compare_found(found)?;
         }
         Ok(())
@@ -78,9 +101,9 @@ impl<T: Real> Run<'_, T> {
         self.compare_drawing()
     }
 
-    /// The object of a segment, and the steps it took; none if it encloses nothing.
-    fn object_of(&mut self, segment: usize, freedom: Freedom) -> Option<(Object<T>, usize)> {
-        let grown = self.outline_of(segment, freedom)?;
+    /// The object of a segment, the steps it took, and what completes it; none if it encloses nothing.
+    fn object_of(&mut self, segment: usize, freedom: Freedom) -> Option<(Object<T>, usize, Completion)> {
+        let (grown, completion) = self.outline_of(segment, freedom, Guess::Likely)?;
         // A first harmonic of size 0 has no pose.
         let normal = Efd::new(grown.outline.rows).normalize().ok()?;
         let unit = self.unit_px();
@@ -95,7 +118,7 @@ impl<T: Real> Run<'_, T> {
             efd: normal.efd,
             prototype: None,
         };
-        Some((object, grown.steps))
+        Some((object, grown.steps, completion))
     }
 
     /// The outline of a segment as traced (px); none if it encloses nothing.
@@ -109,11 +132,19 @@ impl<T: Real> Run<'_, T> {
         Some(shrink(&contour, half_coverage_px))
     }
 
-    pub(super) fn outline_of(&mut self, segment: usize, freedom: Freedom) -> Option<Grown<T>> {
+    /// The outline of a segment, and what completes it where it is hidden.
+    pub(super) fn outline_of(
+        &mut self,
+        segment: usize,
+        freedom: Freedom,
+        guess: Guess,
+    ) -> Option<(Grown<T>, Completion)> {
         let size = self.image.size();
         let contour = self.contour_of(segment)?;
         let scratch = &mut *self.scratch;
-        let noise = scratch.segmentation.noise();
+        // Neighbors along an edge of a coded picture are off alike, so that each says less.
+        let alike = if scratch.code.is_some() { T::of(CODED_ALIKE) } else { T::one() };
+        let noise = alike * scratch.segmentation.noise();
         let part = &scratch.segmentation.segments()[segment];
         scratch.samples.clear();
         scratch.samples.extend_from_slice(&part.samples);
@@ -125,7 +156,54 @@ impl<T: Real> Run<'_, T> {
             // No samples decide how many pay.
             max_harmonics = (perimeter(&contour) / T::of(SEGMENT_HARMONIC_PX)).to_count().clamp(1, max_harmonics);
         }
+        let basis = &self.fitter.basis;
         let settings = GrowSettings { vertex_count: REFERENCE_VERTICES, max_harmonics, freedom, noise };
-        grow(&contour, &scratch.samples, &self.fitter.basis, settings, &mut scratch.free)
+        let straight = grow(&contour, &scratch.samples, basis, settings, &mut scratch.free)?;
+        let object = u32::try_from(segment).ok()?;
+        let whole = freedom != Freedom::Full || guess == Guess::Shortest || !scratch.segmentation.may_go_on(object);
+        if whole || straight.outline.rows.len() == 1 {
+            return Some(with_completion(straight));
+        }
+        let sight = Sight::new(&part.rim, object, &scratch.segmentation, size);
+        let seen: Vec<[T; 2]> = contour.iter().copied().filter(|&point| sight.shows(point)).collect();
+        if T::of_usize(seen.len()) > T::of(MOSTLY_SEEN) * T::of_usize(contour.len()) {
+            return Some(with_completion(straight));
+        }
+        if let Some(ellipse) = ellipse_through(&seen).filter(|outline| outline.iter().all(|&point| sight.allows(point)))
+        {
+            let settings = GrowSettings { max_harmonics: 1, ..settings };
+            let grown = grow(&ellipse, &scratch.samples, basis, settings, &mut scratch.free)?;
+            if grown.bits < straight.bits {
+                return Some(with_completion(grown));
+            }
+        }
+        let Some((outline, completion)) = complete(&contour, |point| sight.shows(point), &|point| sight.allows(point))
+        else {
+            return Some(with_completion(straight));
+        };
+        if is_near(&outline, &contour) {
+            // The shortest way is that of the symmetry.
+            return Some((straight, completion));
+        }
+        hold(outline.iter().copied().filter(|&point| !sight.shows(point)), &mut scratch.samples);
+        let grown = grow(&outline, &scratch.samples, basis, settings, &mut scratch.free)?;
+        Some((grown, completion))
     }
+}
+
+/// An outline that nothing but its harmonics completes: an ellipse goes on as it must, any other the shortest way.
+fn with_completion<T: Real>(grown: Grown<T>) -> (Grown<T>, Completion) {
+    let completion = match &*grown.outline.rows {
+        &[row] => Completion::Rotation { order: symmetry_order(&Efd::new(Vec::from([row]))) },
+        _ => Completion::Straight,
+    };
+    (grown, completion)
+}
+
+/// Whether all points of one outline are close to the other.
+fn is_near<T: Real>(outline: &[[T; 2]], other: &[[T; 2]]) -> bool {
+    let mut lanes = EdgeLanes::default();
+    let closed: Vec<[T; 2]> = other.iter().chain(other.first()).copied().collect();
+    lanes.set(&closed);
+    outline.iter().all(|&point| foot(&closed, &mut lanes, point).distance.abs() < T::of(SAME_PX))
 }

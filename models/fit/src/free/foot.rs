@@ -3,6 +3,7 @@
 use alloc::vec::Vec;
 
 use dvp_core::Real;
+use dvp_core::contour::signed_area;
 
 /// Edges of a closed polygon as lanes: start, step, inverse squared length, and room for squared distances.
 #[derive(Clone, Debug, Default)]
@@ -104,8 +105,4 @@ pub(crate) fn foot<T: Real>(vertices: &[[T; 2]], lanes: &mut EdgeLanes<T>, point
 fn length<T: Real>(a: [T; 2], b: [T; 2]) -> T {
     let (x, y) = (b[0] - a[0], b[1] - a[1]);
     (x * x + y * y).sqrt().max(T::of(1e-9))
-}
-
-fn signed_area<T: Real>(vertices: &[[T; 2]]) -> T {
-    vertices.windows(2).map(|pair| pair[0][0] * pair[1][1] - pair[0][1] * pair[1][0]).sum()
 }

@@ -164,14 +164,16 @@ fn most_promising_cut<T: Real>(
     best.1
 }
 
+/// Weight of samples that hold an outline where nothing is seen of it.
+const HOLD: f64 = 0.02;
+
 /// Samples that hold the invisible part of a cropped outline where it was traced, beyond the image border.
 pub(crate) fn hold_outside<T: Real>(contour: &[[T; 2]], width: T, height: T, samples: &mut Vec<EdgeSample<T>>) {
-    let half = T::of(0.5);
-    for [x, y] in resample(contour, 96) {
-        let beyond = (-x).max(-y).max(x - width).max(y - height);
-        if beyond > half {
-            let weight = T::of(0.02);
-            samples.push(EdgeSample { point: [x, y], distance: T::zero(), weight });
-        }
-    }
+    let beyond = |&[x, y]: &[T; 2]| (-x).max(-y).max(x - width).max(y - height) > T::of(0.5);
+    hold(resample(contour, 96).into_iter().filter(beyond), samples);
+}
+
+/// Samples that hold an outline at points.
+pub(crate) fn hold<T: Real>(points: impl Iterator<Item = [T; 2]>, samples: &mut Vec<EdgeSample<T>>) {
+    samples.extend(points.map(|point| EdgeSample { point, distance: T::zero(), weight: T::of(HOLD) }));
 }

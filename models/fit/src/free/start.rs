@@ -15,7 +15,9 @@ const MARGIN: usize = 3;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct StartScratch<T> {
     field: Vec<T>,
-    filled: Vec<T>,
+    /// Indices of pixels without a value, and the values found for some of them.
+    unknown: Vec<usize>,
+    filled: Vec<(usize, T)>,
     left: Vec<[T; 2]>,
     right: Vec<[T; 2]>,
 }
@@ -40,15 +42,18 @@ pub(crate) fn trace<T: Real>(
     field.clear();
     field.resize(columns * rows, T::nan());
     for y in low_y..high_y {
-        let line = &mut field[(y - low_y + MARGIN) * columns..][..columns];
-        for x in low_x..high_x {
-            if let Some(inside) = segmentation.covers(y * size.width() + x, object) {
-                line[x - low_x + MARGIN] = if inside { T::one() } else { T::zero() };
+        let mut line = &mut field[(y - low_y + MARGIN) * columns + MARGIN..][..high_x - low_x];
+        // Neighbors are mostly of one region: it is asked once.
+        for same in segmentation.labels()[y * size.width()..][low_x..high_x].chunk_by(|a, b| a == b) {
+            let (run, rest) = core::mem::take(&mut line).split_at_mut(same.len());
+            line = rest;
+            if let Some(inside) = segmentation.region_covers(same[0], object) {
+                run.fill(if inside { T::one() } else { T::zero() });
             }
         }
     }
     let hidden = |x: usize, y: usize| segmentation.may_be_hidden(y * size.width() + x, object);
-    if segmentation.borders().iter().any(|border| border.front != Some(object) && border.objects.contains(&object)) {
+    if segmentation.may_go_on(object) {
         fill_hidden(field, columns, [low_x, low_y], [high_x, high_y], hidden, &mut scratch.left, &mut scratch.right);
     }
     for &([x, y], coverage) in &segment.rim {
@@ -57,7 +62,7 @@ pub(crate) fn trace<T: Real>(
             field[(y - low_y + MARGIN) * columns + x - low_x + MARGIN] = coverage;
         }
     }
-    fill_unknown(field, &mut scratch.filled, columns);
+    fill_unknown(field, &mut scratch.unknown, &mut scratch.filled, columns);
     let at_border = [low_x == 0, low_y == 0, high_x == size.width(), high_y == size.height()];
     continue_beyond(field, columns, rows, at_border);
     let window = ImageSize::new(columns, rows).ok()?;
@@ -147,15 +152,12 @@ fn at_row<T: Real>(chain: &[[T; 2]], row: usize) -> Option<T> {
 }
 
 /// Gives soft pixels without a sample the mean of their known neighbors, ring by ring.
-fn fill_unknown<T: Real>(field: &mut Vec<T>, filled: &mut Vec<T>, columns: usize) {
+fn fill_unknown<T: Real>(field: &mut [T], unknown: &mut Vec<usize>, filled: &mut Vec<(usize, T)>, columns: usize) {
+    unknown.clear();
+    unknown.extend((columns..field.len().saturating_sub(columns)).filter(|&i| field[i].is_nan()));
     for _ in 0..4 {
         filled.clear();
-        filled.extend_from_slice(field);
-        let mut open = false;
-        for i in columns..field.len().saturating_sub(columns) {
-            if !field[i].is_nan() {
-                continue;
-            }
+        unknown.retain(|&i| {
             let known = [i - 1, i + 1, i - columns, i + columns].map(|j| field[j]);
             let (mut sum, mut count) = (T::zero(), 0);
             for value in known.into_iter().filter(|value| !value.is_nan()) {
@@ -163,13 +165,14 @@ fn fill_unknown<T: Real>(field: &mut Vec<T>, filled: &mut Vec<T>, columns: usize
                 count += 1;
             }
             if count > 0 {
-                filled[i] = sum / T::of_usize(count);
-            } else {
-                open = true;
+                filled.push((i, sum / T::of_usize(count)));
             }
+            count == 0
+        });
+        for &(i, value) in filled.iter() {
+            field[i] = value;
         }
-        core::mem::swap(field, filled);
-        if !open {
+        if filled.is_empty() || unknown.is_empty() {
             break;
         }
     }
@@ -177,18 +180,29 @@ fn fill_unknown<T: Real>(field: &mut Vec<T>, filled: &mut Vec<T>, columns: usize
 
 /// Copies border pixels of the image outward and clears the outermost ring.
 fn continue_beyond<T: Real>(field: &mut [T], columns: usize, rows: usize, at_border: [bool; 4]) {
-    let clamp = |v: usize, low: bool, high: bool, count: usize| {
-        let first = if low { MARGIN } else { 0 };
-        let last = if high { count - MARGIN - 1 } else { count - 1 };
-        v.clamp(first, last)
-    };
-    for y in 0..rows {
-        for x in 0..columns {
-            let outer = x == 0 || y == 0 || x + 1 == columns || y + 1 == rows;
-            let source =
-                clamp(y, at_border[1], at_border[3], rows) * columns + clamp(x, at_border[0], at_border[2], columns);
-            let value = field[source];
-            field[y * columns + x] = if outer || value.is_nan() { T::zero() } else { value };
+    let [left, top, right, bottom] = at_border;
+    for line in field.chunks_exact_mut(columns) {
+        if left {
+            let first = line[MARGIN];
+            line[..MARGIN].fill(first);
+        }
+        if right {
+            let last = line[columns - MARGIN - 1];
+            line[columns - MARGIN..].fill(last);
+        }
+        line.iter_mut().for_each(|value| *value = if value.is_nan() { T::zero() } else { *value });
+        line[0] = T::zero();
+        line[columns - 1] = T::zero();
+    }
+    let line = |row: usize| row * columns..(row + 1) * columns;
+    for row in 1..MARGIN {
+        if top {
+            field.copy_within(line(MARGIN), row * columns);
+        }
+        if bottom {
+            field.copy_within(line(rows - MARGIN - 1), (rows - 1 - row) * columns);
         }
     }
+    field[line(0)].fill(T::zero());
+    field[line(rows - 1)].fill(T::zero());
 }

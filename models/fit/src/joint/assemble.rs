@@ -3,9 +3,9 @@
 use alloc::vec::Vec;
 
 use dvp_core::Real;
-use dvp_core::render::Compositing;
 use dvp_core::scene::PixelProfile;
 
+use super::composite::{Cover, composite};
 use super::{JointProblem, JointScene, PER_OBJECT};
 use crate::cholesky::packed;
 use crate::pose::gauss_newton::Frame;
@@ -27,20 +27,6 @@ pub(crate) struct JointScratch<T> {
     /// Per object: first and last column and row (exclusive) it can cover.
     boxes: Vec<[usize; 4]>,
     covers: Vec<Cover<T>>,
-    rows: Vec<[T; PER_OBJECT]>,
-}
-
-/// An object at a pixel.
-#[derive(Clone, Copy, Debug)]
-struct Cover<T> {
-    object: usize,
-    coverage: T,
-    /// Derivative of the coverage with respect to x, y, log scale, rotation.
-    slope: [T; 4],
-    /// Products and weights of compositing: derivative of a channel is `to_color` for the object's own color, and
-    /// `to_coverage[c]` for its coverage.
-    to_color: T,
-    to_coverage: [T; 3],
 }
 
 /// The edge profile in pixels.
@@ -171,114 +157,70 @@ impl<T: Real> JointScratch<T> {
             self.covers.push(Cover { object: k, coverage, slope, to_color: T::zero(), to_coverage });
         }
         let (color, to_background) = composite(problem.compositing, scene, &mut self.covers);
-        if !problem.colors {
-            self.covers.iter_mut().for_each(|cover| cover.to_color = T::zero());
-        }
         let target = problem.image.pixel(index);
         let inverse = T::one() / (problem.width * problem.width);
         let mut cost = T::zero();
-        let base = scene.objects.len() * PER_OBJECT;
+        let (mut residuals, mut weights) = ([T::zero(); 3], [T::zero(); 3]);
         for c in 0..3 {
             let residual = color[c] - target[c];
             let falloff = T::one() / (T::one() + residual * residual * inverse);
             cost += pixel_weight * residual * residual * falloff;
-            let weight = pixel_weight * falloff * falloff;
-            self.rows.clear();
-            for cover in &self.covers {
-                let mut row = [T::zero(); PER_OBJECT];
-                for (value, &slope) in row.iter_mut().zip(&cover.slope) {
-                    *value = slope * cover.to_coverage[c];
-                }
-                row[4 + c] = cover.to_color;
-                self.rows.push(row);
+            residuals[c] = residual;
+            weights[c] = pixel_weight * falloff * falloff;
+        }
+        let over_channels = |a: [T; 3], b: [T; 3]| (0..3).map(|c| weights[c] * a[c] * b[c]).sum::<T>();
+        for (k, a) in self.covers.iter().enumerate() {
+            let at = a.object * PER_OBJECT;
+            // The channels share the slopes of a coverage.
+            let pull = over_channels(a.to_coverage, residuals);
+            for i in 0..4 {
+                self.gradient[at + i] += pull * a.slope[i];
             }
-            for (a, row_a) in self.covers.iter().zip(&self.rows) {
-                let at = a.object * PER_OBJECT;
-                for i in (0..4).chain([4 + c]) {
-                    let scaled = weight * row_a[i];
-                    self.gradient[at + i] += scaled * residual;
-                    for (b, row_b) in self.covers.iter().zip(&self.rows) {
-                        if b.object > a.object {
-                            break;
-                        }
-                        let start = packed(at + i, b.object * PER_OBJECT);
-                        let end = if b.object == a.object { i } else { PER_OBJECT - 1 };
-                        for (h, &value) in self.hessian[start..=start + end].iter_mut().zip(row_b) {
-                            *h += scaled * value;
-                        }
+            for b in &self.covers[..=k] {
+                let shared = over_channels(a.to_coverage, b.to_coverage);
+                for i in 0..4 {
+                    let start = packed(at + i, b.object * PER_OBJECT);
+                    let end = if b.object == a.object { i } else { 3 };
+                    let scaled = shared * a.slope[i];
+                    for (h, &slope) in self.hessian[start..=start + end].iter_mut().zip(&b.slope) {
+                        *h += scaled * slope;
                     }
                 }
             }
-            if problem.colors {
-                let own = base + c;
-                self.gradient[own] += weight * to_background * residual;
-                self.hessian[packed(own, own)] += weight * to_background * to_background;
-                for (cover, row) in self.covers.iter().zip(&self.rows) {
-                    let start = packed(own, cover.object * PER_OBJECT);
-                    for (h, &value) in self.hessian[start..start + PER_OBJECT].iter_mut().zip(row) {
-                        *h += weight * to_background * value;
-                    }
-                }
-            }
+        }
+        if problem.colors {
+            self.add_colors(scene.objects.len() * PER_OBJECT, to_background, residuals, weights);
         }
         cost
     }
-}
 
-/// Color of the pixel and its derivatives; the derivative with respect to the background is returned.
-fn composite<T: Real>(compositing: Compositing, scene: &JointScene<T>, covers: &mut [Cover<T>]) -> ([T; 3], T) {
-    let one = T::one();
-    let background = scene.background;
-    let mut clear = one;
-    for cover in covers.iter() {
-        clear *= one - cover.coverage * scene.objects[cover.object].confidence;
-    }
-    match compositing {
-        Compositing::Blend => {
-            let (mut total, mut mean) = (T::zero(), [T::zero(); 3]);
-            let importance = |k: usize| ((scene.objects[k].confidence - one) * T::of(10.0)).exp();
-            for cover in covers.iter() {
-                let weight = cover.coverage * importance(cover.object);
-                total += weight;
-                for c in 0..3 {
-                    mean[c] += weight * scene.objects[cover.object].color[c];
+    /// What a pixel says of colors: those of its objects, and that of the background at `base`.
+    fn add_colors(&mut self, base: usize, to_background: T, residuals: [T; 3], weights: [T; 3]) {
+        for c in 0..3 {
+            let own = base + c;
+            let scaled = weights[c] * to_background;
+            self.gradient[own] += scaled * residuals[c];
+            self.hessian[packed(own, own)] += scaled * to_background;
+            for (k, a) in self.covers.iter().enumerate() {
+                let at = a.object * PER_OBJECT;
+                let to_own = weights[c] * a.to_color;
+                self.gradient[at + 4 + c] += to_own * residuals[c];
+                self.hessian[packed(own, at + 4 + c)] += scaled * a.to_color;
+                for i in 0..4 {
+                    self.hessian[packed(own, at + i)] += scaled * a.to_coverage[c] * a.slope[i];
                 }
-            }
-            let total = total.max(T::of(1e-7));
-            let mean = mean.map(|value| value / total);
-            let alpha = one - clear;
-            for at in 0..covers.len() {
-                let mut others = one;
-                for (j, cover) in covers.iter().enumerate() {
-                    if j != at {
-                        others *= one - cover.coverage * scene.objects[cover.object].confidence;
+                for b in &self.covers[..=k] {
+                    let other = b.object * PER_OBJECT;
+                    self.hessian[packed(at + 4 + c, other + 4 + c)] += to_own * b.to_color;
+                    for i in 0..4 {
+                        self.hessian[packed(at + 4 + c, other + i)] += to_own * b.to_coverage[c] * b.slope[i];
+                        if b.object != a.object {
+                            let crossed = weights[c] * a.to_coverage[c] * a.slope[i] * b.to_color;
+                            self.hessian[packed(at + i, other + 4 + c)] += crossed;
+                        }
                     }
                 }
-                let object = &scene.objects[covers[at].object];
-                let weight = importance(covers[at].object);
-                covers[at].to_color = alpha * covers[at].coverage * weight / total;
-                for c in 0..3 {
-                    covers[at].to_coverage[c] = (mean[c] - background[c]) * object.confidence * others
-                        + alpha * weight * (object.color[c] - mean[c]) / total;
-                }
             }
-            (core::array::from_fn(|c| background[c] + alpha * (mean[c] - background[c])), clear)
-        }
-        Compositing::Over => {
-            let mut color = background;
-            for at in 0..covers.len() {
-                let object = &scene.objects[covers[at].object];
-                let opacity = covers[at].coverage * object.confidence;
-                let above = covers[at + 1..].iter().fold(one, |product, cover| {
-                    product * (one - cover.coverage * scene.objects[cover.object].confidence)
-                });
-                covers[at].to_color = opacity * above;
-                for c in 0..3 {
-                    covers[at].to_coverage[c] = object.confidence * (object.color[c] - color[c]) * above;
-                    color[c] += opacity * (object.color[c] - color[c]);
-                }
-            }
-            (color, clear)
         }
     }
 }

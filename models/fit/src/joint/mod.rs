@@ -1,11 +1,12 @@
 //! Joint refinement of all poses and colors by Levenberg-Marquardt on pixels, with analytic Jacobians.
 //!
 //! In: an image and objects near the truth. Out: the same objects, moved. `assemble` makes the normal equations from the
-//! pixels near outlines, [`refine`] takes damped steps, and [`continue_sigma`] does so at softer edges first, which widens
-//! the basin from about a pixel to several.
+//! pixels near outlines, whose colors `composite` knows, [`refine`] takes damped steps, and [`continue_sigma`] does so at
+//! softer edges first, which widens the basin from about a pixel to several.
 
-#[expect(clippy::needless_range_loop, reason = "loops over channels walk several arrays")]
 mod assemble;
+#[expect(clippy::needless_range_loop, reason = "loops over channels walk several arrays")]
+mod composite;
 #[cfg(test)]
 mod tests;
 

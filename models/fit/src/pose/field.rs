@@ -3,7 +3,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use dvp_core::Real;
+use dvp_core::{Real, simd};
 
 /// Cells per side of the grid.
 const CELLS: usize = 64;
@@ -74,29 +74,14 @@ impl<T: Real> OutlineField<T> {
             centroid: centroid(vertices, signed),
             radius,
         };
-        field.fill_grid();
+        simd::dispatch(FillGrid { field: &mut field });
         Some(field)
     }
 
-    fn fill_grid(&mut self) {
-        for row in 0..CELLS {
-            for column in 0..CELLS {
-                let point = [
-                    self.low[0] + (T::of_usize(column) + T::of(0.5)) / self.cells_per_unit,
-                    self.low[1] + (T::of_usize(row) + T::of(0.5)) / self.cells_per_unit,
-                ];
-                let mut best = (T::infinity(), 0);
-                let inner = 1..self.edges.len() - 1;
-                for (i, edge) in inner.clone().zip(&self.edges[inner]) {
-                    let (squared, _, _) = edge.closest(point);
-                    if squared < best.0 {
-                        best = (squared, i);
-                    }
-                }
-                self.nearest[row * CELLS + column] = u16::try_from(best.1).unwrap_or(u16::MAX);
-                self.centers[row * CELLS + column] = self.distance(point).0;
-            }
-        }
+    /// The middle of a column or row of cells.
+    #[inline(always)]
+    fn middle(&self, axis: usize, cell: usize) -> T {
+        self.low[axis] + (T::of_usize(cell) + T::of(0.5)) / self.cells_per_unit
     }
 
     fn cell(&self, point: [T; 2]) -> usize {
@@ -153,6 +138,40 @@ impl<T: Real> OutlineField<T> {
         let sign = if side < T::zero() { -T::one() } else { T::one() };
         let scale = sign / length;
         (sign * length, [offset[0] * scale, offset[1] * scale])
+    }
+}
+
+/// Finds the nearest edge of every cell, a row of cells at a time.
+struct FillGrid<'a, T> {
+    field: &'a mut OutlineField<T>,
+}
+
+impl<T: Real> simd::Kernel for FillGrid<'_, T> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let field = self.field;
+        let x: [T; CELLS] = simd::lanes(|column| field.middle(0, column));
+        for row in 0..CELLS {
+            let y = field.middle(1, row);
+            let (mut least, mut nearest) = ([T::infinity(); CELLS], [T::zero(); CELLS]);
+            for (i, edge) in field.edges.iter().enumerate().skip(1).take(field.edges.len() - 2) {
+                // Edges are numbered in `T`, to be chosen in lanes as wide as the distances.
+                let number = T::of_usize(i);
+                for column in 0..CELLS {
+                    let squared = edge.closest([x[column], y]).0;
+                    let nearer = squared < least[column];
+                    least[column] = if nearer { squared } else { least[column] };
+                    nearest[column] = if nearer { number } else { nearest[column] };
+                }
+            }
+            for column in 0..CELLS {
+                let at = row * CELLS + column;
+                field.nearest[at] = u16::try_from(nearest[column].to_count()).unwrap_or(u16::MAX);
+                field.centers[at] = field.distance([x[column], y]).0;
+            }
+        }
     }
 }
 

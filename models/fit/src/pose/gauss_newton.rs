@@ -1,6 +1,6 @@
 //! Gauss-Newton on the four parameters of a pose: the outline shall lie at the sampled distances.
 
-use dvp_core::Real;
+use dvp_core::{Pose, Real};
 
 use super::field::OutlineField;
 use crate::segment::EdgeSample;
@@ -33,7 +33,18 @@ pub(crate) struct Normal<T> {
     pub(crate) cost: T,
 }
 
+/// What is left of an angle beyond whole periods, from minus half of one to half of one.
+pub(crate) fn wrapped<T: Real>(angle: T, period: T) -> T {
+    angle - period * (angle / period).round()
+}
+
 impl<T: Real> PosePx<T> {
+    /// The pose in scene units, of which one has `unit_px` pixels.
+    pub(crate) fn in_scene(&self, unit_px: T) -> Pose<T> {
+        let translation = self.translation.map(|v| v / unit_px);
+        Pose { translation, scale: self.log_scale.exp() / unit_px, rotation: self.rotation }
+    }
+
     /// Residuals of the samples, robustly summed into a mean; no derivatives.
     pub(crate) fn cost(&self, field: &OutlineField<T>, samples: &[EdgeSample<T>], robustness: Robustness<T>) -> T {
         let frame = Frame::new(self);

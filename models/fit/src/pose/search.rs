@@ -2,7 +2,8 @@
 
 use alloc::vec::Vec;
 
-use dvp_core::{ImageSize, Real};
+use dvp_core::shape::{OutlineBasis, SYMMETRY_TOLERANCE, ShapeError, Symmetry};
+use dvp_core::{Efd, ImageSize, Real};
 
 use super::field::OutlineField;
 use super::gauss_newton::{Frame, PosePx, Robustness};
@@ -51,6 +52,24 @@ pub(crate) struct Prototype<T> {
     pub(crate) field: OutlineField<T>,
     /// Symmetry order; 0: every rotation.
     pub(crate) symmetry: usize,
+}
+
+impl<T: Real> Prototype<T> {
+    /// The shape of descriptors; none if it encloses nothing.
+    pub(crate) fn new(efd: &Efd<T>, basis: &OutlineBasis<T>) -> Result<Option<Self>, ShapeError> {
+        let mut outline = alloc::vec![[T::zero(); 2]; basis.vertex_count()];
+        basis.outline(efd.rows(), &mut outline)?;
+        let field = OutlineField::new(&outline);
+        Ok(field.map(|field| Self { outline, field, symmetry: symmetry_order(efd) }))
+    }
+}
+
+/// Symmetry order of a shape, 0 for a disk.
+pub(crate) fn symmetry_order<T: Real>(efd: &Efd<T>) -> usize {
+    match efd.symmetry(T::of(SYMMETRY_TOLERANCE)) {
+        Symmetry::Finite(order) => order,
+        Symmetry::Continuous => 0,
+    }
 }
 
 /// A prototype at a pose, with its robust mean squared distance error.
@@ -157,19 +176,7 @@ fn rough<T: Real>(
         for i in 0..starts {
             let rotation = range * T::of_usize(i) / T::of_usize(starts);
             let pose = start(segment, field, size, T::of(enlarged), rotation);
-            let cost = pose.cost(field, &segment.samples, wide);
-            // Insertion into a short list of the best.
-            let mut entry = Some((cost, pose));
-            for slot in &mut best[..plan.keep] {
-                let better = match (&entry, &slot) {
-                    (Some((cost, _)), Some((held, _))) => cost < held,
-                    (Some(_), None) => true,
-                    _ => false,
-                };
-                if better {
-                    core::mem::swap(slot, &mut entry);
-                }
-            }
+            insert(&mut best[..plan.keep], pose.cost(field, &segment.samples, wide), pose);
         }
     }
     // Starts that stay far behind the best so far are left at that.
@@ -183,6 +190,21 @@ fn rough<T: Real>(
         let (pose, cost, second) = pose.refine(field, &segment.samples, narrow, plan.steps[1]);
         leader = leader.min(cost);
         out.push(Candidate { prototype: index, pose, cost, steps: first + second });
+    }
+}
+
+/// Keeps a pose in a short list of the best, ascending.
+pub(crate) fn insert<T: Real>(best: &mut [Option<(T, PosePx<T>)>], cost: T, pose: PosePx<T>) {
+    let mut entry = Some((cost, pose));
+    for slot in best {
+        let better = match (&entry, &slot) {
+            (Some((cost, _)), Some((held, _))) => cost < held,
+            (Some(_), None) => true,
+            _ => false,
+        };
+        if better {
+            core::mem::swap(slot, &mut entry);
+        }
     }
 }
 

@@ -72,6 +72,7 @@ fn is_open(ambiguity: &Ambiguity, object: usize) -> bool {
     match *ambiguity {
         Ambiguity::Symmetry { .. } => false,
         Ambiguity::Cropped { object: at, .. }
+        | Ambiguity::Hidden { object: at, .. }
         | Ambiguity::Merged { object: at, .. }
         | Ambiguity::Twin { object: at, .. } => at == object,
     }

@@ -10,7 +10,9 @@ mod scratch;
 
 use dvp_core::{ImageView, Real, Scene};
 
+use crate::buys::buys;
 use crate::joint::{JointProblem, continue_sigma};
+use crate::options::check_finite;
 use crate::pose::search::Prototype;
 use crate::price::scene_bits;
 use crate::residual::Residual;
@@ -75,9 +77,10 @@ impl Refine {
         let bits = scene_bits(&scene, scratch.shapes.len()) + scratch.residual.bits(T::of(PIXEL_NOISE));
         let ambiguity = scratch.ambiguities(&posed, image, unit);
         let noise = T::of(PIXEL_NOISE);
-        let unexplained = Residual::unexplained(&image, &scratch.pixels, noise);
+        let (unexplained, total) = Residual::unexplained(&image, &scratch.pixels, noise);
+        let buys = buys(&scratch.drawing, &image, scene.compositing, total);
         let (steps, stop) = (result.steps, result.stop);
-        Ok(Fit { scene, loss, steps, stop, covariance, ambiguity, unexplained, noise, bits })
+        Ok(Fit { scene, loss, steps, stop, covariance, ambiguity, unexplained, buys, noise, bits })
     }
 
     fn problem<'a, T: Real>(
@@ -91,9 +94,7 @@ impl Refine {
     }
 
     fn check<T: Real>(&self, image: &ImageView<'_, T>) -> Result<(), FitError> {
-        if let Err(dvp_core::image::ImageError::NotFinite { index }) = ImageView::new(image.size(), image.data()) {
-            return Err(FitError::NotFinite { index });
-        }
+        check_finite(image)?;
         if self.factors.is_empty() || self.factors.iter().any(|factor| !(factor.is_finite() && *factor > 0.0)) {
             return Err(FitError::Setting { what: "factors", must: "at least one, each finite and above 0" });
         }

@@ -1,6 +1,5 @@
 //! The memory of a refinement, scenes to pixels and back, and what a rendering tells.
 
-use alloc::vec;
 use alloc::vec::Vec;
 
 use dvp_core::render::Renderer;
@@ -10,9 +9,7 @@ use dvp_core::shape::{OutlineBasis, REFERENCE_VERTICES};
 use dvp_core::{Drawing, Efd, ImageView, Object, Real, Scene};
 
 use crate::doubt::visible_share;
-use crate::fitter::symmetry_order;
 use crate::joint::{JointObject, JointScene, JointScratch};
-use crate::pose::field::OutlineField;
 use crate::pose::gauss_newton::PosePx;
 use crate::pose::search::Prototype;
 use crate::residual::Residual;
@@ -22,32 +19,17 @@ use crate::{Ambiguity, FitError};
 const REMEMBERED_SHAPES: usize = 64;
 
 /// Memory of [`Refine`](super::Refine), kept between images; it remembers the shapes it has met.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct RefineScratch<T: Real> {
     basis: Option<OutlineBasis<T>>,
     efds: Vec<Efd<T>>,
     /// One per descriptor of `efds`.
     pub(super) shapes: Vec<Prototype<T>>,
     pub(super) joint: JointScratch<T>,
-    drawing: Drawing<T>,
+    pub(super) drawing: Drawing<T>,
     render: <ContourRenderer<T> as Renderer<T>>::Scratch,
     pub(super) pixels: Vec<T>,
     pub(super) residual: Residual<T>,
-}
-
-impl<T: Real> Default for RefineScratch<T> {
-    fn default() -> Self {
-        Self {
-            basis: None,
-            efds: Vec::new(),
-            shapes: Vec::new(),
-            joint: JointScratch::default(),
-            drawing: Drawing::default(),
-            render: Default::default(),
-            pixels: Vec::new(),
-            residual: Residual::default(),
-        }
-    }
 }
 
 impl<T: Real> RefineScratch<T> {
@@ -95,12 +77,8 @@ impl<T: Real> RefineScratch<T> {
         if let Some(known) = self.efds.iter().position(|other| other == efd) {
             return Ok(known);
         }
-        let mut outline = vec![[T::zero(); 2]; REFERENCE_VERTICES];
-        if let Some(basis) = &self.basis {
-            basis.outline(efd.rows(), &mut outline)?;
-        }
-        let field = OutlineField::new(&outline).ok_or(FitError::FlatObject { index })?;
-        self.shapes.push(Prototype { outline, field, symmetry: symmetry_order(efd) });
+        let shape = self.basis.as_ref().map_or(Ok(None), |basis| Prototype::new(efd, basis))?;
+        self.shapes.push(shape.ok_or(FitError::FlatObject { index })?);
         self.efds.push(efd.clone());
         Ok(self.efds.len() - 1)
     }
@@ -126,11 +104,7 @@ impl<T: Real> RefineScratch<T> {
 /// `start` with the poses and colors of `moved`.
 pub(super) fn to_scene<T: Real>(start: &Scene<T>, moved: &JointScene<T>, unit_px: T) -> Scene<T> {
     let objects = start.objects.iter().zip(&moved.objects).map(|(object, part)| Object {
-        pose: Pose {
-            translation: part.pose.translation.map(|v| v / unit_px),
-            scale: part.pose.log_scale.exp() / unit_px,
-            rotation: part.pose.rotation,
-        },
+        pose: part.pose.in_scene(unit_px),
         color: part.color,
         ..object.clone()
     });

@@ -7,6 +7,8 @@ use alloc::vec::Vec;
 
 use dvp_core::{ImageSize, ImageView, Real, simd};
 
+use super::disjoint::DisjointSets;
+
 /// A run of flat pixels of one row.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Run {
@@ -23,7 +25,8 @@ pub(crate) struct FlatMap {
     pub(crate) runs: Vec<Run>,
     pub(crate) labels: Vec<u32>,
     pub(crate) region_count: usize,
-    parents: Vec<u32>,
+    /// Runs that belong to one region, by their indices.
+    sets: DisjointSets,
     sizes: Vec<u32>,
     horizontal: Vec<u8>,
     vertical: Vec<u8>,
@@ -57,15 +60,6 @@ impl<T: Real> simd::Kernel for MarkSteps<'_, T> {
             marks[i] = u8::from(d > self.tolerance);
         }
     }
-}
-
-fn root(parents: &mut [u32], mut i: u32) -> u32 {
-    while parents[i as usize] != i {
-        let up = parents[parents[i as usize] as usize];
-        parents[i as usize] = up;
-        i = up;
-    }
-    i
 }
 
 impl FlatMap {
@@ -117,7 +111,7 @@ impl FlatMap {
     #[expect(clippy::cast_possible_truncation, reason = "an image has at most 2^28 pixels")]
     fn collect_runs(&mut self, width: usize, height: usize) {
         self.runs.clear();
-        self.parents.clear();
+        self.sets.reset(0);
         let (mut above, mut above_next) = (0usize, 0usize);
         for row in 0..height {
             self.mark_soft(row, width, height);
@@ -127,9 +121,8 @@ impl FlatMap {
                 match (flat, start) {
                     (true, None) => start = Some(x),
                     (false, Some(s)) => {
-                        let id = self.runs.len() as u32;
+                        let id = self.sets.push();
                         self.runs.push(Run { row: row as u32, start: s as u32, end: x as u32, label: id });
-                        self.parents.push(id);
                         start = None;
                         // Runs of the row above that overlap this one are the same region.
                         while above < above_next && self.runs[above].end <= s as u32 {
@@ -137,9 +130,7 @@ impl FlatMap {
                         }
                         let mut other = above;
                         while other < above_next && self.runs[other].start < x as u32 {
-                            let (a, b) = (root(&mut self.parents, other as u32), root(&mut self.parents, id));
-                            let (low, high) = if a < b { (a, b) } else { (b, a) };
-                            self.parents[high as usize] = low;
+                            self.sets.unite(other as u32, id);
                             other += 1;
                         }
                     }
@@ -179,23 +170,23 @@ impl FlatMap {
         self.sizes.resize(self.runs.len(), 0);
         for i in 0..self.runs.len() {
             #[expect(clippy::cast_possible_truncation, reason = "an image has at most 2^28 pixels")]
-            let top = root(&mut self.parents, i as u32);
+            let top = self.sets.root(i as u32);
             self.runs[i].label = top;
             self.sizes[top as usize] += self.runs[i].end - self.runs[i].start;
         }
-        // The first run of a region is its own root: it hands out the number.
+        // The first run of a region is its root: its size makes room for the number.
         let mut count = 0;
         for i in 0..self.runs.len() {
             let top = self.runs[i].label as usize;
             if top == i {
-                self.parents[i] = if self.sizes[i] >= min_pixels {
+                self.sizes[i] = if self.sizes[i] >= min_pixels {
                     count += 1;
                     count
                 } else {
                     0
                 };
             }
-            self.runs[i].label = self.parents[top];
+            self.runs[i].label = self.sizes[top];
         }
         self.runs.retain(|run| run.label != 0);
         self.region_count = count as usize;

@@ -6,9 +6,12 @@
 //! soft pixels between them, `thin` finds what has no flat pixel, `interpret` decides which objects cover which region, `rim`
 //! turns soft pixels into samples; `noisy` and `robust` do the same for noisy pictures.
 
+pub(crate) mod color;
+mod disjoint;
 mod edge_kind;
 mod flat;
 mod interpret;
+mod median;
 mod noisy;
 mod region;
 mod rim;
@@ -23,7 +26,6 @@ use alloc::vec::Vec;
 use dvp_core::render::Compositing;
 use dvp_core::{ImageView, Real};
 
-use edge_kind::EdgeEvidence;
 pub(crate) use edge_kind::EdgeKind;
 pub(crate) use interpret::{Border, Evidence, Stacking};
 pub(crate) use noisy::NoisyOptions;
@@ -43,17 +45,12 @@ pub(crate) struct EdgeSample<T> {
 /// Noise of a pixel value that no outline explains, at least: rounding to 8 bits and the seams of the reference renderer.
 pub(crate) const PIXEL_NOISE: f64 = 0.003;
 
-/// Soft pixels whose neighbors are looked at to find how soft edges are.
-const MEASURED_PIXELS: usize = 320;
-/// Least distance between two colors whose soft pixels are looked at, and the same in units of the noise.
-const LEAST_CONTRAST: f64 = 0.06;
-const LEAST_NOISES: f64 = 5.0;
-const GOLDEN_SECTION: f64 = 0.618_033_988_749_895;
-
 /// One object as the segmentation sees it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Segment<T> {
     pub(crate) color: [T; 3],
+    /// Standard deviation of each channel of the color that noise makes; 0 without noise.
+    pub(crate) doubt: T,
     /// Below 1 for translucent objects.
     pub(crate) confidence: T,
     pub(crate) samples: Vec<EdgeSample<T>>,
@@ -73,6 +70,7 @@ impl<T: Real> Segment<T> {
     fn clear(&mut self) {
         self.samples.clear();
         self.rim.clear();
+        self.doubt = T::infinity();
         self.pixels = 0;
         self.sums = [T::zero(); 5];
         self.border = 0;
@@ -161,32 +159,6 @@ impl<T: Real> Segmentation<T> {
         self.reading.evidence(&self.regions)
     }
 
-    /// What the soft pixels between background and objects say about the edges of the image.
-    pub(crate) fn edges(&self, image: &ImageView<'_, T>) -> EdgeEvidence<T> {
-        let share = (T::of_usize(MEASURED_PIXELS) / T::of_usize(self.transitions.len().max(1))).as_f64();
-        let mut turns = 0.0;
-        // That of rounding changes nothing.
-        let noise = if self.noise > T::of(PIXEL_NOISE) { self.noise } else { T::zero() };
-        let mut evidence = EdgeEvidence { noise, ..EdgeEvidence::default() };
-        let least_contrast = (T::of(LEAST_NOISES) * noise).max(T::of(LEAST_CONTRAST));
-        for transition in &self.transitions {
-            if let Some(rim) = self.rim(transition)
-                && rim.others == 0
-                && rim.contrast > least_contrast
-            {
-                evidence.count(rim.coverage);
-                // By turns of the golden section, so that no row or column of upright edges is left out.
-                turns += GOLDEN_SECTION;
-                turns -= if turns >= 1.0 { 1.0 } else { 0.0 };
-                if turns < share {
-                    let colors = transition.pair.map(|i| self.regions[i as usize].color);
-                    evidence.measure(image, transition.pixel, colors);
-                }
-            }
-        }
-        evidence
-    }
-
     /// Whether the object may go on behind what is seen at the pixel.
     pub(crate) fn may_be_hidden(&self, index: usize, object: u32) -> bool {
         let label = self.map.labels.get(index).copied().unwrap_or(0);
@@ -201,13 +173,17 @@ impl<T: Real> Segmentation<T> {
         &self.reading.borders
     }
 
-    /// Decides a border, or leaves it open.
-    /// Whether an object neither borders on another one nor overlaps with one.
-    pub(crate) fn stands_alone(&self, object: u32) -> bool {
-        let shared = |cover: &interpret::Cover| cover.members().len() > 1 && cover.members().contains(&object);
-        !self.borders().iter().any(|border| border.objects.contains(&object)) && !self.reading.covers.iter().any(shared)
+    /// Whether the object may go on behind another one.
+    pub(crate) fn may_go_on(&self, object: u32) -> bool {
+        self.borders().iter().any(|border| border.front != Some(object) && border.objects.contains(&object))
     }
 
+    /// Whether an object neither borders on another one nor overlaps with one.
+    pub(crate) fn stands_alone(&self, object: u32) -> bool {
+        !self.reading.meets_another(object)
+    }
+
+    /// Decides a border, or leaves it open.
     pub(crate) fn set_front(&mut self, border: usize, front: Option<u32>) {
         if let Some(border) = self.reading.borders.get_mut(border) {
             border.front = front;
@@ -258,8 +234,17 @@ impl<T: Real> Segmentation<T> {
     /// Whether the object covers a flat pixel; none for soft pixels, regions that were not understood, and regions of
     /// objects that it may go on behind.
     pub(crate) fn covers(&self, index: usize, object: u32) -> Option<bool> {
-        let label = self.map.labels.get(index).copied().filter(|&label| label != 0)?;
-        let cover = self.reading.covers.get(label as usize - 1)?;
+        self.region_covers(self.map.labels.get(index).copied()?, object)
+    }
+
+    /// Per pixel its region, counted from 1; 0 for soft pixels.
+    pub(crate) fn labels(&self) -> &[u32] {
+        &self.map.labels
+    }
+
+    /// As [`Self::covers`], for the pixels of a label.
+    pub(crate) fn region_covers(&self, label: u32, object: u32) -> Option<bool> {
+        let cover = self.reading.covers.get((label as usize).checked_sub(1)?)?;
         if !cover.known {
             return None;
         }
@@ -283,6 +268,7 @@ impl<T: Real> Segmentation<T> {
         for (region, cover) in self.regions.iter().zip(&self.reading.covers) {
             for &object in cover.members() {
                 let segment = &mut self.segments[object as usize];
+                segment.doubt = segment.doubt.min(region.doubt);
                 segment.pixels += region.pixels;
                 segment.border += region.border;
                 let [left, top, right, bottom] = region.bounds;

@@ -5,6 +5,7 @@ use alloc::vec::Vec;
 use dvp_core::{ImageView, Real};
 
 use super::flat::FlatMap;
+use super::median::median_by;
 
 /// Pixels looked at for the color of a region of a picture without noise.
 const COLOR_SAMPLES: usize = 63;
@@ -89,17 +90,8 @@ pub(crate) fn measure<T: Real>(
     }
     for (region, samples) in regions.iter_mut().zip(scratch.iter_mut()) {
         for c in 0..3 {
-            region.color[c] = median_of(samples, c);
+            region.color[c] = median_by(samples, |color| color[c]).unwrap_or_default();
         }
         region.doubt = noise * T::of(MEDIAN_SPREAD) / T::of_usize(samples.len().max(1)).sqrt();
     }
-}
-
-fn median_of<T: Real>(samples: &mut [[T; 3]], channel: usize) -> T {
-    let middle = samples.len() / 2;
-    if samples.is_empty() {
-        return T::zero();
-    }
-    let by_channel = |a: &[T; 3], b: &[T; 3]| a[channel].partial_cmp(&b[channel]).unwrap_or(core::cmp::Ordering::Equal);
-    samples.select_nth_unstable_by(middle, by_channel).1[channel]
 }

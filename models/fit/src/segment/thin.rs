@@ -10,9 +10,11 @@ use alloc::vec::Vec;
 
 use dvp_core::{ImageView, Real};
 
+use super::color::{distance, is_same};
+use super::disjoint::DisjointSets;
 use super::flat::{FlatMap, Run};
 use super::region::Region;
-use super::transition::{Soft, SoftScratch, along};
+use super::transition::{Soft, SoftScratch, along, off_overshoot};
 
 /// Least channel contrast of a pixel of a thin region with the region around it.
 const CONTRAST: f64 = 0.05;
@@ -22,14 +24,10 @@ const CORE: f64 = 0.8;
 const STRAY: f64 = 0.25;
 /// Pixels that a group must cover together.
 const LEAST_COVERAGE: f64 = 1.9;
-/// Channel difference of one color (two rounding errors of 8 bits).
-const SAME_COLOR: f64 = 0.008;
 /// A group this near to another region (px) is a part of it if it has its color, or a tip if its colors are on the way there.
 const TIP_REACH: usize = 2;
 
-/// Filters that sharpen leave a rim along an edge, off its color by at most this share of the edge's contrast.
-const OVERSHOOT: f64 = 0.25;
-/// Such a rim is this near to the flat pixels beyond the edge (px).
+/// The rim that a filter leaves along an edge is this near to the flat pixels beyond the edge (px).
 const RIM_REACH: usize = 4;
 
 /// A soft pixel that lies between no two regions.
@@ -60,13 +58,14 @@ struct Fringe {
 impl Fringe {
     fn new<T: Real>(image: &ImageView<'_, T>, map: &FlatMap, regions: &[Region<T>], soft: &[Soft]) -> Self {
         let (width, height) = (image.size().width(), image.size().height());
-        let same = |a: [T; 3], b: [T; 3]| (0..3).all(|c| (a[c] - b[c]).abs() <= T::of(SAME_COLOR));
         let color = |label: u32| regions[label as usize - 1].color;
         let mut fringe = Self { regions: vec![0; width * height], joined: Vec::new() };
         for one in soft {
             let [x, y] = one.pixel.map(|v| v as usize);
             let seen = image.pixel(y * width + x);
-            let Some(&own) = one.ends.iter().find(|&&label| label != 0 && same(seen, color(label))) else { continue };
+            let Some(&own) = one.ends.iter().find(|&&label| label != 0 && is_same(seen, color(label))) else {
+                continue;
+            };
             fringe.regions[y * width + x] = own;
             for row in y.saturating_sub(1)..(y + 2).min(height) {
                 for column in x.saturating_sub(1)..(x + 2).min(width) {
@@ -74,7 +73,7 @@ impl Fringe {
                     let other = map.labels[index].max(fringe.regions[index]);
                     if other != 0
                         && other != own
-                        && same(color(own), color(other))
+                        && is_same(color(own), color(other))
                         && !fringe.joined.contains(&[own, other])
                     {
                         fringe.joined.push([own, other]);
@@ -96,10 +95,7 @@ pub(crate) fn label_thin<T: Real>(
 ) -> Option<Vec<[T; 3]>> {
     let (width, height) = (image.size().width(), image.size().height());
     let at = |[x, y]: [u32; 2]| y as usize * width + x as usize;
-    let contrast = |one: &Leftover| {
-        let (seen, host) = (image.pixel(at(one.pixel)), regions[one.host as usize - 1].color);
-        (0..3).fold(T::zero(), |most, c| most.max((seen[c] - host[c]).abs()))
-    };
+    let contrast = |one: &Leftover| distance(image.pixel(at(one.pixel)), regions[one.host as usize - 1].color);
     let open: Vec<Leftover> = scratch.leftover.iter().filter(|one| contrast(one) > T::of(CONTRAST)).copied().collect();
     if open.is_empty() {
         return None;
@@ -181,15 +177,13 @@ fn read_group<T: Real>(
                 }
                 let beside = regions[label as usize - 1].color;
                 let near = row.abs_diff(y).max(column.abs_diff(x)) <= TIP_REACH;
-                if (0..3).all(|c| (beside[c] - color[c]).abs() <= T::of(SAME_COLOR)) {
+                if is_same(beside, color) {
                     if near {
                         thin.parts.push(label);
                     }
                 } else {
                     let host = host_color(one);
-                    let mirrored = core::array::from_fn(|c| host[c] + host[c] - color[c]);
-                    let (overshoot, off) = along(mirrored, host, beside);
-                    let rim = off <= tolerance + tolerance && overshoot < T::of(OVERSHOOT);
+                    let rim = off_overshoot(color, beside, host) <= tolerance + tolerance;
                     tip |= rim || near && along(color, host, beside).1 <= tolerance;
                 }
             }
@@ -203,34 +197,30 @@ fn read_group<T: Real>(
 #[expect(clippy::cast_possible_truncation, reason = "an image has at most 2^28 pixels")]
 fn add_regions<T: Real>(map: &mut FlatMap, width: usize, found: &[Thin<T>], joined: &[[u32; 2]]) -> Vec<[T; 3]> {
     let old = map.region_count as u32;
-    let mut parents: Vec<u32> = (0..=old).collect();
+    let mut sets = DisjointSets::default();
+    sets.reset(old + 1);
     let mut new = Vec::new();
-    for pair in joined {
-        let [a, b] = pair.map(|label| top(&parents, label));
-        parents[a.max(b) as usize] = a.min(b);
+    for &[a, b] in joined {
+        sets.unite(a, b);
     }
     for thin in found {
         let label = match thin.parts[..] {
             [] => {
-                parents.push(parents.len() as u32);
                 new.push(thin.color);
-                parents.len() as u32 - 1
+                sets.push()
             }
             [first, ref others @ ..] => {
-                for &other in others {
-                    let [a, b] = [first, other].map(|label| top(&parents, label));
-                    parents[a.max(b) as usize] = a.min(b);
-                }
+                others.iter().for_each(|&other| sets.unite(first, other));
                 first
             }
         };
         add_pixels(map, width, &thin.covered, label);
     }
     // Regions that were joined leave gaps in the numbering.
-    let mut names = vec![0; parents.len()];
+    let mut names = vec![0; sets.len()];
     let mut count = 0;
-    for label in 1..parents.len() as u32 {
-        let first = top(&parents, label);
+    for label in 1..sets.len() as u32 {
+        let first = sets.root(label);
         if first == label {
             count += 1;
             names[label as usize] = count;
@@ -243,13 +233,6 @@ fn add_regions<T: Real>(map: &mut FlatMap, width: usize, found: &[Thin<T>], join
     map.runs.sort_unstable_by_key(|run| (run.row, run.start));
     map.region_count = count as usize;
     new
-}
-
-fn top(parents: &[u32], mut label: u32) -> u32 {
-    while parents[label as usize] != label {
-        label = parents[label as usize];
-    }
-    label
 }
 
 /// Labels pixels.

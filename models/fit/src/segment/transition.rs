@@ -4,9 +4,14 @@ use alloc::vec::Vec;
 
 use dvp_core::{ImageView, Real};
 
+use super::color::{distance, is_same};
 use super::flat::FlatMap;
+use super::median::median_by;
 use super::region::Region;
 use super::thin::Leftover;
+
+/// Filters that sharpen leave a rim along an edge, off its color by at most this share of the edge's contrast.
+const OVERSHOOT: f64 = 0.25;
 
 /// A pixel whose color lies on the line between the colors of two regions.
 #[derive(Clone, Copy, Debug)]
@@ -49,6 +54,8 @@ pub(crate) struct SoftScratch<T> {
     offs: Vec<T>,
     /// Soft pixels that lie between no two regions.
     pub(crate) leftover: Vec<Leftover>,
+    /// Soft pixels that lie between no two regions, but show the color of one beside them: those around a corner.
+    pub(crate) settled: usize,
 }
 
 impl<T: Real> SoftScratch<T> {
@@ -71,13 +78,8 @@ impl<T: Real> SoftScratch<T> {
             let [from, to] = transition.pair.map(|i| regions[i as usize].color);
             self.offs.push(along(color, from, to).1);
         }
-        if self.offs.is_empty() {
-            return T::zero();
-        }
-        let middle = self.offs.len() / 2;
-        let order = |a: &T, b: &T| a.partial_cmp(b).unwrap_or(core::cmp::Ordering::Equal);
         // The median of the largest channel of noise across a line is about its standard deviation.
-        *self.offs.select_nth_unstable_by(middle, order).1
+        median_by(&mut self.offs, |&off| off).unwrap_or_default()
     }
 }
 
@@ -93,6 +95,7 @@ pub(crate) fn find<T: Real>(
     collect_soft(image.size().width(), image.size().height(), map, scratch);
     transitions.clear();
     scratch.leftover.clear();
+    scratch.settled = 0;
     let width = image.size().width();
     for soft in &scratch.soft {
         let color = image.pixel(soft.pixel[1] as usize * width + soft.pixel[0] as usize);
@@ -103,7 +106,8 @@ pub(crate) fn find<T: Real>(
                 continue;
             }
             let pair = [a.min(b) - 1, a.max(b) - 1];
-            let (weight, off) = along(color, regions[pair[0] as usize].color, regions[pair[1] as usize].color);
+            let (weight, off) =
+                along_sharpened(color, regions[pair[0] as usize].color, regions[pair[1] as usize].color);
             // Of two crossings that explain the pixel about as well, the shorter is the more perpendicular one.
             let cost = off + tolerance * T::of(0.05) * T::of_usize(run as usize);
             if off <= tolerance && best.as_ref().is_none_or(|(c, _)| cost < *c) {
@@ -114,10 +118,42 @@ pub(crate) fn find<T: Real>(
         }
         if let Some((_, transition)) = best {
             transitions.push(transition);
-        } else if let Some(host) = soft.host() {
+            continue;
+        }
+        let shown = |&label: &u32| label != 0 && is_same(color, regions[label as usize - 1].color);
+        scratch.settled += usize::from(soft.ends.iter().any(shown));
+        if let Some(host) = soft.host() {
             scratch.leftover.push(Leftover { pixel: soft.pixel, host });
         }
     }
+}
+
+/// As [`along`], but what a filter that sharpens adds to the contrast of an edge is no distance.
+fn along_sharpened<T: Real>(color: [T; 3], from: [T; 3], to: [T; 3]) -> (T, T) {
+    let (weight, off) = along(color, from, to);
+    if weight < T::zero() {
+        (weight, off.min(off_overshoot(color, to, from)))
+    } else if weight > T::one() {
+        (weight, off.min(off_overshoot(color, from, to)))
+    } else {
+        (weight, off)
+    }
+}
+
+/// The largest channel distance of a color beyond `to` from where an edge that is sharpened shows it, cut off at black and
+/// white.
+pub(super) fn off_overshoot<T: Real>(color: [T; 3], from: [T; 3], to: [T; 3]) -> T {
+    let most = distance(from, to);
+    let mut beyond = T::zero();
+    for c in 0..3 {
+        let step = to[c] - from[c];
+        if step.abs() > T::of(0.5) * most {
+            beyond = beyond.max((color[c] - to[c]) / step);
+        }
+    }
+    let beyond = beyond.min(T::of(OVERSHOOT));
+    let shown = core::array::from_fn(|c| (to[c] + beyond * (to[c] - from[c])).max(T::zero()).min(T::one()));
+    distance(color, shown)
 }
 
 /// Position along the line from `from` to `to`, and the largest channel distance from it.
@@ -184,5 +220,23 @@ fn collect_soft<T>(width: usize, height: usize, map: &FlatMap, scratch: &mut Sof
             column[run.start as usize..run.end as usize].fill((run.label, row as u32));
             runs.next();
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{along_sharpened, off_overshoot};
+
+    #[test]
+    fn a_rim_is_on_the_line_of_its_edge() {
+        let (from, to) = ([0.2, 0.5, 0.9], [0.6, 0.5, 0.5]);
+        // A tenth of the contrast beyond: 0.6 + 0.04, 0.5 - 0.04.
+        assert!(along_sharpened([0.64, 0.5, 0.46], from, to).1 < 1e-9);
+        assert!(along_sharpened([0.16, 0.5, 0.94], from, to).1 < 1e-9);
+        // Half of it is too much, by a quarter of 0.4; and a color off the line stays off.
+        assert!((off_overshoot([0.8, 0.5, 0.3], from, to) - 0.1_f64).abs() < 1e-9);
+        assert!((along_sharpened([0.64, 0.6, 0.46], from, to).1 - 0.1_f64).abs() < 1e-9);
+        // Black and white cut it off.
+        assert!(off_overshoot([1.0_f64, 0.0, 0.46], [0.2, 0.8, 0.9], [0.96, 0.02, 0.5]) < 1e-9);
     }
 }

@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use dvp_core::Real;
 
-use super::{Part, PartSet};
+use super::{CROSSING_PX, Part, PartSet};
 use crate::pose::field::OutlineField;
 use crate::pose::gauss_newton::{Frame, Robustness};
 use crate::pose::search::Prototype;
@@ -15,8 +15,6 @@ const ROUNDS: usize = 6;
 const STEPS: usize = 3;
 /// Width (px) of residuals: the first rounds reach farther.
 const WIDTHS: [f64; ROUNDS] = [1.0, 1.0, 0.5, 0.5, 0.3, 0.3];
-/// Where two outlines pass within this distance (px) of a sample both cover its pixel, and its color tells neither distance.
-const CROSSING_PX: f64 = 2.5;
 /// Distance error (px) at which a sample counts as missed.
 const WIDTH: f64 = 0.5;
 
@@ -75,14 +73,19 @@ fn assign<T: Real>(
 }
 
 /// Robust mean squared distance error of the union (px^2).
-pub(super) fn cost<T: Real>(parts: &[Part<T>], samples: &[EdgeSample<T>], prototypes: &[Prototype<T>]) -> T {
+fn cost<T: Real>(parts: &[Part<T>], samples: &[EdgeSample<T>], prototypes: &[Prototype<T>]) -> T {
     let mut nearest = alloc::vec![T::infinity(); samples.len()];
     for part in parts {
         for (held, residual) in nearest.iter_mut().zip(part.residuals(&prototypes[part.prototype].field, samples)) {
             *held = held.min(residual);
         }
     }
+    robust_mean(nearest.into_iter())
+}
+
+/// Mean of squared residuals (px^2), those beyond [`WIDTH`] counting little.
+pub(super) fn robust_mean<T: Real>(residuals: impl ExactSizeIterator<Item = T>) -> T {
+    let count = T::of_usize(residuals.len().max(1));
     let inverse = T::of(1.0 / (WIDTH * WIDTH));
-    let sum: T = nearest.iter().map(|&r| r * r / (T::one() + r * r * inverse)).sum();
-    sum / T::of_usize(samples.len().max(1))
+    residuals.map(|r| r * r / (T::one() + r * r * inverse)).sum::<T>() / count
 }

@@ -2,9 +2,10 @@
 //!
 //! In: the samples of a segment that no single prototype explains. Out: sets of posed prototypes whose union has its
 //! outline at the sampled distances. Inside a union the distance to each part is at least the one sampled: an object may lie
-//! behind the outline, where another one explains the sample, but must not stand out. `partial` finds poses
-//! that explain a part of the samples, `cover` sets of them that explain all, `assign` refines a set with each
-//! sample given to the outline nearest to it.
+//! behind the outline, where another one explains the sample, but must not stand out. `partial` finds poses that
+//! explain a part of the samples, `cover` sets of them that explain all, `assign` refines a set with each sample given to the
+//! outline nearest to it. Without prototypes `waist` tells which outlines are worth a look; `simple_shapes` are tried, and
+//! `twins` finds two objects of one unknown shape by the `motion` from one to the other and the `symmetry` of what shows.
 
 mod assign;
 mod cover;
@@ -15,6 +16,7 @@ mod symmetry;
 #[cfg(test)]
 mod tests;
 pub(crate) mod twins;
+pub(crate) mod waist;
 
 use alloc::vec::Vec;
 
@@ -33,7 +35,9 @@ const MOST_SETS: usize = 3;
 /// A set of three must miss the samples by so many times less than one of two.
 const THIRD_PART: f64 = 4.0;
 /// Distance error (px) up to which an outline explains a sample.
-pub(crate) const EXPLAINED_PX: f64 = 0.3;
+const EXPLAINED_PX: f64 = 0.3;
+/// Where two outlines pass within this distance (px) of a sample both cover its pixel, and its color tells neither distance.
+const CROSSING_PX: f64 = 2.5;
 
 /// A prototype at a pose.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -9,7 +9,7 @@ use alloc::vec::Vec;
 use dvp_core::Real;
 
 use crate::pose::field::OutlineField;
-use crate::pose::gauss_newton::{Frame, PosePx, Robustness};
+use crate::pose::gauss_newton::{Frame, PosePx, Robustness, wrapped};
 use crate::segment::EdgeSample;
 
 /// Points of the outline that starts are made of.
@@ -216,10 +216,7 @@ fn keep<T: Real>(kept: &mut Vec<(T, PosePx<T>)>, cost: T, pose: PosePx<T>, cente
 fn alike<T: Real>(a: &PosePx<T>, b: &PosePx<T>, center: [T; 2]) -> bool {
     let (fa, fb) = (Frame::new(a), Frame::new(b));
     let close = |p: [T; 2], q: [T; 2]| (p[0] - q[0]).hypot(p[1] - q[1]) < T::of(2.0);
-    let turned = |angle: T| {
-        let turn = T::of(core::f64::consts::TAU);
-        (angle - turn * (angle / turn).round()).abs() < T::of(0.12)
-    };
+    let turned = |angle: T| wrapped(angle, T::of(core::f64::consts::TAU)).abs() < T::of(0.12);
     (turned(a.rotation - b.rotation) && close(fa.to_pixels(center), fb.to_pixels(center)))
         || (turned(a.rotation + b.rotation) && close(fa.to_pixels(center), fb.to_unit(center)))
 }

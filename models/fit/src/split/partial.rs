@@ -9,8 +9,8 @@ use dvp_core::Real;
 
 use super::{EXPLAINED_PX, Part};
 use crate::pose::field::OutlineField;
-use crate::pose::gauss_newton::{Normal, PosePx, Robustness};
-use crate::pose::search::Prototype;
+use crate::pose::gauss_newton::{Normal, PosePx, Robustness, wrapped};
+use crate::pose::search::{Prototype, insert};
 use crate::segment::{EdgeSample, Segment};
 
 /// Samples that starts are laid on.
@@ -141,7 +141,7 @@ fn starts<T: Real>(
         let (a, b) = (prototype.outline[i], prototype.outline[i + 1]);
         let half = T::of(0.5);
         let middle = [half * (a[0] + b[0]), half * (a[1] + b[1])];
-        let (_, normal) = prototype.field.distance([middle[0], middle[1]]);
+        let (_, normal) = prototype.field.distance(middle);
         let rotation = outward[1].atan2(outward[0]) - normal[1].atan2(normal[0]);
         let (sin, cos) = rotation.sin_cos();
         for size in SIZES {
@@ -154,21 +154,6 @@ fn starts<T: Real>(
         }
     }
     best
-}
-
-/// Keeps the best, ascending.
-fn insert<T: Real>(best: &mut [Option<(T, PosePx<T>)>], cost: T, pose: PosePx<T>) {
-    let mut entry = Some((cost, pose));
-    for slot in best {
-        let better = match (&entry, &slot) {
-            (Some((cost, _)), Some((held, _))) => cost < held,
-            (Some(_), None) => true,
-            _ => false,
-        };
-        if better {
-            core::mem::swap(slot, &mut entry);
-        }
-    }
 }
 
 /// Normal equations of a pose that may lie behind the samples: residuals beyond `width_px` stop counting there, and only
@@ -218,8 +203,7 @@ fn judge<T: Real>(part: Part<T>, field: &OutlineField<T>, samples: &[EdgeSample<
 fn same<T: Real>(a: &Part<T>, b: &Part<T>, symmetry: usize) -> bool {
     let near = |x: T, y: T, tolerance: f64| (x - y).abs() <= T::of(tolerance);
     let turn = T::of(core::f64::consts::TAU) / T::of_usize(symmetry.max(1));
-    let angle = a.pose.rotation - b.pose.rotation;
-    let off = (angle - turn * (angle / turn).round()).abs();
+    let off = wrapped(a.pose.rotation - b.pose.rotation, turn).abs();
     a.prototype == b.prototype
         && near(a.pose.translation[0], b.pose.translation[0], 0.3)
         && near(a.pose.translation[1], b.pose.translation[1], 0.3)

@@ -6,8 +6,6 @@ use alloc::vec::Vec;
 use dvp_core::shape::{OutlineBasis, REFERENCE_VERTICES, mdshr_bank};
 use dvp_core::{Efd, Real};
 
-use crate::fitter::symmetry_order;
-use crate::pose::field::OutlineField;
 use crate::pose::search::Prototype;
 
 /// Short axis over long axis of the ellipses and rectangles; shapes in between are fitted from the nearest.
@@ -31,11 +29,8 @@ impl<T: Real> SimpleShapes<T> {
         }
         let Ok(basis) = OutlineBasis::new(REFERENCE_VERTICES, HARMONICS) else { return };
         for efd in shapes::<T>() {
-            let mut outline = alloc::vec![[T::zero(); 2]; REFERENCE_VERTICES];
-            if basis.outline(efd.rows(), &mut outline).is_ok()
-                && let Some(field) = OutlineField::new(&outline)
-            {
-                self.prototypes.push(Prototype { outline, field, symmetry: symmetry_order(&efd) });
+            if let Ok(Some(prototype)) = Prototype::new(&efd, &basis) {
+                self.prototypes.push(prototype);
                 self.rows.push(efd.rows().to_vec());
             }
         }

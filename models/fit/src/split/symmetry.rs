@@ -142,7 +142,7 @@ impl<'a, T: Real> PartlyKnown<'a, T> {
         found
     }
 
-    /// Mean robust miss (px^2) of the carried samples.
+    /// Sum of the robust misses (px^2) of the carried samples.
     fn miss(&self, carry: &Carry<T>, samples: &[EdgeSample<T>]) -> T {
         let misses = samples.iter().map(|sample| {
             let off = self.field.distance(carry.point(sample.point)).0 - sample.distance;

@@ -2,9 +2,8 @@ use alloc::vec::Vec;
 
 use dvp_core::shape::{OutlineBasis, REFERENCE_VERTICES, mdshr_bank};
 
+use super::waist::is_convex;
 use super::{Part, PartSet, split};
-use crate::fitter::symmetry_order;
-use crate::pose::field::OutlineField;
 use crate::pose::gauss_newton::{Frame, PosePx};
 use crate::pose::search::Prototype;
 use crate::segment::{EdgeSample, Segment};
@@ -12,12 +11,7 @@ use crate::segment::{EdgeSample, Segment};
 fn prototypes() -> Vec<Prototype<f64>> {
     let bank = mdshr_bank::<f64>(16);
     let basis = OutlineBasis::new(REFERENCE_VERTICES, 16).unwrap();
-    let prototype = |efd: &dvp_core::Efd<f64>| {
-        let mut outline = alloc::vec![[0.0; 2]; REFERENCE_VERTICES];
-        basis.outline(efd.rows(), &mut outline).unwrap();
-        Prototype { field: OutlineField::new(&outline).unwrap(), symmetry: symmetry_order(efd), outline }
-    };
-    bank.prototypes().iter().map(prototype).collect()
+    bank.prototypes().iter().map(|efd| Prototype::new(efd, &basis).unwrap().unwrap()).collect()
 }
 
 fn pose(x: f64, y: f64, rotation: f64) -> PosePx<f64> {
@@ -83,4 +77,23 @@ fn one_shape_stays_whole() {
         let segment = union_of(&[Part { prototype, pose: pose(44.0, 41.0, 1.0) }], &prototypes);
         assert_eq!(split(&segment, &prototypes), []);
     }
+}
+
+#[test]
+fn what_is_convex_but_for_ripples_is_no_union() {
+    let rectangle = |i: usize, ripple: f64| {
+        // 30 x 12 px; every other point of the upper side lies `ripple` below it.
+        let x = (i % 30) as f64;
+        if i < 30 { [x, ripple * (i % 2) as f64] } else { [30.0 - x, 12.0] }
+    };
+    let contour = |ripple| (0..60).map(|i| rectangle(i, ripple)).collect::<Vec<[f64; 2]>>();
+    assert!(is_convex(&contour(0.3)));
+    assert!(!is_convex(&contour(1.0)));
+    // Either way around.
+    let mut reversed = contour(1.0);
+    reversed.reverse();
+    assert!(!is_convex(&reversed));
+    reversed = contour(0.3);
+    reversed.reverse();
+    assert!(is_convex(&reversed));
 }

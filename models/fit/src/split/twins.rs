@@ -12,8 +12,9 @@ use dvp_core::{ImageSize, Real};
 use super::assign;
 use super::motion::{Motion, search};
 use super::symmetry::PartlyKnown;
-use super::{Explanation, Part};
+use super::{CROSSING_PX, Explanation, Part};
 use crate::free::basis::Basis;
+use crate::free::foot::{EdgeLanes, foot};
 use crate::free::grow::{GrowScratch, GrowSettings, grow};
 use crate::pose::field::OutlineField;
 use crate::pose::gauss_newton::{Frame, PosePx};
@@ -31,17 +32,10 @@ const ROUNDS: usize = 2;
 const START_VERTICES: usize = 96;
 /// Rows and columns around the union while the intersection is traced.
 const MARGIN: usize = 2;
-/// Turn (radians) over four edges from which an outline bends inward.
-const INWARD: f64 = 0.12;
-const SHARPLY_INWARD: f64 = 0.2;
-/// Nearer to the image border (px) an outline is held by samples on one side only.
-const BORDER_PX: f64 = 3.0;
 /// Distance (px) by which an outline may stand out of the union.
 const STANDS_OUT_PX: f64 = 0.8;
 /// Distance (px) beyond which a sample lies on neither outline.
 const ASTRAY_PX: f64 = 1.5;
-/// Where two outlines pass within this distance (px) of a sample its color tells neither distance.
-const CROSSING_PX: f64 = 2.5;
 
 /// Memory of [`Union::twins`].
 #[derive(Clone, Debug, Default)]
@@ -51,43 +45,16 @@ pub(crate) struct TwinScratch<T> {
     samples: Vec<EdgeSample<T>>,
 }
 
-/// Whether a closed outline (px, the last vertex repeats the first) bends inward in at least two places that show, sharply in
-/// one; beyond the image border an outline is a guess.
-pub(crate) fn is_waisted<T: Real>(outline: &[[T; 2]], size: ImageSize) -> bool {
-    let n = outline.len().saturating_sub(1);
-    if n < 8 {
-        return false;
-    }
-    let sign = if signed_area(&outline[..n]) > T::zero() { T::one() } else { -T::one() };
-    let turn = |i: usize| {
-        let (a, b, c) = (outline[(i + n - 2) % n], outline[i % n], outline[(i + 2) % n]);
-        let (p, q) = ([b[0] - a[0], b[1] - a[1]], [c[0] - b[0], c[1] - b[1]]);
-        (p[0] * q[1] - p[1] * q[0]).atan2(p[0] * q[0] + p[1] * q[1]) * sign
-    };
-    let turns: Vec<T> = (0..n).map(turn).collect();
-    let (margin, extents) = (T::of(BORDER_PX), [size.width(), size.height()].map(T::of_usize));
-    let shows = |i: usize| (0..2).all(|c| outline[i][c] > margin && outline[i][c] < extents[c] - margin);
-    let inward = |i: &usize| {
-        let own = turns[*i];
-        shows(*i) && own < T::of(-INWARD) && (1..=2).all(|k| own <= turns[(i + k) % n] && own < turns[(i + n - k) % n])
-    };
-    let sharp = (0..n).filter(inward).any(|i| turns[i] < T::of(-SHARPLY_INWARD));
-    sharp && (0..n).filter(inward).count() >= 2
-}
-
-/// How many times a known outline (px) repeats itself, turned or mirrored; 1 for one without symmetry.
-pub(crate) fn repeats<T: Real>(contour: &[[T; 2]], samples: &[EdgeSample<T>]) -> usize {
-    let outline = closed(contour);
-    let Some(field) = OutlineField::new(&outline) else { return 1 };
-    1 + PartlyKnown::new(&outline, &field, samples).symmetries(|_, _| true).len()
+/// How many times a known outline (px) with its signed distance repeats itself, turned or mirrored; 1 for one without
+/// symmetry.
+pub(crate) fn repeats<T: Real>(contour: &[[T; 2]], field: &OutlineField<T>, samples: &[EdgeSample<T>]) -> usize {
+    1 + PartlyKnown::new(&closed(contour), field, samples).symmetries(|_, _| true).len()
 }
 
 /// Robust mean squared distance error (px^2) of a known outline (px, closed).
-pub(crate) fn misfit<T: Real>(outline: &[[T; 2]], samples: &[EdgeSample<T>]) -> T {
-    let Some(field) = OutlineField::new(outline) else { return T::infinity() };
-    let prototype = Prototype { field, outline: outline.to_vec(), symmetry: 1 };
-    let part = Part { prototype: 0, pose: Motion::identity().pose };
-    assign::cost(&[part], samples, core::slice::from_ref(&prototype))
+pub(crate) fn misfit<T: Real>(outline: &[[T; 2]], samples: &[EdgeSample<T>], lanes: &mut EdgeLanes<T>) -> T {
+    lanes.set(outline);
+    assign::robust_mean(samples.iter().map(|sample| foot(outline, lanes, sample.point).distance - sample.distance))
 }
 
 /// What twins are looked for in.
@@ -95,6 +62,8 @@ pub(crate) fn misfit<T: Real>(outline: &[[T; 2]], samples: &[EdgeSample<T>]) -> 
 pub(crate) struct Union<'a, T> {
     /// Traced outline (px).
     pub(crate) contour: &'a [[T; 2]],
+    /// Its signed distance.
+    pub(crate) field: &'a OutlineField<T>,
     pub(crate) samples: &'a [EdgeSample<T>],
     pub(crate) basis: &'a Basis<T>,
     /// How the shape of twins is fitted.
@@ -109,26 +78,24 @@ impl<T: Real> Union<'_, T> {
         prototype: &Prototype<T>,
         scratch: &mut TwinScratch<T>,
     ) -> Option<Explanation<T>> {
-        let union = OutlineField::new(self.contour)?;
         let frame = Frame::new(&parts[0].pose);
         let outline = prototype.outline.iter().map(|&v| frame.to_pixels(v)).collect();
-        self.shaped(&union, outline, Motion::between(&parts[0].pose, &parts[1].pose), scratch)
+        self.shaped(outline, Motion::between(&parts[0].pose, &parts[1].pose), scratch)
     }
 
     /// Pairs of equal objects, best first.
     pub(crate) fn twins(&self, scratch: &mut TwinScratch<T>) -> Vec<Explanation<T>> {
-        let Some(union) = OutlineField::new(self.contour) else { return Vec::new() };
         let mut pairs = Vec::new();
-        for motion in search(self.contour, &union).into_iter().take(TRIED) {
+        for motion in search(self.contour, self.field).into_iter().take(TRIED) {
             let frame = Frame::new(&motion.pose);
             let margin = T::of_usize(MARGIN);
             let both = |point: [T; 2]| {
-                let here = union.distance(point).0;
+                let here = self.field.distance(point).0;
                 // Far outside it does not matter how far.
-                if here > margin { here } else { here.max(union.distance(frame.to_pixels(point)).0) }
+                if here > margin { here } else { here.max(self.field.distance(frame.to_pixels(point)).0) }
             };
             let start = traced(self.contour, both, &mut scratch.field);
-            pairs.extend(start.and_then(|start| self.shaped(&union, closed(&start), motion, scratch)));
+            pairs.extend(start.and_then(|start| self.shaped(closed(&start), motion, scratch)));
         }
         pairs.sort_by(|a, b| a.cost.partial_cmp(&b.cost).unwrap_or(core::cmp::Ordering::Equal));
         pairs.truncate(MOST_PAIRS);
@@ -138,21 +105,22 @@ impl<T: Real> Union<'_, T> {
     /// The shape that starts as `outline` (px, closed) and is found again by `motion`; none if nothing is left of it.
     fn shaped(
         &self,
-        union: &OutlineField<T>,
         mut outline: Vec<[T; 2]>,
         motion: Motion<T>,
         scratch: &mut TwinScratch<T>,
     ) -> Option<Explanation<T>> {
         let margin = T::of_usize(MARGIN);
         let mut poses = [Motion::identity().pose, motion.pose];
+        let mut field = OutlineField::new(&outline)?;
         let mut found = None;
         for _ in 0..ROUNDS {
-            let field = OutlineField::new(&outline)?;
             gather(&field, poses, self.samples, &mut scratch.samples)?;
             let mut known = PartlyKnown::new(&outline, &field, &scratch.samples);
             let frames = poses.map(|pose| Frame::new(&pose));
             let symmetries = known.symmetries(|point, distance| {
-                frames.iter().all(|frame| union.distance(frame.to_pixels(point)).0 - distance <= T::of(STANDS_OUT_PX))
+                frames
+                    .iter()
+                    .all(|frame| self.field.distance(frame.to_pixels(point)).0 - distance <= T::of(STANDS_OUT_PX))
             });
             if !symmetries.is_empty() {
                 let carried = known.carried(&symmetries);
@@ -168,7 +136,7 @@ impl<T: Real> Union<'_, T> {
             let TwinScratch { grow: memory, samples: shared, .. } = &mut *scratch;
             let grown = grow(&outline, shared, self.basis, self.settings, memory)?;
             grown.outline.write_vertices(self.basis, REFERENCE_VERTICES, &mut outline);
-            let prototype = Prototype { field: OutlineField::new(&outline)?, outline: outline.clone(), symmetry: 1 };
+            let prototype = Prototype { field: OutlineField::new(&outline)?, outline, symmetry: 1 };
             let parts = poses.map(|pose| Part { prototype: 0, pose });
             let set = assign::refine(parts.into(), self.samples, core::slice::from_ref(&prototype));
             let [first, second] = *set.parts else { return None };
@@ -178,6 +146,7 @@ impl<T: Real> Union<'_, T> {
                 members: poses.map(|pose| (grown.outline.clone(), Motion { pose })).into(),
                 cost: set.cost,
             });
+            Prototype { outline, field, .. } = prototype;
         }
         found
     }

@@ -8,16 +8,12 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
 use dvp_core::{Image, ImageSize, Scene};
-use rayon::prelude::*;
 
 use self::report::{Row, Totals};
 use self::score::{Score, Scratch, Truth, score_images, score_masks};
-use super::options::{PaintArguments, with_threads};
-use super::{Console, Outcome, progress};
-use crate::format::{
-    DEFAULT_MAX_PIXELS, DataSet, Place, Sample, SceneJson, read_labels, read_npy, read_picture, read_scene,
-    write_atomic,
-};
+use super::options::{BatchArguments, PaintArguments};
+use super::{Console, Outcome};
+use crate::format::{DataSet, Place, Sample, SceneJson, read_labels, read_npy, read_picture, read_scene, write_atomic};
 use crate::paint::Painter;
 
 /// Scores a folder of predictions (STEM.json, as `dvp fit` writes them) against a data set.
@@ -43,15 +39,8 @@ pub(super) struct Arguments {
     npy: Option<PathBuf>,
     #[command(flatten)]
     paint: PaintArguments,
-    /// Largest picture that is read
-    #[arg(long, default_value_t = DEFAULT_MAX_PIXELS, value_name = "N")]
-    max_pixels: usize,
-    /// Threads; 0 means one per core
-    #[arg(long, default_value_t = 0, value_name = "N")]
-    threads: usize,
-    /// Print the figures as JSON
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    batch: BatchArguments,
     /// Write the figures of every image as CSV
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
@@ -80,21 +69,15 @@ pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Ou
         bail!("{}: no folder of predictions", arguments.predictions.display());
     }
     let mut data = DataSet::open(&arguments.data)?;
-    let stack = arguments.npy.as_ref().map(|path| read_npy(path, arguments.max_pixels)).transpose()?;
+    let stack = arguments.npy.as_ref().map(|path| read_npy(path, arguments.batch.max_pixels)).transpose()?;
     if let Some(stack) = &stack {
         data.samples.truncate(stack.len());
     }
     let judge = Judge { arguments, data, stack, painter: arguments.paint.painter() };
-    let bar = progress::bar(judge.data.samples.len());
-    let one = |scratch: &mut Scratch, (index, sample): (usize, &Sample)| {
+    let rows: Vec<Row> = arguments.batch.each(&judge.data.samples, |scratch: &mut Scratch, index, sample| {
         let result = judge.score(index, sample, scratch);
-        bar.inc(1);
         Row { stem: sample.stem.clone(), result: result.map_err(|error| format!("{error:#}")) }
-    };
-    let samples = &judge.data.samples;
-    let work = || samples.par_iter().enumerate().map_init(Scratch::default, one).collect();
-    let rows: Vec<Row> = with_threads(arguments.threads, work)?;
-    bar.finish_and_clear();
+    })?;
     for row in &rows {
         if let Err(error) = &row.result {
             writeln!(console.err, "error: {}: {error}", row.stem)?;
@@ -104,7 +87,7 @@ pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Ou
         write_atomic(path, report::csv(&rows).as_bytes())?;
     }
     let totals = Totals::of(&rows);
-    if arguments.json {
+    if arguments.batch.json {
         writeln!(console.out, "{}", serde_json::to_string_pretty(&totals)?)?;
     } else {
         writeln!(console.out, "{}", totals.table())?;
@@ -138,7 +121,7 @@ impl Judge<'_> {
     }
 
     fn labels(&self, path: &Path, size: ImageSize) -> Result<Vec<u32>> {
-        let (own, labels) = read_labels(path, self.arguments.max_pixels)?;
+        let (own, labels) = read_labels(path, self.arguments.batch.max_pixels)?;
         if own != size {
             let [own, other] = [own, size].map(|size| format!("{} x {}", size.width(), size.height()));
             bail!("{}: {own} labels for {other} pixels", path.display());
@@ -167,7 +150,7 @@ impl Judge<'_> {
         if let Some(stack) = &self.stack {
             return stack.get(index).cloned().context("the NumPy file holds no such image");
         }
-        let picture = || read_picture(&sample.image, self.arguments.max_pixels);
+        let picture = || read_picture(&sample.image, self.arguments.batch.max_pixels);
         if self.arguments.against == Against::Png {
             return Ok(picture()?);
         }

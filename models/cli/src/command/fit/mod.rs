@@ -12,14 +12,13 @@ use clap::Args;
 use dvp_core::render::Compositing;
 use dvp_core::{Image, ImageSize};
 use dvp_fit::{Fit, FitOptions};
-use rayon::prelude::*;
 
 use self::inputs::Input;
 use self::report::{FoundScene, Report};
 use self::solver::{Method, Scratch, Solver};
-use super::options::{BankChoice, CompositingName, with_threads};
-use super::{Console, Outcome, progress};
-use crate::format::{DEFAULT_MAX_PIXELS, Place, SceneJson, encode_png, read_npy, read_picture, write_atomic};
+use super::options::{BankChoice, BatchArguments, CompositingName};
+use super::{Console, Outcome};
+use crate::format::{Place, SceneJson, encode_png, read_npy, read_picture, write_atomic};
 use crate::paint::Painter;
 use crate::svg::to_svg;
 
@@ -43,7 +42,7 @@ pub(super) struct Arguments {
     /// How scenes are found
     #[arg(long, value_enum, default_value_t)]
     method: Method,
-    /// Most objects per picture
+    /// Most objects per picture: those stay without which most of it would be unexplained
     #[arg(long, value_name = "N")]
     max_objects: Option<usize>,
     /// Objects per picture, for opt-iter and rand-opt-p, which cannot tell
@@ -58,15 +57,8 @@ pub(super) struct Arguments {
     /// How overlapping objects mix in the pictures [default: as the picture shows]
     #[arg(long, value_enum)]
     compositing: Option<CompositingName>,
-    /// Largest picture that is read
-    #[arg(long, default_value_t = DEFAULT_MAX_PIXELS, value_name = "N")]
-    max_pixels: usize,
-    /// Threads; 0 means one per core
-    #[arg(long, default_value_t = 0, value_name = "N")]
-    threads: usize,
-    /// Print figures of every picture as JSON
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    batch: BatchArguments,
     /// Write no SVG
     #[arg(long)]
     no_svg: bool,
@@ -103,7 +95,7 @@ pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Ou
     let mut pictures = Vec::new();
     for path in found.paths {
         if path.extension().is_some_and(|ending| ending == "npy") {
-            match read_npy(&path, arguments.max_pixels) {
+            match read_npy(&path, arguments.batch.max_pixels) {
                 Ok(images) => {
                     pictures.extend((0..images.len()).map(|frame| (path.clone(), Some(frame))));
                     stacks.push((path, images));
@@ -116,21 +108,15 @@ pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Ou
     }
     let inputs = inputs::name(&pictures);
     refuse_overwriting(arguments, &inputs)?;
-    let bar = progress::bar(inputs.len());
-    let one = |scratch: &mut Scratch, input: &Input| {
-        let report = fit_one(arguments, &solver, &stacks, input, scratch);
-        bar.inc(1);
-        report
-    };
-    let reports: Vec<Report> =
-        with_threads(arguments.threads, || inputs.par_iter().map_init(Scratch::default, one).collect())?;
-    bar.finish_and_clear();
+    let reports: Vec<Report> = arguments
+        .batch
+        .each(&inputs, |scratch: &mut Scratch, _, input| fit_one(arguments, &solver, &stacks, input, scratch))?;
     let errors = reports.iter().filter_map(|report| report.error.clone());
     failures.extend(errors);
     for failure in &failures {
         writeln!(console.err, "error: {failure}")?;
     }
-    if arguments.json {
+    if arguments.batch.json {
         writeln!(console.out, "{}", report::json(&reports)?)?;
     } else if !reports.is_empty() {
         writeln!(console.out, "{}", report::table(&reports))?;
@@ -180,7 +166,7 @@ fn try_fit(
     let read;
     let image = match input.frame {
         None => {
-            read = read_picture(&input.path, arguments.max_pixels)?;
+            read = read_picture(&input.path, arguments.batch.max_pixels)?;
             &read
         }
         Some(frame) => stack_image(stacks, &input.path, frame).context("image of the stack is gone")?,

@@ -3,7 +3,7 @@
 use comfy_table::{Table, presets};
 use dvp_core::render::{EdgeLaw, EdgeProfile};
 use dvp_core::{ImageSize, Real};
-use dvp_fit::{Ambiguity, Fit, StopReason};
+use dvp_fit::{Ambiguity, Completion, Fit, StopReason};
 use serde::Serialize;
 
 /// Tables of more pictures than this show the summary only.
@@ -33,6 +33,10 @@ pub(super) struct FoundScene {
     edge: EdgeReport,
     /// Share of the picture's variance that neither the scene nor noise explains; null for methods that do not count it.
     unexplained: Option<f64>,
+    /// Per object: the share of the picture's variance that would be unexplained as well without it.
+    buys: Vec<f64>,
+    /// Objects, those that buy most first.
+    ranking: Vec<usize>,
     /// Standard deviation taken for noise; null for methods that do not estimate it.
     noise: Option<f32>,
     /// Description length; null for methods that do not count it.
@@ -54,11 +58,13 @@ struct EdgeReport {
 /// Hard edges are narrower, px.
 const HARD_PX: f32 = 0.2;
 
-/// An ambiguity under its name.
+/// An ambiguity under its name. `by` is what completes a hidden part: `prototype`, `rotation` (with its order, 0 for a disk),
+/// `mirror`, or `straight`, the shortest way.
 #[derive(Debug, Serialize)]
 #[serde(rename_all = "lowercase", tag = "kind")]
 enum AmbiguityReport {
     Symmetry { object: usize, order: usize },
+    Hidden { object: usize, share: f64, by: &'static str, order: Option<usize> },
     Merged { object: usize, other: usize, visible: f64 },
     Cropped { object: usize, visible: f64 },
     Twin { object: usize, prototype: usize, ratio: f64 },
@@ -72,6 +78,8 @@ pub(super) struct Summary {
     failed: usize,
     objects: usize,
     mae: f64,
+    /// Mean over the pictures that tell it.
+    unexplained: Option<f64>,
     cpu_ms_median: f64,
     cpu_ms_p95: f64,
 }
@@ -93,11 +101,23 @@ impl FoundScene {
             },
             edge: EdgeReport::of(&fit.scene.edge, size),
             unexplained: fit.unexplained.is_finite().then_some(fit.unexplained),
+            buys: fit.buys.clone(),
+            ranking: fit.ranking(),
             noise: fit.noise.is_finite().then_some(fit.noise),
             bits: fit.bits.is_finite().then_some(fit.bits),
             ambiguity: fit.ambiguity.iter().map(AmbiguityReport::of).collect(),
             covariance: fit.covariance.clone(),
         }
+    }
+
+    /// How many objects are guessed in part, and how much of the outline most.
+    fn hidden(&self) -> String {
+        let shares = self.ambiguity.iter().filter_map(|ambiguity| match *ambiguity {
+            AmbiguityReport::Hidden { share, .. } => Some(share),
+            _ => None,
+        });
+        let (count, most) = shares.fold((0, 0.0_f64), |(count, most), share| (count + 1, most.max(share)));
+        if count == 0 { String::new() } else { format!("{count}, to {:.0} %", 100.0 * most) }
     }
 }
 
@@ -121,6 +141,16 @@ impl AmbiguityReport {
         match *ambiguity {
             Ambiguity::Symmetry { object, order } => Self::Symmetry { object, order },
             Ambiguity::Cropped { object, visible } => Self::Cropped { object, visible },
+            Ambiguity::Hidden { object, share, completion } => {
+                let (by, order) = match completion {
+                    Completion::Prototype => ("prototype", None),
+                    Completion::Rotation { order } => ("rotation", Some(order)),
+                    Completion::Mirror => ("mirror", None),
+                    Completion::Straight => ("straight", None),
+                    _ => ("other", None),
+                };
+                Self::Hidden { object, share, by, order }
+            }
             Ambiguity::Merged { object, other, visible } => Self::Merged { object, other, visible },
             Ambiguity::Twin { object, prototype, ratio } => Self::Twin { object, prototype, ratio },
             _ => Self::Other,
@@ -134,17 +164,27 @@ impl Summary {
         let count = found().count();
         let mut times: Vec<f64> = found().map(|found| found.cpu_ms).collect();
         times.sort_by(f64::total_cmp);
-        let total: f64 = found().map(|found| f64::from(found.mae)).sum();
         Self {
             images: count,
             failed: reports.len() - count,
             objects: found().map(|found| found.objects).sum(),
-            #[expect(clippy::cast_precision_loss, reason = "counts of files are small")]
-            mae: if count > 0 { total / count as f64 } else { 0.0 },
+            mae: mean(found().map(|found| f64::from(found.mae))).unwrap_or(0.0),
+            unexplained: mean(found().filter_map(|found| found.unexplained)),
             cpu_ms_median: quantile(&times, 50),
             cpu_ms_p95: quantile(&times, 95),
         }
     }
+}
+
+/// The mean; none of no values.
+fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
+    (count > 0.0).then(|| sum / count)
+}
+
+/// A share as percent; a dash for none.
+fn percent(share: Option<f64>) -> String {
+    share.map_or_else(|| "-".to_owned(), |share| format!("{:.2} %", 100.0 * share))
 }
 
 /// The smallest value that at least `percent` percent of the sorted values do not exceed; 0 if there are none.
@@ -167,7 +207,7 @@ pub(super) fn json(reports: &[Report]) -> serde_json::Result<String> {
 pub(super) fn table(reports: &[Report]) -> String {
     let mut table = Table::new();
     table.load_style(presets::UTF8_HORIZONTAL_ONLY);
-    table.set_header(["picture", "objects", "MAE", "CPU ms", "steps", "stop", "edge"]);
+    table.set_header(["picture", "objects", "MAE", "unexplained", "CPU ms", "steps", "stop", "edge", "hidden"]);
     let summary = Summary::of(reports);
     if reports.len() <= MOST_ROWS {
         for report in reports {
@@ -176,10 +216,12 @@ pub(super) fn table(reports: &[Report]) -> String {
                     report.path.clone(),
                     found.objects.to_string(),
                     format!("{:.5}", found.mae),
+                    percent(found.unexplained),
                     format!("{:.2}", found.cpu_ms),
                     found.steps.to_string(),
                     found.stop.to_owned(),
                     format!("{} {:.1} px", found.edge.kind, found.edge.width_px),
+                    found.hidden(),
                 ]),
                 None => table.add_row([report.path.as_str(), "failed"]),
             };
@@ -190,6 +232,7 @@ pub(super) fn table(reports: &[Report]) -> String {
             format!("all {}", summary.images),
             summary.objects.to_string(),
             format!("{:.5}", summary.mae),
+            percent(summary.unexplained),
             format!("{:.2} (p95 {:.2})", summary.cpu_ms_median, summary.cpu_ms_p95),
         ]);
     }

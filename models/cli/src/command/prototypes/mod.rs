@@ -10,13 +10,12 @@ use clap::Args;
 use dvp_core::ImageView;
 use dvp_fit::prototypes::{Learned, Member, Pool, PrototypeOptions, learn, members};
 use dvp_fit::{Bank, Fit, FitOptions, FitScratch, Fitter};
-use rayon::prelude::*;
 
 use self::report::Report;
-use super::options::with_threads;
-use super::{Console, Outcome, progress};
+use super::options::BatchArguments;
+use super::{Console, Outcome};
 use crate::chart::{Chart, check_name, write_chart};
-use crate::format::{DEFAULT_MAX_PIXELS, bank_to_json, pictures_of, read_picture, write_atomic};
+use crate::format::{bank_to_json, pictures_of, read_picture, write_atomic};
 
 /// Learns the shapes that the objects of pictures share, and writes them as a bank.
 ///
@@ -47,15 +46,8 @@ pub(super) struct Arguments {
     /// Draw the silhouette of each number of shapes (.svg)
     #[arg(long, value_name = "FILE")]
     chart: Option<PathBuf>,
-    /// Largest picture that is read
-    #[arg(long, default_value_t = DEFAULT_MAX_PIXELS, value_name = "N")]
-    max_pixels: usize,
-    /// Threads; 0 means one per core
-    #[arg(long, default_value_t = 0, value_name = "N")]
-    threads: usize,
-    /// Print the shapes as JSON
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    batch: BatchArguments,
 }
 
 pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Outcome> {
@@ -76,7 +68,7 @@ pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Ou
         min_members: arguments.min_members.into(),
         mirror: arguments.mirror,
     };
-    let (found, bank, failures) = with_threads(arguments.threads, || learn_from(arguments, &paths, &options))??;
+    let (found, bank, failures) = learn_from(arguments, &paths, &options)?;
     for failure in &failures {
         writeln!(console.err, "error: {failure}")?;
     }
@@ -85,7 +77,7 @@ pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Ou
         write_chart(&silhouette_chart(&found.learned), file)?;
     }
     let report = Report::new(&found, &bank, paths.len(), clock.elapsed());
-    let text = if arguments.json { report.json()? } else { report.table() };
+    let text = if arguments.batch.json { report.json()? } else { report.table() };
     writeln!(console.out, "{text}")?;
     Ok(if failures.is_empty() { Outcome::Done } else { Outcome::Partly })
 }
@@ -108,7 +100,7 @@ fn learn_from(
     let fitted = each(arguments, paths, |image, index, scratch| {
         let fit: Fit<f32> = free.fit(image, scratch)?;
         Ok((fit.scene.objects.len(), members(&fit, image.size(), index)?))
-    });
+    })?;
     let mut found = Vec::new();
     let mut objects = 0;
     for (path, result) in paths.iter().zip(fitted) {
@@ -137,30 +129,23 @@ fn better_bank(arguments: &Arguments, paths: &[PathBuf], bank: Bank<f32>) -> Res
         let mut pool = empty.clone();
         pool.add(&fit, image.size(), scratch);
         Ok(pool)
-    });
+    })?;
     let mut pool = empty.clone();
     // In the order of the pictures, whichever thread fitted them; those that failed were told of in the first pass.
     parts.into_iter().flatten().for_each(|part| pool.merge(part));
     Ok(pool.bank()?)
 }
 
-/// Reads every picture and does something with it, on all threads.
+/// Reads every picture and does something with it.
 fn each<R: Send>(
     arguments: &Arguments,
     paths: &[PathBuf],
     work: impl Fn(ImageView<'_, f32>, usize, &mut FitScratch<f32>) -> Result<R> + Sync,
-) -> Vec<Result<R>> {
-    let bar = progress::bar(paths.len());
-    let one = |scratch: &mut FitScratch<f32>, (index, path): (usize, &PathBuf)| {
-        let result = read_picture(path, arguments.max_pixels)
-            .context("not read")
-            .and_then(|image| work(image.view(), index, scratch));
-        bar.inc(1);
-        result
-    };
-    let results = paths.par_iter().enumerate().map_init(FitScratch::default, |s, at| one(s, at)).collect();
-    bar.finish_and_clear();
-    results
+) -> Result<Vec<Result<R>>> {
+    arguments.batch.each(paths, |scratch, index, path| {
+        let image = read_picture(path, arguments.batch.max_pixels).context("not read")?;
+        work(image.view(), index, scratch)
+    })
 }
 
 /// Silhouette over the number of shapes.

@@ -1,8 +1,10 @@
 //! How coverage and distance belong together at the edges of a picture.
 //!
-//! In: coverages of soft pixels. Out: which law they follow (`evidence`), and their distances to the outline under it.
+//! In: soft pixels (`gather`) and their coverages. Out: which law they follow (`evidence`), and their distances to the
+//! outline under it.
 
 mod evidence;
+mod gather;
 #[cfg(test)]
 mod tests;
 

@@ -4,7 +4,8 @@
 use dvp_core::Real;
 use dvp_core::render::Compositing;
 
-use super::{BACKGROUND_CONTACT, Cover, MAX_COVER, Reading, distance, is_color, mean, mixed_in, slack, within_unit};
+use super::{Cover, MAX_COVER, Reading, is_color, mean, mixed_in, slack, within_unit};
+use crate::segment::color::distance;
 use crate::segment::region::Region;
 
 /// How exactly an overlap shows the mean of its colors.
@@ -33,14 +34,7 @@ impl<T: Real> Reading<T> {
     /// The two regions whose mean color region `i` shows and between which it lies.
     #[expect(clippy::cast_possible_truncation, reason = "an image has at most 2^28 regions")]
     fn pair_overlap(&self, regions: &[Region<T>], i: usize) -> Option<([u32; MAX_COVER], u8)> {
-        let (mut total, mut ground) = (0, 0);
-        for (j, n) in self.contacts_of(i) {
-            total += n;
-            ground += if self.classes[j] == self.ground { n } else { 0 };
-        }
-        if f64::from(ground) > BACKGROUND_CONTACT * f64::from(total) {
-            return None;
-        }
+        self.contacts_of_overlap(i)?;
         let mut best: Option<(T, [u32; MAX_COVER])> = None;
         for (a, _) in self.contacts_of(i) {
             for (b, _) in self.contacts_of(i) {
@@ -98,30 +92,28 @@ impl<T: Real> Reading<T> {
             let Some((members, len)) = self.overlaps[i] else { continue };
             self.join_singles(i, &members[..usize::from(len)]);
         }
+        // What covers the regions of a set, by its root.
+        let mut named = alloc::vec![Cover::default(); regions.len()];
         // Largest first, so that object 0 is the largest.
         for at in 0..self.order.len() {
             let i = self.order[at];
             if self.classes[i as usize] == self.ground {
                 self.covers[i as usize] = Cover::of(&[]);
             } else if self.overlaps[i as usize].is_none() {
-                let top = self.top(i);
-                let known = self.order[..at].iter().copied().find(|&j| {
-                    self.overlaps[j as usize].is_none()
-                        && self.classes[j as usize] != self.ground
-                        && self.parents[j as usize] == top
-                });
-                self.parents[i as usize] = top;
-                self.covers[i as usize] = match (known, self.host(regions, i as usize)) {
-                    (Some(j), _) => self.covers[j as usize],
-                    (None, Some((host, color))) => {
-                        self.colors.push(color);
-                        Cover::of(&[host, self.colors.len() as u32 - 1])
-                    }
-                    (None, None) => {
-                        self.colors.push(regions[i as usize].color);
-                        Cover::of(&[self.colors.len() as u32 - 1])
-                    }
-                };
+                let root = self.sets.root(i) as usize;
+                if !named[root].known {
+                    named[root] = match self.host(regions, i as usize) {
+                        Some((host, color)) => {
+                            self.colors.push(color);
+                            Cover::of(&[host, self.colors.len() as u32 - 1])
+                        }
+                        None => {
+                            self.colors.push(regions[i as usize].color);
+                            Cover::of(&[self.colors.len() as u32 - 1])
+                        }
+                    };
+                }
+                self.covers[i as usize] = named[root];
             }
         }
         for i in 0..regions.len() {

@@ -13,6 +13,8 @@ use alloc::vec::Vec;
 use dvp_core::Real;
 use dvp_core::render::Compositing;
 
+use super::color::{SAME_COLOR, distance};
+use super::disjoint::DisjointSets;
 use super::region::Region;
 use super::transition::Transition;
 pub(crate) use evidence::Evidence;
@@ -93,21 +95,18 @@ pub(crate) struct Reading<T> {
     classes: Vec<u32>,
     order: Vec<u32>,
     overlaps: Vec<Option<([u32; MAX_COVER], u8)>>,
-    parents: Vec<u32>,
+    /// Regions of one object.
+    sets: DisjointSets,
 }
 
-/// Colors closer than this in every channel are one color (two rounding errors of 8 bits).
-const SAME_COLOR: f64 = 0.008;
+/// Two objects with fewer soft pixels between them merely touch in a point.
+const MIN_BORDER: u32 = 3;
 /// An overlap touches the background at most with this share of its contacts (outlines cross in points).
 const BACKGROUND_CONTACT: f64 = 0.34;
 /// A hole touches the object around it with at least this share of its contacts.
 const HOLE_CONTACT: f64 = 0.6;
 /// What lies inside another region touches it with at least this share of its contacts.
 const MOSTLY_INSIDE: f64 = 0.75;
-
-fn distance<T: Real>(a: [T; 3], b: [T; 3]) -> T {
-    (a[0] - b[0]).abs().max((a[1] - b[1]).abs()).max((a[2] - b[2]).abs())
-}
 
 /// Twice the standard deviation of a difference between the colors of regions that noise has left in doubt.
 fn slack<T: Real>(regions: &[Region<T>], compared: &[usize]) -> T {
@@ -157,8 +156,7 @@ impl<T: Real> Reading<T> {
         self.colors.clear();
         self.confidences.clear();
         self.borders.clear();
-        self.parents.clear();
-        self.parents.extend(0..regions as u32);
+        self.sets.reset(regions as u32);
     }
 
     /// The region around region `i`, if `i` shows the background through a hole of it.
@@ -168,12 +166,10 @@ impl<T: Real> Reading<T> {
         if self.classes[i] != self.ground || regions[i].border > 0 {
             return None;
         }
-        let (outer, most) = self.contacts_of(i).max_by_key(|&(_, pixels)| pixels)?;
-        let total: u32 = self.contacts_of(i).map(|(_, pixels)| pixels).sum();
+        let outer = self.main_contact(i, HOLE_CONTACT)?;
         let [l, t, r, b] = regions[i].bounds;
         let [left, top, right, bottom] = regions[outer].bounds;
-        let around = left < l && top < t && right > r && bottom > b;
-        (around && f64::from(most) >= HOLE_CONTACT * f64::from(total)).then_some(outer)
+        (left < l && top < t && right > r && bottom > b).then_some(outer)
     }
 
     /// The one other region that region `i` touches, if it does not touch the border of the image either.
@@ -185,9 +181,25 @@ impl<T: Real> Reading<T> {
 
     /// The region that region `i` lies inside, even if it reaches out of it a little, as one object drawn over another may.
     fn lies_mostly_inside(&self, regions: &[Region<T>], i: usize) -> Option<usize> {
-        let (outer, most) = self.contacts_of(i).max_by_key(|&(_, pixels)| pixels)?;
+        let outer = self.main_contact(i, MOSTLY_INSIDE)?;
+        (regions[i].border == 0).then_some(outer)
+    }
+
+    /// The region that region `i` touches most, if with at least this share of its contacts.
+    fn main_contact(&self, i: usize, least_share: f64) -> Option<usize> {
+        let (other, most) = self.contacts_of(i).max_by_key(|&(_, pixels)| pixels)?;
         let total: u32 = self.contacts_of(i).map(|(_, pixels)| pixels).sum();
-        (regions[i].border == 0 && f64::from(most) >= MOSTLY_INSIDE * f64::from(total)).then_some(outer)
+        (f64::from(most) >= least_share * f64::from(total)).then_some(other)
+    }
+
+    /// Soft pixels around region `i`; none if too many of them lie beside the background for it to be an overlap.
+    fn contacts_of_overlap(&self, i: usize) -> Option<u32> {
+        let (mut total, mut ground) = (0, 0);
+        for (j, n) in self.contacts_of(i) {
+            total += n;
+            ground += if self.classes[j] == self.ground { n } else { 0 };
+        }
+        (f64::from(ground) <= BACKGROUND_CONTACT * f64::from(total)).then_some(total)
     }
 
     /// Contacts of region `i`: (other region, number of soft pixels between).
@@ -201,6 +213,18 @@ impl<T: Real> Reading<T> {
                 None
             }
         })
+    }
+
+    /// Whether the object ends where another one does, or overlaps with one.
+    pub(crate) fn meets_another(&self, object: u32) -> bool {
+        let members = |region: u32| self.covers[region as usize].members();
+        let ends = |own: u32, other: u32| {
+            members(own).contains(&object) && !members(other).is_empty() && !members(other).contains(&object)
+        };
+        let shared = |cover: &Cover| cover.members().len() > 1 && cover.members().contains(&object);
+        self.contacts.iter().any(|&([a, b], pixels)| pixels >= MIN_BORDER && (ends(a, b) || ends(b, a)))
+            || self.borders.iter().any(|border| border.objects.contains(&object))
+            || self.covers.iter().any(shared)
     }
 
     fn count_contacts(&mut self, transitions: &[Transition<T>]) {
@@ -265,17 +289,9 @@ impl<T: Real> Reading<T> {
                 };
                 let single = self.overlaps[other as usize].is_none();
                 if single && self.classes[other as usize] == self.classes[member as usize] {
-                    let (low, high) = (self.top(other), self.top(member));
-                    self.parents[low.max(high) as usize] = low.min(high);
+                    self.sets.unite(other, member);
                 }
             }
         }
-    }
-
-    fn top(&self, mut i: u32) -> u32 {
-        while self.parents[i as usize] != i {
-            i = self.parents[i as usize];
-        }
-        i
     }
 }

@@ -10,7 +10,8 @@ use alloc::vec::Vec;
 use dvp_core::Real;
 use dvp_core::render::Compositing;
 
-use super::{BACKGROUND_CONTACT, Border, Cover, MAX_COVER, Reading, Stacking, distance, is_color, slack, within_unit};
+use super::{Border, Cover, MAX_COVER, MIN_BORDER, Reading, Stacking, is_color, slack, within_unit};
+use crate::segment::color::distance;
 use crate::segment::region::Region;
 
 /// How exactly an overlap shows the color that opacity foretells.
@@ -21,8 +22,6 @@ const SHADOW_CONTRAST: f64 = 0.1;
 const THROUGH: [f64; 2] = [0.06, 0.94];
 /// Two objects that overlap meet in points; longer contacts, relative to those of the overlap, speak against it.
 const CROSSING_CONTACT: f64 = 0.25;
-/// Two objects with fewer soft pixels between them merely touch.
-const MIN_BORDER: u32 = 3;
 
 /// An overlap of region `top` over region `bottom`.
 #[derive(Clone, Copy, Debug)]
@@ -64,14 +63,7 @@ impl<T: Real> Reading<T> {
         if self.classes[i] == self.ground {
             return None;
         }
-        let (mut total, mut ground) = (0, 0);
-        for (j, n) in self.contacts_of(i) {
-            total += n;
-            ground += if self.classes[j] == self.ground { n } else { 0 };
-        }
-        if f64::from(ground) > BACKGROUND_CONTACT * f64::from(total) {
-            return None;
-        }
+        let total = self.contacts_of_overlap(i)?;
         let mut best: Option<Shadow<T>> = None;
         for (a, _) in self.contacts_of(i) {
             for (b, _) in self.contacts_of(i) {
@@ -141,8 +133,8 @@ impl<T: Real> Reading<T> {
             if self.classes[i] == self.ground && self.hole(regions, i).is_none() {
                 self.covers[i] = Cover::of(&[]);
             } else if self.overlaps[i].is_none() {
-                let top = self.top(i as u32) as usize;
-                let object = *named[top].get_or_insert_with(|| {
+                let root = self.sets.root(i as u32) as usize;
+                let object = *named[root].get_or_insert_with(|| {
                     self.colors.push(regions[i].color);
                     self.colors.len() as u32 - 1
                 });
@@ -181,7 +173,7 @@ impl<T: Real> Reading<T> {
                     [members[0], members[1]].map(|m| self.covers[m as usize].members().first().copied());
                 if let (Some(top), Some(bottom)) = (top, bottom) {
                     self.covers[i] = Cover::of(&[top, bottom]);
-                    self.stack(top, bottom);
+                    self.border(top, bottom).front = Some(top);
                 }
             }
         }
@@ -215,12 +207,6 @@ impl<T: Real> Reading<T> {
             }
         }
         None
-    }
-
-    /// Notes that `top` is in front of `bottom`.
-    fn stack(&mut self, top: u32, bottom: u32) {
-        let border = self.border(top, bottom);
-        border.front = Some(top);
     }
 
     /// The border between two objects, made if it is new.

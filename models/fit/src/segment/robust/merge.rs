@@ -7,13 +7,22 @@ use core::cmp::Reverse;
 
 use dvp_core::{ImageView, Real};
 
+use crate::segment::disjoint::DisjointSets;
+
 /// Every region pays as if it had this much more boundary (px): what an object costs whatever its size.
 const FIXED_LENGTH: f64 = 8.0;
+
+/// What compression leaves beside an edge stays in the unit of 16 x 16 pixels that its color is coded in: larger regions, if
+/// they are wider than this (px; twice the area over the boundary) and differ by more than steps of means do, are no halo.
+const HALO_PIXELS: u32 = 256;
+const HALO_WIDTH: u32 = 8;
+const HALO_COLOR: f64 = 0.03;
 
 /// Regions that cover all pixels, with their boundaries; kept between images as memory.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Merger<T> {
-    parents: Vec<u32>,
+    /// Pixels of one zone, then zones of one region.
+    sets: DisjointSets,
     sums: Vec<[T; 3]>,
     counts: Vec<u32>,
     neighbors: Vec<Vec<u32>>,
@@ -58,24 +67,24 @@ impl<T: Real> Merger<T> {
     #[expect(clippy::cast_possible_truncation, reason = "an image has at most 2^28 pixels")]
     fn find_zones(&mut self, smooth: &ImageView<'_, T>, tolerance: T, labels: &mut Vec<u32>) {
         let (width, pixels) = (smooth.size().width(), smooth.size().pixels());
-        self.parents.clear();
-        self.parents.extend(0..pixels as u32);
+        self.sets.reset(pixels as u32);
         let [r, g, b] = [0, 1, 2].map(|c| smooth.channel(c));
         let alike =
             |i: usize, j: usize| (r[i] - r[j]).abs().max((g[i] - g[j]).abs()).max((b[i] - b[j]).abs()) <= tolerance;
         for i in 0..pixels {
             if i % width != 0 && alike(i, i - 1) {
-                self.unite(i as u32 - 1, i as u32);
+                self.sets.unite(i as u32 - 1, i as u32);
             }
             if i >= width && alike(i, i - width) {
-                self.unite((i - width) as u32, i as u32);
+                self.sets.unite((i - width) as u32, i as u32);
             }
         }
         labels.clear();
         labels.resize(pixels, 0);
         let mut count = 0;
         for i in 0..pixels {
-            let top = self.top(i as u32) as usize;
+            // The first pixel of a zone is its root.
+            let top = self.sets.root(i as u32) as usize;
             labels[i] = if top == i {
                 count += 1;
                 count - 1
@@ -86,27 +95,11 @@ impl<T: Real> Merger<T> {
         self.left = count as usize;
     }
 
-    fn unite(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.top(a), self.top(b));
-        // The first pixel of a zone is its root.
-        self.parents[a.max(b) as usize] = a.min(b);
-    }
-
-    fn top(&mut self, mut i: u32) -> u32 {
-        while self.parents[i as usize] != i {
-            let up = self.parents[self.parents[i as usize] as usize];
-            self.parents[i as usize] = up;
-            i = up;
-        }
-        i
-    }
-
     /// From labels of zones to sums, boundaries and the queue of pairs.
     #[expect(clippy::cast_possible_truncation, reason = "an image has at most 2^28 pixels")]
     fn measure(&mut self, image: &ImageView<'_, T>, labels: &[u32]) {
         let (width, zones) = (image.size().width(), self.left);
-        self.parents.clear();
-        self.parents.extend(0..zones as u32);
+        self.sets.reset(zones as u32);
         self.sums.clear();
         self.sums.resize(zones, [T::zero(); 3]);
         self.counts.clear();
@@ -153,7 +146,7 @@ impl<T: Real> Merger<T> {
             if cost > price && self.left <= stop.most_regions && stop.halo <= T::zero() {
                 break;
             }
-            let (a, b) = (self.top(a), self.top(b));
+            let (a, b) = (self.sets.root(a), self.sets.root(b));
             let Some(&length) = self.lengths.get(&pair(a, b)) else { continue };
             let now = self.cost(a, b, length);
             if now > cost {
@@ -169,12 +162,23 @@ impl<T: Real> Merger<T> {
     fn is_halo(&mut self, a: u32, b: u32, cost: u64, halo: T) -> bool {
         let small = if self.counts[a as usize] < self.counts[b as usize] { a } else { b };
         let mut most = T::zero();
-        let neighbors = core::mem::take(&mut self.neighbors[small as usize]);
+        let mut boundary = 0;
+        let mut neighbors = core::mem::take(&mut self.neighbors[small as usize]);
+        neighbors.iter_mut().for_each(|other| *other = self.sets.root(*other));
+        neighbors.sort_unstable();
+        neighbors.dedup();
         for &other in &neighbors {
-            let other = self.top(other);
             most = most.max(self.contrast(small, other));
+            boundary += self.lengths.get(&pair(small, other)).copied().unwrap_or(0);
         }
         self.neighbors[small as usize] = neighbors;
+        let pixels = self.counts[small as usize];
+        if pixels > HALO_PIXELS
+            && 2 * pixels > HALO_WIDTH * boundary
+            && self.contrast(a, b) > T::of(HALO_COLOR * HALO_COLOR)
+        {
+            return false;
+        }
         cost <= (halo * halo * most).as_f64().to_bits()
     }
 
@@ -191,7 +195,7 @@ impl<T: Real> Merger<T> {
         let swap = self.neighbors[a as usize].len() < self.neighbors[b as usize].len();
         let (a, b) = if swap { (b, a) } else { (a, b) };
         self.left -= 1;
-        self.parents[b as usize] = a;
+        self.sets.put_under(b, a);
         self.counts[a as usize] += self.counts[b as usize];
         let moved = self.sums[b as usize];
         for (sum, part) in self.sums[a as usize].iter_mut().zip(moved) {
@@ -200,7 +204,7 @@ impl<T: Real> Merger<T> {
         self.lengths.remove(&pair(a, b));
         let moved = core::mem::take(&mut self.neighbors[b as usize]);
         for &other in &moved {
-            let other = self.top(other);
+            let other = self.sets.root(other);
             // Already moved with another name, or the two that become one.
             let Some(length) = self.lengths.remove(&pair(b, other)) else { continue };
             let total = self.lengths.entry(pair(a, other)).or_insert(0);
@@ -223,7 +227,7 @@ impl<T: Real> Merger<T> {
         names.fill(OPEN);
         let mut count = 0;
         for label in labels.iter_mut() {
-            let top = self.top(*label) as usize;
+            let top = self.sets.root(*label) as usize;
             if names[top] == OPEN {
                 names[top] = count as u32;
                 count += 1;

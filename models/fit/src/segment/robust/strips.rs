@@ -5,6 +5,8 @@ use alloc::vec::Vec;
 
 use dvp_core::{ImageView, Real};
 
+use crate::segment::transition::along;
+
 /// A region of the partition.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Zone<T> {
@@ -53,8 +55,8 @@ pub(super) fn measure_zones<T: Real>(
 }
 
 /// Marks zones up to `width` wide (px; twice the area over the boundary) whose color lies between those of two neighbors,
-/// `tolerance` off the line at most. A strip beside
-/// another strip looks beyond it, to the zones along the same edge that are not thin.
+/// `tolerance` off the line at most. A strip beside another strip looks beyond it, to the zones along the same edge that are
+/// not thin.
 pub(super) fn find_strips<T: Real>(zones: &mut [Zone<T>], steps: &[(u32, u32)], width: T, tolerance: T) {
     let mut anchors: Vec<usize> = Vec::new();
     for own in steps.chunk_by(|a, b| a.0 == b.0) {
@@ -92,19 +94,12 @@ fn is_thin<T: Real>(zone: &Zone<T>, width: T) -> bool {
 }
 
 fn is_between_any<T: Real>(zones: &[Zone<T>], at: usize, anchors: &[usize], tolerance: T) -> bool {
-    let pairs = anchors.iter().enumerate().flat_map(|(i, &a)| anchors[..i].iter().map(move |&b| (a, b)));
-    pairs.into_iter().any(|(a, b)| is_between(&zones[at], &zones[a], &zones[b], tolerance))
+    let mut pairs = anchors.iter().enumerate().flat_map(|(i, &a)| anchors[..i].iter().map(move |&b| (a, b)));
+    pairs.any(|(a, b)| is_between(&zones[at], &zones[a], &zones[b], tolerance))
 }
 
 fn is_between<T: Real>(zone: &Zone<T>, a: &Zone<T>, b: &Zone<T>, tolerance: T) -> bool {
-    let line: [T; 3] = core::array::from_fn(|c| b.color[c] - a.color[c]);
-    let arm: [T; 3] = core::array::from_fn(|c| zone.color[c] - a.color[c]);
-    let squared = line.iter().map(|&v| v * v).sum::<T>();
-    let dot = line.iter().zip(arm).map(|(&u, v)| u * v).sum::<T>();
-    if squared <= T::zero() {
-        return false;
-    }
-    let along = dot / squared;
-    let off = (0..3).fold(T::zero(), |most, c| most.max((arm[c] - along * line[c]).abs()));
-    along > T::of(0.03) && along < T::of(0.97) && off <= tolerance + T::of(0.1) * squared.sqrt()
+    let (share, off) = along(zone.color, a.color, b.color);
+    let contrast = (0..3).map(|c| (b.color[c] - a.color[c]) * (b.color[c] - a.color[c])).sum::<T>().sqrt();
+    share > T::of(0.03) && share < T::of(0.97) && off <= tolerance + T::of(0.1) * contrast
 }
