@@ -9,7 +9,10 @@
 //! | module | comes in | goes out |
 //! |---|---|---|
 //! | [`real`] | f32 or f64 | one trait for both |
-//! | [`dims`] | numbers of pixels | a checked image size |
+//! | [`dims`] | numbers of pixels, extents of arrays | a checked size |
+//! | [`optim`] | losses of steps | the next learning rate |
+//! | [`diff_op`] | the inputs of a step, on slices | its output and, backward, gradients |
+//! | [`tensor`] | values and extents | arrays of any framework, and networks on them |
 //! | [`image`] | slices of pixels | checked views |
 //! | [`contour`] | a mask | closed polygons traced from it |
 //! | [`shape`] | a contour or parameters | EFD, its symmetry, unit outlines |
@@ -39,16 +42,19 @@ extern crate alloc;
 extern crate std;
 
 pub mod contour;
+pub mod diff_op;
 pub mod dims;
 pub mod image;
 pub mod loss;
 pub mod matching;
 pub mod metric;
+pub mod optim;
 pub mod real;
 pub mod render;
 pub mod scene;
 pub mod shape;
 pub mod simd;
+pub mod tensor;
 
 pub use dims::ImageSize;
 pub use image::{Image, ImageView};

@@ -10,11 +10,13 @@
 //! | `pyramid` | an image loss over halved images, [`Pyramid`] | `pyramid_vjp` |
 //! | `length` | mean length of unit outlines, [`ContourLength`] | `length_vjp` |
 //! | `scene_loss` | the paper's L_p, [`SceneLoss`], a sum of `scene_terms` | `scene_loss_vjp` |
+//! | `image_loss_op`, `scene_loss_op` | losses of a batch as steps: [`ImageLossOp`], [`SceneLossOp`] | same files |
 //! | `scene_match`, `rotation_term` | which objects L_p compares, and how it prices a turn | |
 //!
 //! Shown by `tests/gradient/loss.rs` (central differences), `tests/golden/loss.rs` (the reference's terms, totals,
 //! matchings and gradients) and `tests/property/loss.rs` (0 at equality, unchanged by order and by symmetric turns).
 
+mod image_loss_op;
 mod image_pair;
 mod length;
 mod length_vjp;
@@ -24,6 +26,7 @@ mod pyramid;
 mod pyramid_vjp;
 mod rotation_term;
 mod scene_loss;
+mod scene_loss_op;
 mod scene_loss_vjp;
 mod scene_match;
 mod scene_terms;
@@ -34,12 +37,14 @@ mod tests;
 
 use core::fmt;
 
+pub use image_loss_op::ImageLossOp;
 pub use image_pair::ImagePair;
 pub use length::{ContourLength, outline_length};
 pub use length_vjp::outline_length_vjp;
 pub use pyramid::{Pyramid, PyramidScratch};
 pub use rotation_term::RotationTerm;
 pub use scene_loss::{SceneLoss, ScenePairs};
+pub use scene_loss_op::SceneLossOp;
 pub use scene_match::{Match, SceneLossScratch};
 pub use scene_terms::SceneTerms;
 pub use ssim::{SSIM_WINDOW, Ssim, SsimScratch};

@@ -8,20 +8,26 @@
 //! | [`contour`] | coverage by the scene's edge profile, without the reference's seams: the default renderer |
 //! | [`exact`] | coverage by the area of pixel and outline in common |
 //! | [`hard`] | coverage 0 or 1: masks |
+//! | [`dense`] | the default renderer again, in tensor operations alone |
+//! | `render_op` | any renderer, and its fused loss, as steps of a batch: [`RenderOp`], [`RenderLossOp`] |
 //! | `triangles` | coverage by the distance to triangles, the reference's; with the feature of that name |
 
 #[expect(clippy::needless_range_loop, reason = "loops over lanes walk several arrays")]
 mod composite;
 pub mod contour;
+pub mod dense;
 pub mod exact;
 pub mod hard;
+mod render_op;
 pub mod tile;
 #[cfg(feature = "triangles")]
 pub mod triangles;
 
 pub use contour::{ContourDistance, ContourRenderer};
+pub use dense::{DenseRenderer, TensorDrawing};
 pub use exact::{ExactArea, ExactRenderer};
 pub use hard::{HardMask, HardRenderer};
+pub use render_op::{RenderLossOp, RenderOp, RenderOpScratch};
 pub use tile::{CoverageModel, TileRenderer};
 #[cfg(feature = "triangles")]
 pub use triangles::{SoftTriangles, TriangleRenderer};

@@ -3,6 +3,7 @@
 //! | file | forward | backward |
 //! |---|---|---|
 //! | `pose` | unit outline to scene units, [`Pose::transform`]; (sin, cos) pair to angle | `pose_vjp` |
+//! | `pose_op` | poses as a step of a batch, [`PoseOp`] | same file |
 //! | `edge` | how coverage falls off, [`EdgeProfile`] | |
 //! | `compositing` | how objects mix, [`Compositing`] | |
 //! | `draw` | scene to drawing, [`Scene::draw`] | `draw_vjp`, [`Scene::draw_vjp`] |
@@ -12,6 +13,7 @@ mod draw;
 mod draw_vjp;
 mod edge;
 mod pose;
+mod pose_op;
 mod pose_vjp;
 #[cfg(test)]
 mod tests;
@@ -24,6 +26,7 @@ use crate::shape::Efd;
 pub use compositing::Compositing;
 pub use edge::{EdgeLaw, EdgeProfile, PixelProfile};
 pub use pose::rotation_from_pair;
+pub use pose_op::PoseOp;
 pub use pose_vjp::{PoseGrad, rotation_from_pair_vjp};
 
 /// Where a unit outline stands: v' = scale R(rotation) v + translation.

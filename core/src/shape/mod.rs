@@ -11,6 +11,7 @@
 //! | `disk`, `polygon`, `bezier` | the other models: [`Disk`], [`Polygon`], [`CubicBezier`] | same files |
 //! | `fourier` | closed polygon to descriptors, [`Efd::from_contour`] | none: data, not parameters |
 //! | `normalize` | descriptors to their normal form, [`Efd::normalize`] | `normalize_vjp` |
+//! | `outline_op`, `normalize_op` | any model's outlines, mixtures and normal forms as steps of a batch | same files |
 //! | `measure` | area, perimeter, truncation error | |
 //! | `symmetry` | which turns map an outline on itself, [`Efd::symmetry`] | |
 
@@ -24,7 +25,9 @@ mod fourier;
 mod mdshr;
 mod measure;
 mod normalize;
+mod normalize_op;
 mod normalize_vjp;
+mod outline_op;
 mod polygon;
 mod symmetry;
 #[cfg(test)]
@@ -42,6 +45,8 @@ pub use efd::OutlineBasis;
 pub use efd_model::EfdModel;
 pub use mdshr::{MDSHR_NAMES, mdshr_bank};
 pub use normalize::Normalized;
+pub use normalize_op::NormalizeOp;
+pub use outline_op::{MixOp, OutlineOp};
 pub use polygon::Polygon;
 pub use symmetry::{REFERENCE_SYMMETRY_HARMONICS, REFERENCE_SYMMETRY_THRESHOLD, SYMMETRY_TOLERANCE, Symmetry};
 

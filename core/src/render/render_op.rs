@@ -1,0 +1,224 @@
+//! Renderers as differentiable steps of a batch: drawings in, images or their pixel losses out.
+
+use alloc::vec::Vec;
+use core::fmt;
+
+use super::{PixelLoss, RenderError, Renderer};
+use crate::diff_op::{DiffOp, OpInput, add_scaled, split, split_mut};
+use crate::dims::{Dims, DimsError, ImageSize};
+use crate::image::{CHANNELS, Image};
+use crate::real::Real;
+use crate::scene::{Drawing, DrawingGrad};
+
+/// What both steps take: posed outlines (objects x vertices x 2, scene units), colors (objects x 3), confidences (objects)
+/// and the background (3).
+fn drawing_inputs(objects: usize, vertices: usize) -> Result<[OpInput; 4], DimsError> {
+    Ok([
+        OpInput::new("outlines", &[objects, vertices, 2])?,
+        OpInput::new("colors", &[objects, CHANNELS])?,
+        OpInput::new("confidences", &[objects])?,
+        OpInput::new("background", &[CHANNELS])?,
+    ])
+}
+
+/// Memory of a step between items.
+pub struct RenderOpScratch<T, S> {
+    drawing: Drawing<T>,
+    grad: DrawingGrad<T>,
+    renderer: S,
+}
+
+impl<T: Real, S: Default> Default for RenderOpScratch<T, S> {
+    fn default() -> Self {
+        Self { drawing: Drawing::default(), grad: DrawingGrad::default(), renderer: S::default() }
+    }
+}
+
+impl<T, S> fmt::Debug for RenderOpScratch<T, S> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("RenderOpScratch")
+    }
+}
+
+impl<T: Real, S> RenderOpScratch<T, S> {
+    /// Takes an item's values as the drawing.
+    fn take(&mut self, inputs: &[OpInput; 4], item: &[T]) {
+        let [outlines, colors, confidences, background] = split(inputs, item);
+        let outlines =
+            outlines.as_chunks().0.chunks_exact((inputs[0].dims.len() / 2 / confidences.len().max(1)).max(1));
+        self.drawing.clear();
+        for ((outline, &color), &confidence) in outlines.zip(colors.as_chunks().0).zip(confidences) {
+            self.drawing.push(outline, color, confidence);
+        }
+        self.drawing.background.copy_from_slice(background);
+        self.grad.reset(&self.drawing);
+    }
+
+    /// Adds the drawing's gradient in the layout of the inputs.
+    fn give(&self, inputs: &[OpInput; 4], grad_item: &mut [T]) {
+        let [outlines, colors, confidences, background] = split_mut(inputs, grad_item);
+        let DrawingGrad { background: own_background, vertices, colors: own_colors, confidences: own_confidences } =
+            &self.grad;
+        let parts: [(&mut [T], &[T]); 4] = [
+            (outlines, vertices.as_flattened()),
+            (colors, own_colors.as_flattened()),
+            (confidences, own_confidences),
+            (background, own_background),
+        ];
+        for (to, from) in parts {
+            add_scaled(to, from, T::one());
+        }
+    }
+}
+
+/// Drawings to images, 3 x height x width. Inputs: posed outlines (objects x vertices x 2, scene units), colors
+/// (objects x 3), confidences (objects), background (3).
+///
+/// *Derivative*: [`Renderer::render_vjp`].
+#[derive(Clone, Debug)]
+pub struct RenderOp<R> {
+    renderer: R,
+    size: ImageSize,
+    inputs: [OpInput; 4],
+    output: Dims,
+}
+
+impl<R> RenderOp<R> {
+    /// Images of `size` of `objects` outlines of `vertices` vertices per item.
+    ///
+    /// # Errors
+    /// As [`Dims::new`].
+    pub fn new(renderer: R, size: ImageSize, objects: usize, vertices: usize) -> Result<Self, DimsError> {
+        let inputs = drawing_inputs(objects, vertices)?;
+        let output = Dims::new(&[CHANNELS, size.height(), size.width()])?;
+        Ok(Self { renderer, size, inputs, output })
+    }
+}
+
+impl<T: Real, R: Renderer<T> + fmt::Debug + Send + Sync> DiffOp<T> for RenderOp<R> {
+    type Scratch = RenderOpScratch<T, R::Scratch>;
+    type Error = RenderError;
+
+    fn name(&self) -> &'static str {
+        "render"
+    }
+
+    fn inputs(&self) -> &[OpInput] {
+        &self.inputs
+    }
+
+    fn output(&self) -> Dims {
+        self.output
+    }
+
+    fn forward(
+        &self,
+        _: usize,
+        input: &[T],
+        output: &mut [T],
+        _: &mut [T],
+        scratch: &mut Self::Scratch,
+    ) -> Result<(), RenderError> {
+        scratch.take(&self.inputs, input);
+        self.renderer.render(&scratch.drawing, self.size, &mut scratch.renderer, output)
+    }
+
+    fn vjp(
+        &self,
+        _: usize,
+        input: &[T],
+        _: &[T],
+        grad_output: &[T],
+        grad_input: &mut [T],
+        scratch: &mut Self::Scratch,
+    ) -> Result<(), RenderError> {
+        scratch.take(&self.inputs, input);
+        let RenderOpScratch { drawing, grad, renderer } = scratch;
+        self.renderer.render_vjp(drawing, self.size, renderer, grad_output, grad)?;
+        scratch.give(&self.inputs, grad_input);
+        Ok(())
+    }
+}
+
+/// Drawings to their pixel loss against a target each: a number per item, without an image in between. Inputs as those of
+/// [`RenderOp`].
+///
+/// *Derivative*: that of [`Renderer::loss_and_grad`], worked out together with the loss and kept.
+#[derive(Clone, Debug)]
+pub struct RenderLossOp<T, R> {
+    renderer: R,
+    loss: PixelLoss,
+    targets: Vec<Image<T>>,
+    inputs: [OpInput; 4],
+}
+
+impl<T: Real, R> RenderLossOp<T, R> {
+    /// Losses against `targets`, one per item, of `objects` outlines of `vertices` vertices each.
+    ///
+    /// # Errors
+    /// As [`Dims::new`].
+    pub fn new(
+        renderer: R,
+        loss: PixelLoss,
+        targets: Vec<Image<T>>,
+        objects: usize,
+        vertices: usize,
+    ) -> Result<Self, DimsError> {
+        Ok(Self { renderer, loss, targets, inputs: drawing_inputs(objects, vertices)? })
+    }
+}
+
+impl<T: Real, R: Renderer<T> + fmt::Debug + Send + Sync> DiffOp<T> for RenderLossOp<T, R> {
+    type Scratch = RenderOpScratch<T, R::Scratch>;
+    type Error = RenderError;
+
+    fn name(&self) -> &'static str {
+        "render loss"
+    }
+
+    fn inputs(&self) -> &[OpInput] {
+        &self.inputs
+    }
+
+    fn output(&self) -> Dims {
+        Dims::SCALAR
+    }
+
+    fn batch_len(&self) -> Option<usize> {
+        Some(self.targets.len())
+    }
+
+    fn saved_len(&self) -> usize {
+        self.inputs.iter().map(|input| input.dims.len()).sum()
+    }
+
+    fn forward(
+        &self,
+        item: usize,
+        input: &[T],
+        output: &mut [T],
+        saved: &mut [T],
+        scratch: &mut Self::Scratch,
+    ) -> Result<(), RenderError> {
+        scratch.take(&self.inputs, input);
+        let RenderOpScratch { drawing, grad, renderer } = scratch;
+        output[0] = self.renderer.loss_and_grad(drawing, self.targets[item].view(), self.loss, renderer, grad)?;
+        if !saved.is_empty() {
+            scratch.give(&self.inputs, saved);
+        }
+        Ok(())
+    }
+
+    fn vjp(
+        &self,
+        _: usize,
+        _: &[T],
+        saved: &[T],
+        grad_output: &[T],
+        grad_input: &mut [T],
+        _: &mut Self::Scratch,
+    ) -> Result<(), RenderError> {
+        add_scaled(grad_input, saved, grad_output[0]);
+        Ok(())
+    }
+}
