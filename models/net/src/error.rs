@@ -1,0 +1,59 @@
+//! Why a model was not loaded, or refused its input.
+
+use dvp_core::dims::Dims;
+use dvp_core::tensor::{ParametersError, TensorError};
+use thiserror::Error;
+
+/// Why a model was not loaded, or refused its input.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum NetError {
+    /// A weight is missing or has other extents than the sizes of the model ask for.
+    #[error(transparent)]
+    Parameters(#[from] ParametersError),
+    /// An operation on tensors was refused.
+    #[error(transparent)]
+    Tensor(#[from] TensorError),
+    /// Sizes of which no model can be made, or a variant that is not here.
+    #[error("{key} is {found} in the model's sizes, but {must}")]
+    Config {
+        /// The key in the file of sizes.
+        key: &'static str,
+        /// What it says.
+        found: String,
+        /// What is needed.
+        must: &'static str,
+    },
+    /// An image that patches do not tile.
+    #[error(
+        "an image of {width} x {height} pixels is not tiled by patches of side {patch}: resize it to multiples of that"
+    )]
+    ImageSize {
+        /// Width in pixels.
+        width: usize,
+        /// Height in pixels.
+        height: usize,
+        /// Side of a patch in pixels.
+        patch: usize,
+    },
+    /// An input of the wrong rank or extents.
+    #[error("{input} of extents {dims}: {must}")]
+    Input {
+        /// What was given.
+        input: &'static str,
+        /// Its extents.
+        dims: Dims,
+        /// What is needed.
+        must: &'static str,
+    },
+}
+
+/// Refuses sizes unless `holds`.
+pub(crate) fn require(
+    holds: bool,
+    key: &'static str,
+    found: impl ToString,
+    must: &'static str,
+) -> Result<(), NetError> {
+    if holds { Ok(()) } else { Err(NetError::Config { key, found: found.to_string(), must }) }
+}

@@ -1,0 +1,23 @@
+//! What the models are made of. Inputs are batch x tokens x width; a batch of 1 stretches.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `linear` | [`Linear`]: x W^T + b |
+//! | `layer_norm` | [`LayerNorm`] |
+//! | `mlp` | [`Mlp`]: linear maps with ReLU between |
+//! | `attention` | [`attend`]: attention of several heads |
+//!
+//! Weights have the names and the orientation of PyTorch's modules.
+
+mod attention;
+mod layer_norm;
+mod linear;
+mod mlp;
+#[cfg(test)]
+mod tests;
+
+pub use attention::attend;
+pub(crate) use attention::join_heads;
+pub use layer_norm::LayerNorm;
+pub use linear::Linear;
+pub use mlp::Mlp;

@@ -1,0 +1,55 @@
+//! Layers by hand.
+
+use dvp_core::tensor::{Host, HostDevice, Parameters, Tensor};
+
+use super::{Mlp, attend, join_heads};
+use crate::weights::Weights;
+
+fn tensor(values: &[f64], extents: &[usize]) -> Tensor<Host> {
+    Tensor::new(values.to_vec(), extents, &HostDevice).unwrap()
+}
+
+#[test]
+fn attention_by_hand() {
+    // Width 4, 2 heads of width 2. Head 0: query (sqrt 2 ln 3, 0), keys (1, 0) and (0, 0): scores ln 3 and 0, weights
+    // 3/4 and 1/4. Head 1: query 0: weights 1/2. Values have width 2, one number per head.
+    let query = tensor(&[2.0_f64.sqrt() * 3.0_f64.ln(), 0.0, 0.0, 0.0], &[1, 1, 4]);
+    let keys = tensor(&[1.0, 0.0, 5.0, 7.0, 0.0, 0.0, -3.0, 2.0], &[1, 2, 4]);
+    let values = tensor(&[4.0, 10.0, 8.0, 20.0, 0.0, 0.0, 4.0, 2.0], &[2, 2, 2]);
+    let mixed = attend(&query, &keys, &values, 2).unwrap();
+    assert_eq!(mixed.dims().extents(), [2, 1, 2], "queries and keys are stretched to the batch of the values");
+    for (found, expected) in mixed.to_f64().unwrap().iter().zip([5.0, 15.0, 1.0, 1.0]) {
+        assert!((found - expected).abs() < 1e-14, "{found} for {expected}");
+    }
+}
+
+#[test]
+fn heads_are_joined_part_by_part() {
+    let (a, b) = (tensor(&[1.0, 2.0, 3.0, 4.0], &[1, 1, 4]), tensor(&[5.0, 6.0, 7.0, 8.0], &[1, 1, 4]));
+    let joined = join_heads(&a, &b, 2).unwrap();
+    assert_eq!(joined.to_f64().unwrap(), [1.0, 2.0, 5.0, 6.0, 3.0, 4.0, 7.0, 8.0]);
+}
+
+#[test]
+fn heads_that_do_not_divide_are_refused() {
+    let x = tensor(&[0.0; 4], &[1, 1, 4]);
+    for heads in [0, 3] {
+        let error = attend(&x, &x, &x, heads).unwrap_err();
+        assert!(error.to_string().contains("the heads must divide"), "{error}");
+    }
+    let flat = tensor(&[0.0; 4], &[1, 4]);
+    assert!(attend(&flat, &x, &x, 2).is_err());
+}
+
+#[test]
+fn a_perceptron_by_hand() {
+    // relu(x (1, -1) + (0, 1)) = (2, 0) at x = 2 and (0, 4) at x = -3; then 3 a + 5 b - 1.
+    let mut parameters = Parameters::new();
+    parameters.insert("layers.0.weight", &tensor(&[1.0, -1.0], &[2, 1])).unwrap();
+    parameters.insert("layers.0.bias", &tensor(&[0.0, 1.0], &[2])).unwrap();
+    parameters.insert("layers.1.weight", &tensor(&[3.0, 5.0], &[1, 2])).unwrap();
+    parameters.insert("layers.1.bias", &tensor(&[-1.0], &[1])).unwrap();
+    let mlp = Mlp::load(&Weights::new(&parameters), &[1, 2, 1]).unwrap();
+    let found = mlp.forward(&tensor(&[2.0, -3.0], &[2, 1])).unwrap();
+    assert_eq!(found.to_f64().unwrap(), [5.0, 19.0]);
+}
