@@ -1,4 +1,5 @@
-//! Between crates: `core -> models/fit -> models/cli -> tests`, and no tensor framework in what a newcomer builds.
+//! Between crates: `core -> backends/*`, `core -> models/fit -> models/net -> models/cli -> tests`, a tensor framework in its own adapter
+//! only, and none in what a newcomer builds.
 
 use std::process::Command;
 
@@ -7,11 +8,14 @@ use serde::Deserialize;
 use crate::source::root;
 
 /// Every crate of the workspace, its folder, and the crates of the workspace that it may use.
-const PLAN: [(&str, &str, &[&str]); 4] = [
+const PLAN: [(&str, &str, &[&str]); 7] = [
     ("dvp-core", "core", &[]),
+    ("dvp-burn", "backends/burn", &["dvp-core"]),
+    ("dvp-candle", "backends/candle", &["dvp-core"]),
     ("dvp-fit", "models/fit", &["dvp-core"]),
+    ("dvp-net", "models/net", &["dvp-core", "dvp-fit"]),
     ("dvp", "models/cli", &["dvp-core", "dvp-fit"]),
-    ("dvp-tests", "tests", &["dvp-core", "dvp-fit", "dvp"]),
+    ("dvp-tests", "tests", &["dvp-core", "dvp-burn", "dvp-candle", "dvp-fit", "dvp"]),
 ];
 
 /// How names of tensor frameworks, and of the compilers and drivers below them, begin.
@@ -41,6 +45,13 @@ fn cargo(arguments: &[&str]) -> String {
     String::from_utf8(run.stdout).unwrap()
 }
 
+/// The adapters, and how the names of their framework's crates begin.
+const ADAPTERS: [(&str, &str); 2] = [("dvp-burn", "burn"), ("dvp-candle", "candle")];
+
+fn is_adapter_of(name: &str, framework: &str) -> bool {
+    ADAPTERS.iter().any(|(adapter, own)| *adapter == name && framework.starts_with(own))
+}
+
 fn is_framework(name: &str) -> bool {
     FRAMEWORKS.iter().any(|framework| {
         name.strip_prefix(framework).is_some_and(|rest| rest.is_empty() || rest.starts_with(['-', '_']))
@@ -64,7 +75,7 @@ fn violations(metadata: &Metadata) -> Vec<String> {
             if PLAN.iter().any(|(crate_name, ..)| *crate_name == used) && !allowed.contains(&used) {
                 found.push(format!("{name} uses {used}, which stands later"));
             }
-            if is_framework(used) {
+            if is_framework(used) && !is_adapter_of(name, used) {
                 found.push(format!("{name} uses the framework {used}"));
             }
         }
@@ -73,7 +84,7 @@ fn violations(metadata: &Metadata) -> Vec<String> {
 }
 
 #[test]
-fn crates_use_only_earlier_ones_and_no_framework() {
+fn crates_use_only_earlier_ones_and_frameworks_only_their_adapters() {
     let metadata: Metadata =
         serde_json::from_str(&cargo(&["metadata", "--format-version", "1", "--no-deps", "--locked"])).unwrap();
     assert_eq!(metadata.packages.len(), PLAN.len(), "every crate of the plan is there");
@@ -113,6 +124,8 @@ fn made_up_manifests_are_judged() {
     assert_eq!(count("dvp-core", "core", "dvp-fit"), 1, "an arrow back");
     assert_eq!(count("dvp", "models/cli", "dvp-tests"), 1, "an arrow back");
     assert_eq!(count("dvp-core", "core", "candle-core"), 1, "a framework");
+    assert_eq!(count("dvp-burn", "backends/burn", "burn"), 0, "the adapter of a framework");
+    assert_eq!(count("dvp-burn", "backends/burn", "candle-core"), 1, "the adapter of another framework");
     assert_eq!(count("dvp-core", "elsewhere", "glam"), 1, "a moved crate");
     assert_eq!(count("dvp-new", "models/new", "glam"), 1, "a crate without a place");
     assert_eq!(framework_in("serde v1\nburn-tensor v0.22.1 (*)"), Some("burn-tensor"));
