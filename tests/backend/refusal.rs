@@ -2,18 +2,17 @@
 
 use core::fmt;
 
-use dvp_core::diff_op::{Atan2, DiffOp, OpError, OpInput};
+use dvp_core::diff_op::{Atan2, DiffOp, OpError, OpInput, Signature};
 use dvp_core::dims::Dims;
 use dvp_core::real::{DType, Real};
 use dvp_core::tensor::{BackendError, Host, Parameters, Stride, Tensor, TensorError};
 
 use crate::registry::{Outcome, Tally, Tested, on_every_backend};
 
-/// A step on one number that refuses some: forward below -1, backward above 1.
+/// A number twice; refuses some: forward below -1, backward above 1.
 #[derive(Clone, Debug)]
 struct Picky {
-    inputs: [OpInput; 1],
-    batch: Option<usize>,
+    signature: Signature,
 }
 
 #[derive(Debug)]
@@ -29,7 +28,9 @@ impl core::error::Error for Refused {}
 
 impl Picky {
     fn new(batch: Option<usize>) -> Self {
-        Self { inputs: [OpInput::new("number", &[1]).unwrap()], batch }
+        let number = OpInput::new("number", &[1]).unwrap();
+        let signature = Signature::new("picky", [number], Dims::new(&[2]).unwrap());
+        Self { signature: batch.map_or(signature.clone(), |items| signature.for_batch(items)) }
     }
 }
 
@@ -37,24 +38,12 @@ impl<T: Real> DiffOp<T> for Picky {
     type Scratch = ();
     type Error = Refused;
 
-    fn name(&self) -> &'static str {
-        "picky"
-    }
-
-    fn inputs(&self) -> &[OpInput] {
-        &self.inputs
-    }
-
-    fn output(&self) -> Dims {
-        self.inputs[0].dims
-    }
-
-    fn batch_len(&self) -> Option<usize> {
-        self.batch
+    fn signature(&self) -> &Signature {
+        &self.signature
     }
 
     fn forward(&self, _: usize, input: &[T], output: &mut [T], _: &mut [T], (): &mut ()) -> Result<(), Refused> {
-        output.copy_from_slice(input);
+        output.fill(input[0]);
         if input[0] < -T::one() { Err(Refused) } else { Ok(()) }
     }
 
@@ -67,7 +56,7 @@ impl<T: Real> DiffOp<T> for Picky {
         grad_input: &mut [T],
         (): &mut (),
     ) -> Result<(), Refused> {
-        grad_input[0] += grad_output[0];
+        grad_input[0] += grad_output[0] + grad_output[1];
         if input[0] > T::one() { Err(Refused) } else { Ok(()) }
     }
 }
@@ -177,9 +166,9 @@ fn errors_of_steps<B: Tested>(tally: &Tally) -> Outcome {
     let number = Tensor::<B>::new(vec![0.0, 2.0], &[2, 1], &B::place())?.parameter()?;
     match Tensor::apply::<f64, _>(Picky::new(None), &[&number])?.sum_all()?.backward() {
         Ok(gradients) => {
-            let gradient = gradients.of(&number).unwrap().to_f64()?;
-            let lost = gradient.len() == 2 && gradient.iter().all(|g| g.is_nan());
-            tally.check(lost, || format!("{gradient:?} must be NaN"))
+            let gradient = gradients.of(&number).unwrap();
+            let lost = gradient.dims() == number.dims() && gradient.to_f64()?.iter().all(|g| g.is_nan());
+            tally.check(lost, || format!("{gradient:?} must be NaN, with the extents of the parameter"))
         }
         Err(error) => tally.check(error.to_string().contains("picky, item "), || format!("{error}")),
     }

@@ -66,7 +66,7 @@ fn forward(op: &Arc<dyn HostOp>, input: DispatchTensor, save: bool) -> Result<(D
     let batch = dims.get(0).unwrap_or(1);
     let input = HostValues::new(input)?;
     let (values, saved) = op.forward(batch, input.borrow(op.dtype())?, save)?;
-    let rows = Dims::new(&[batch, op.output().len()]).map_err(|error| framework(&error))?;
+    let rows = Dims::new(&[batch, op.signature().output().len()]).map_err(|error| framework(&error))?;
     let output = upload(values, &rows, &device)?;
     Ok((output, Saved { op: Arc::clone(op), input, saved, dims }))
 }

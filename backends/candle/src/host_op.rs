@@ -17,7 +17,7 @@ pub(crate) fn host_op(op: &Arc<dyn HostOp>, input: &Tensor) -> core::result::Res
     let batch = input.dims().first().copied().unwrap_or(1);
     // Forward runs before there is a node: candle's own errors would keep the step's words, but not the error.
     let (output, saved) = forward(op, batch, &input, input.track_op())?;
-    let shape = Shape::from((batch, op.output().len()));
+    let shape = Shape::from((batch, op.signature().output().len()));
     if input.track_op() {
         input.apply_op1(Step { op: Arc::clone(op), batch, output: Mutex::new(Some(output)), shape, saved })
     } else {
@@ -35,7 +35,7 @@ fn forward(op: &Arc<dyn HostOp>, batch: usize, input: &Tensor, save: bool) -> Fo
         Storage::Cpu(storage) => borrow(storage, layout),
         _ => None,
     };
-    let values = values.ok_or_else(|| unsupported(&input, op.name()))?;
+    let values = values.ok_or_else(|| unsupported(&input, op.signature().name()))?;
     Ok(op.forward(batch, values, save)?)
 }
 
@@ -55,17 +55,17 @@ struct Step {
 impl Step {
     fn take(&self) -> Result<CpuStorage> {
         let output = self.output.lock().unwrap_or_else(PoisonError::into_inner).take();
-        output.map(storage).ok_or_else(|| Error::Msg(format!("{}: a node is made once", self.op.name())))
+        output.map(storage).ok_or_else(|| Error::Msg(format!("{}: a node is made once", self.op.signature().name())))
     }
 
     fn pull(&self, input: &Tensor, grad: &Tensor) -> Result<Values> {
         let (input_storage, input_layout) = input.storage_and_layout();
         let (grad_storage, grad_layout) = grad.storage_and_layout();
         let (Storage::Cpu(input_storage), Storage::Cpu(grad_storage)) = (&*input_storage, &*grad_storage) else {
-            return Err(Error::Msg(format!("{}: runs on the host", self.op.name())));
+            return Err(Error::Msg(format!("{}: runs on the host", self.op.signature().name())));
         };
         let operands = borrow(input_storage, input_layout).zip(borrow(grad_storage, grad_layout));
-        let (input, grad) = operands.ok_or(Error::UnsupportedDTypeForOp(input.dtype(), self.op.name()))?;
+        let (input, grad) = operands.ok_or(Error::UnsupportedDTypeForOp(input.dtype(), self.op.signature().name()))?;
         self.op
             .vjp(self.batch, input, self.saved.as_ref(), grad)
             .map_err(|error: OpError| Error::Msg(error.to_string()))
@@ -74,7 +74,7 @@ impl Step {
 
 impl CustomOp1 for Step {
     fn name(&self) -> &'static str {
-        self.op.name()
+        self.op.signature().name()
     }
 
     fn cpu_fwd(&self, _: &CpuStorage, _: &Layout) -> Result<(CpuStorage, Shape)> {

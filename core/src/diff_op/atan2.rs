@@ -2,7 +2,7 @@
 
 use core::convert::Infallible;
 
-use super::{DiffOp, OpInput, split, split_mut};
+use super::{DiffOp, OpInput, Signature};
 use crate::dims::{Dims, DimsError};
 use crate::real::Real;
 
@@ -11,7 +11,7 @@ use crate::real::Real;
 /// *Derivative*: (x, -y) / (x^2 + y^2) for (y, x); taken as 0 at the origin, where there is none.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Atan2 {
-    inputs: [OpInput; 2],
+    signature: Signature,
 }
 
 impl Atan2 {
@@ -20,7 +20,8 @@ impl Atan2 {
     /// # Errors
     /// As [`Dims::new`].
     pub fn new(dims: &[usize]) -> Result<Self, DimsError> {
-        Ok(Self { inputs: [OpInput::new("y", dims)?, OpInput::new("x", dims)?] })
+        let inputs = [OpInput::new("y", dims)?, OpInput::new("x", dims)?];
+        Ok(Self { signature: Signature::new("atan2", inputs, Dims::new(dims)?) })
     }
 }
 
@@ -28,20 +29,12 @@ impl<T: Real> DiffOp<T> for Atan2 {
     type Scratch = ();
     type Error = Infallible;
 
-    fn name(&self) -> &'static str {
-        "atan2"
-    }
-
-    fn inputs(&self) -> &[OpInput] {
-        &self.inputs
-    }
-
-    fn output(&self) -> Dims {
-        self.inputs[0].dims
+    fn signature(&self) -> &Signature {
+        &self.signature
     }
 
     fn forward(&self, _: usize, input: &[T], output: &mut [T], _: &mut [T], (): &mut ()) -> Result<(), Infallible> {
-        let [y, x] = split(&self.inputs, input);
+        let [y, x] = self.signature.split(input);
         for ((angle, &y), &x) in output.iter_mut().zip(y).zip(x) {
             *angle = y.atan2(x);
         }
@@ -57,15 +50,19 @@ impl<T: Real> DiffOp<T> for Atan2 {
         grad_input: &mut [T],
         (): &mut (),
     ) -> Result<(), Infallible> {
-        let [y, x] = split(&self.inputs, input);
-        let [grad_y, grad_x] = split_mut(&self.inputs, grad_input);
+        let [y, x] = self.signature.split(input);
+        let [grad_y, grad_x] = self.signature.split_mut(grad_input);
         for (i, &grad) in grad_output.iter().enumerate() {
-            let square = x[i] * x[i] + y[i] * y[i];
-            if square > T::zero() {
-                grad_y[i] += grad * x[i] / square;
-                grad_x[i] -= grad * y[i] / square;
-            }
+            let [for_y, for_x] = atan2_vjp([y[i], x[i]], grad);
+            grad_y[i] += for_y;
+            grad_x[i] += for_x;
         }
         Ok(())
     }
+}
+
+/// The gradient of `grad` x atan2(y, x) with respect to (y, x); 0 at the origin, where there is none.
+pub(crate) fn atan2_vjp<T: Real>([y, x]: [T; 2], grad: T) -> [T; 2] {
+    let square = x * x + y * y;
+    if square > T::zero() { [grad * x / square, -(grad * y / square)] } else { [T::zero(); 2] }
 }

@@ -5,23 +5,16 @@ use alloc::vec;
 use core::fmt;
 use core::marker::PhantomData;
 
-use super::{DiffOp, OpError, OpInput, input_len};
-use crate::dims::Dims;
+use super::{DiffOp, OpError, Signature};
 use crate::real::{DType, Real, Values, ValuesRef};
 
 /// A [`DiffOp`] over a batch, of a number type chosen at run time: what adapters of frameworks wrap.
 pub trait HostOp: fmt::Debug + Send + Sync {
-    /// What the step is called in errors.
-    fn name(&self) -> &'static str;
+    /// What the step takes and gives, per item.
+    fn signature(&self) -> &Signature;
 
     /// The number type it is made for.
     fn dtype(&self) -> DType;
-
-    /// The inputs, per item.
-    fn inputs(&self) -> &[OpInput];
-
-    /// Extents of the output per item.
-    fn output(&self) -> Dims;
 
     /// Writes the outputs of `batch` items, and what the way back needs if `save`; nothing otherwise.
     ///
@@ -58,45 +51,47 @@ impl<T: Real, O: DiffOp<T>> Batched<T, O> {
         Self { op, number: PhantomData }
     }
 
+    fn name(&self) -> &'static str {
+        self.op.signature().name()
+    }
+
+    /// Numbers per item: of the inputs, of the output, kept for the way back.
+    fn lens(&self) -> [usize; 3] {
+        let signature = self.op.signature();
+        [signature.input_len(), signature.output().len(), signature.saved_len()]
+    }
+
     fn borrow<'a>(&self, what: &'static str, values: ValuesRef<'a>, expected: usize) -> Result<&'a [T], OpError> {
-        let op = self.op.name();
+        let op = self.name();
         let found = values.dtype();
         let slice = T::borrow_values(values).ok_or(OpError::DType { op, expected: T::DTYPE, found })?;
         if slice.len() == expected { Ok(slice) } else { Err(OpError::Length { op, what, expected, len: slice.len() }) }
     }
 
     fn check_batch(&self, batch: usize) -> Result<(), OpError> {
-        match self.op.batch_len() {
-            Some(expected) if expected != batch => Err(OpError::Batch { op: self.op.name(), expected, found: batch }),
+        match self.signature().batch() {
+            Some(expected) if expected != batch => Err(OpError::Batch { op: self.name(), expected, found: batch }),
             _ => Ok(()),
         }
     }
 
     fn refused(&self, item: usize, cause: O::Error) -> OpError {
-        OpError::Item { op: self.op.name(), item, cause: Box::new(cause) }
+        OpError::Item { op: self.name(), item, cause: Box::new(cause) }
     }
 }
 
 impl<T: Real, O: DiffOp<T>> HostOp for Batched<T, O> {
-    fn name(&self) -> &'static str {
-        self.op.name()
+    fn signature(&self) -> &Signature {
+        self.op.signature()
     }
 
     fn dtype(&self) -> DType {
         T::DTYPE
     }
 
-    fn inputs(&self) -> &[OpInput] {
-        self.op.inputs()
-    }
-
-    fn output(&self) -> Dims {
-        self.op.output()
-    }
-
     fn forward(&self, batch: usize, input: ValuesRef<'_>, save: bool) -> Result<(Values, Values), OpError> {
-        let (width, height) = (input_len(&self.op), self.op.output().len());
-        let depth = if save { self.op.saved_len() } else { 0 };
+        let [width, height, depth] = self.lens();
+        let depth = if save { depth } else { 0 };
         self.check_batch(batch)?;
         let input = self.borrow("input", input, batch * width)?;
         let mut output = vec![T::zero(); batch * height];
@@ -115,7 +110,7 @@ impl<T: Real, O: DiffOp<T>> HostOp for Batched<T, O> {
         saved: ValuesRef<'_>,
         grad_output: ValuesRef<'_>,
     ) -> Result<Values, OpError> {
-        let (width, height, depth) = (input_len(&self.op), self.op.output().len(), self.op.saved_len());
+        let [width, height, depth] = self.lens();
         self.check_batch(batch)?;
         let input = self.borrow("input", input, batch * width)?;
         let saved = self.borrow("what forward saved", saved, batch * depth)?;

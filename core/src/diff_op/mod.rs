@@ -7,6 +7,7 @@
 //! | file | holds |
 //! |---|---|
 //! | `mod` | the contract, [`DiffOp`], and its errors |
+//! | `signature` | [`Signature`]: names and extents of what a step takes and gives |
 //! | `batch` | [`HostOp`], [`Batched`]: a batch of items, either number type |
 //! | `atan2` | [`Atan2`]: a (y, x) pair to an angle |
 //!
@@ -16,37 +17,19 @@
 
 mod atan2;
 mod batch;
+mod signature;
 #[cfg(test)]
 mod tests;
 
 use alloc::boxed::Box;
-use alloc::vec::Vec;
 use core::fmt;
 
 pub use atan2::Atan2;
+pub(crate) use atan2::atan2_vjp;
 pub use batch::{Batched, HostOp};
+pub use signature::{OpInput, Signature};
 
-use crate::dims::Dims;
 use crate::real::{DType, Real};
-
-/// An input of a [`DiffOp`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct OpInput {
-    /// What it is called in errors.
-    pub name: &'static str,
-    /// Its extents per item.
-    pub dims: Dims,
-}
-
-impl OpInput {
-    /// An input called `name` of extents `dims`.
-    ///
-    /// # Errors
-    /// As [`Dims::new`].
-    pub fn new(name: &'static str, dims: &[usize]) -> Result<Self, crate::dims::DimsError> {
-        Ok(Self { name, dims: Dims::new(dims)? })
-    }
-}
 
 /// A step with a hand-written way back, item by item.
 ///
@@ -58,27 +41,11 @@ pub trait DiffOp<T: Real>: fmt::Debug + Send + Sync {
     /// Why an item is refused.
     type Error: core::error::Error + Send + Sync + 'static;
 
-    /// What the step is called in errors.
-    fn name(&self) -> &'static str;
+    /// What the step takes and gives.
+    fn signature(&self) -> &Signature;
 
-    /// The inputs in order: an item's slice holds them one after the other.
-    fn inputs(&self) -> &[OpInput];
-
-    /// Extents of the output per item.
-    fn output(&self) -> Dims;
-
-    /// Number of items, if the op holds something for each of them (target images, true scenes); any number otherwise.
-    fn batch_len(&self) -> Option<usize> {
-        None
-    }
-
-    /// Number of values per item that [`Self::forward`] leaves for [`Self::vjp`].
-    fn saved_len(&self) -> usize {
-        0
-    }
-
-    /// Writes the output of item `item`. `saved` holds [`Self::saved_len`] zeros to write to, or nothing if no gradient
-    /// will be asked for.
+    /// Writes the output of item `item`. `saved` holds [`Signature::saved_len`] zeros to write to, or nothing if no
+    /// gradient will be asked for.
     ///
     /// # Errors
     /// If the item is refused; `output` may then hold anything.
@@ -174,48 +141,7 @@ impl core::error::Error for OpError {
     }
 }
 
-/// Cuts an item's slice into the inputs, in order. Slices beyond the inputs are left out.
-#[must_use]
-pub fn split<'a, T, const N: usize>(inputs: &[OpInput], item: &'a [T]) -> [&'a [T]; N] {
-    let mut rest = item;
-    core::array::from_fn(|k| {
-        let (head, tail) = rest.split_at(inputs.get(k).map_or(0, |input| input.dims.len()).min(rest.len()));
-        rest = tail;
-        head
-    })
-}
-
-/// As [`split`], to write to.
-#[must_use]
-pub fn split_mut<'a, T, const N: usize>(inputs: &[OpInput], item: &'a mut [T]) -> [&'a mut [T]; N] {
-    let mut rest = item;
-    core::array::from_fn(|k| {
-        let len = inputs.get(k).map_or(0, |input| input.dims.len()).min(rest.len());
-        let (head, tail) = core::mem::take(&mut rest).split_at_mut(len);
-        rest = tail;
-        head
-    })
-}
-
 /// Adds `factor` times `values` to `sums`, as far as both go.
 pub(crate) fn add_scaled<T: Real>(sums: &mut [T], values: &[T], factor: T) {
     sums.iter_mut().zip(values).for_each(|(sum, &value)| *sum += factor * value);
-}
-
-/// Numbers per item of all inputs together.
-fn input_len<T: Real, O: DiffOp<T> + ?Sized>(op: &O) -> usize {
-    op.inputs().iter().map(|input| input.dims.len()).sum()
-}
-
-/// Dims of the inputs with the batch in front, in order.
-pub(crate) fn batched_dims(op: &dyn HostOp, batch: usize) -> Result<Vec<Dims>, crate::dims::DimsError> {
-    op.inputs().iter().map(|input| with_batch(&input.dims, batch)).collect()
-}
-
-/// `dims` with an axis of `batch` in front.
-pub(crate) fn with_batch(dims: &Dims, batch: usize) -> Result<Dims, crate::dims::DimsError> {
-    let mut extents = Vec::with_capacity(1 + dims.rank());
-    extents.push(batch);
-    extents.extend_from_slice(dims.extents());
-    Dims::new(&extents)
 }

@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 use core::fmt;
 
 use super::{ImagePair, Loss, LossError};
-use crate::diff_op::{DiffOp, OpInput};
+use crate::diff_op::{DiffOp, OpInput, Signature};
 use crate::dims::{Dims, DimsError, ImageSize};
 use crate::image::{CHANNELS, Image, ImageView};
 use crate::real::Real;
@@ -18,7 +18,7 @@ pub struct ImageLossOp<T, L> {
     loss: L,
     size: ImageSize,
     targets: Vec<Image<T>>,
-    input: [OpInput; 1],
+    signature: Signature,
 }
 
 impl<T: Real, L> ImageLossOp<T, L> {
@@ -27,8 +27,9 @@ impl<T: Real, L> ImageLossOp<T, L> {
     /// # Errors
     /// As [`Dims::new`].
     pub fn new(loss: L, size: ImageSize, targets: Vec<Image<T>>) -> Result<Self, DimsError> {
-        let input = [OpInput::new("images", &[CHANNELS, size.height(), size.width()])?];
-        Ok(Self { loss, size, targets, input })
+        let images = OpInput::new("images", &[CHANNELS, size.height(), size.width()])?;
+        let signature = Signature::new("image loss", [images], Dims::SCALAR).for_batch(targets.len());
+        Ok(Self { loss, size, targets, signature })
     }
 
     fn pair<'a>(&'a self, item: usize, image: &'a [T]) -> Result<ImagePair<'a, T>, LossError> {
@@ -44,20 +45,8 @@ where
     type Scratch = L::Scratch;
     type Error = LossError;
 
-    fn name(&self) -> &'static str {
-        "image loss"
-    }
-
-    fn inputs(&self) -> &[OpInput] {
-        &self.input
-    }
-
-    fn output(&self) -> Dims {
-        Dims::SCALAR
-    }
-
-    fn batch_len(&self) -> Option<usize> {
-        Some(self.targets.len())
+    fn signature(&self) -> &Signature {
+        &self.signature
     }
 
     fn forward(

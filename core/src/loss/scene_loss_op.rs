@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 
 use super::{Loss, LossError, SceneLoss, SceneLossScratch, ScenePairs};
-use crate::diff_op::{DiffOp, OpInput, add_scaled, split, split_mut};
+use crate::diff_op::{DiffOp, OpInput, Signature, add_scaled};
 use crate::dims::{Dims, DimsError};
 use crate::real::Real;
 use crate::scene::{Object, Pose, Scene, SceneGrad};
@@ -19,7 +19,7 @@ use crate::shape::Efd;
 pub struct SceneLossOp<T> {
     loss: SceneLoss<T>,
     truths: Vec<Scene<T>>,
-    inputs: [OpInput; 7],
+    signature: Signature,
 }
 
 impl<T: Real> SceneLossOp<T> {
@@ -37,12 +37,13 @@ impl<T: Real> SceneLossOp<T> {
             OpInput::new("descriptors", &[objects, harmonics, 4])?,
             OpInput::new("background", &[3])?,
         ];
-        Ok(Self { loss, truths, inputs })
+        let signature = Signature::new("scene loss", inputs, Dims::SCALAR).for_batch(truths.len()).keeping_gradient();
+        Ok(Self { loss, truths, signature })
     }
 
     /// The scene of an item's values.
     fn scene(&self, item: &[T]) -> Scene<T> {
-        let [translations, scales, rotations, colors, confidences, rows, background] = split(&self.inputs, item);
+        let [translations, scales, rotations, colors, confidences, rows, background] = self.signature.split(item);
         let mut scene = Scene::empty([T::zero(); 3]);
         scene.background.copy_from_slice(background);
         let harmonics = (rows.len() / 4 / scales.len().max(1)).max(1);
@@ -62,7 +63,7 @@ impl<T: Real> SceneLossOp<T> {
 
     /// Adds a scene's gradient in the layout of the inputs.
     fn give(&self, grad: &SceneGrad<T>, values: &mut [T]) {
-        let [translations, scales, rotations, colors, confidences, rows, background] = split_mut(&self.inputs, values);
+        let [translations, scales, rotations, colors, confidences, rows, background] = self.signature.split_mut(values);
         add_scaled(background, &grad.background, T::one());
         let harmonics = rows.len() / 4 / scales.len().max(1);
         for (k, object) in grad.objects.iter().enumerate() {
@@ -80,24 +81,8 @@ impl<T: Real> DiffOp<T> for SceneLossOp<T> {
     type Scratch = SceneLossScratch<T>;
     type Error = LossError;
 
-    fn name(&self) -> &'static str {
-        "scene loss"
-    }
-
-    fn inputs(&self) -> &[OpInput] {
-        &self.inputs
-    }
-
-    fn output(&self) -> Dims {
-        Dims::SCALAR
-    }
-
-    fn batch_len(&self) -> Option<usize> {
-        Some(self.truths.len())
-    }
-
-    fn saved_len(&self) -> usize {
-        self.inputs.iter().map(|input| input.dims.len()).sum()
+    fn signature(&self) -> &Signature {
+        &self.signature
     }
 
     fn forward(

@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 use core::fmt;
 
 use super::{PixelLoss, RenderError, Renderer};
-use crate::diff_op::{DiffOp, OpInput, add_scaled, split, split_mut};
+use crate::diff_op::{DiffOp, OpInput, Signature, add_scaled};
 use crate::dims::{Dims, DimsError, ImageSize};
 use crate::image::{CHANNELS, Image};
 use crate::real::Real;
@@ -42,10 +42,10 @@ impl<T, S> fmt::Debug for RenderOpScratch<T, S> {
 
 impl<T: Real, S> RenderOpScratch<T, S> {
     /// Takes an item's values as the drawing.
-    fn take(&mut self, inputs: &[OpInput; 4], item: &[T]) {
-        let [outlines, colors, confidences, background] = split(inputs, item);
-        let outlines =
-            outlines.as_chunks().0.chunks_exact((inputs[0].dims.len() / 2 / confidences.len().max(1)).max(1));
+    fn take(&mut self, signature: &Signature, item: &[T]) {
+        let [outlines, colors, confidences, background] = signature.split(item);
+        let vertices = outlines.len() / 2 / confidences.len().max(1);
+        let outlines = outlines.as_chunks().0.chunks_exact(vertices.max(1));
         self.drawing.clear();
         for ((outline, &color), &confidence) in outlines.zip(colors.as_chunks().0).zip(confidences) {
             self.drawing.push(outline, color, confidence);
@@ -55,8 +55,8 @@ impl<T: Real, S> RenderOpScratch<T, S> {
     }
 
     /// Adds the drawing's gradient in the layout of the inputs.
-    fn give(&self, inputs: &[OpInput; 4], grad_item: &mut [T]) {
-        let [outlines, colors, confidences, background] = split_mut(inputs, grad_item);
+    fn give(&self, signature: &Signature, grad_item: &mut [T]) {
+        let [outlines, colors, confidences, background] = signature.split_mut(grad_item);
         let DrawingGrad { background: own_background, vertices, colors: own_colors, confidences: own_confidences } =
             &self.grad;
         let parts: [(&mut [T], &[T]); 4] = [
@@ -79,8 +79,7 @@ impl<T: Real, S> RenderOpScratch<T, S> {
 pub struct RenderOp<R> {
     renderer: R,
     size: ImageSize,
-    inputs: [OpInput; 4],
-    output: Dims,
+    signature: Signature,
 }
 
 impl<R> RenderOp<R> {
@@ -89,9 +88,9 @@ impl<R> RenderOp<R> {
     /// # Errors
     /// As [`Dims::new`].
     pub fn new(renderer: R, size: ImageSize, objects: usize, vertices: usize) -> Result<Self, DimsError> {
-        let inputs = drawing_inputs(objects, vertices)?;
-        let output = Dims::new(&[CHANNELS, size.height(), size.width()])?;
-        Ok(Self { renderer, size, inputs, output })
+        let image = Dims::new(&[CHANNELS, size.height(), size.width()])?;
+        let signature = Signature::new("render", drawing_inputs(objects, vertices)?, image);
+        Ok(Self { renderer, size, signature })
     }
 }
 
@@ -99,16 +98,8 @@ impl<T: Real, R: Renderer<T> + fmt::Debug + Send + Sync> DiffOp<T> for RenderOp<
     type Scratch = RenderOpScratch<T, R::Scratch>;
     type Error = RenderError;
 
-    fn name(&self) -> &'static str {
-        "render"
-    }
-
-    fn inputs(&self) -> &[OpInput] {
-        &self.inputs
-    }
-
-    fn output(&self) -> Dims {
-        self.output
+    fn signature(&self) -> &Signature {
+        &self.signature
     }
 
     fn forward(
@@ -119,7 +110,7 @@ impl<T: Real, R: Renderer<T> + fmt::Debug + Send + Sync> DiffOp<T> for RenderOp<
         _: &mut [T],
         scratch: &mut Self::Scratch,
     ) -> Result<(), RenderError> {
-        scratch.take(&self.inputs, input);
+        scratch.take(&self.signature, input);
         self.renderer.render(&scratch.drawing, self.size, &mut scratch.renderer, output)
     }
 
@@ -132,10 +123,10 @@ impl<T: Real, R: Renderer<T> + fmt::Debug + Send + Sync> DiffOp<T> for RenderOp<
         grad_input: &mut [T],
         scratch: &mut Self::Scratch,
     ) -> Result<(), RenderError> {
-        scratch.take(&self.inputs, input);
+        scratch.take(&self.signature, input);
         let RenderOpScratch { drawing, grad, renderer } = scratch;
         self.renderer.render_vjp(drawing, self.size, renderer, grad_output, grad)?;
-        scratch.give(&self.inputs, grad_input);
+        scratch.give(&self.signature, grad_input);
         Ok(())
     }
 }
@@ -149,7 +140,7 @@ pub struct RenderLossOp<T, R> {
     renderer: R,
     loss: PixelLoss,
     targets: Vec<Image<T>>,
-    inputs: [OpInput; 4],
+    signature: Signature,
 }
 
 impl<T: Real, R> RenderLossOp<T, R> {
@@ -164,7 +155,9 @@ impl<T: Real, R> RenderLossOp<T, R> {
         objects: usize,
         vertices: usize,
     ) -> Result<Self, DimsError> {
-        Ok(Self { renderer, loss, targets, inputs: drawing_inputs(objects, vertices)? })
+        let signature = Signature::new("render loss", drawing_inputs(objects, vertices)?, Dims::SCALAR);
+        let signature = signature.for_batch(targets.len()).keeping_gradient();
+        Ok(Self { renderer, loss, targets, signature })
     }
 }
 
@@ -172,24 +165,8 @@ impl<T: Real, R: Renderer<T> + fmt::Debug + Send + Sync> DiffOp<T> for RenderLos
     type Scratch = RenderOpScratch<T, R::Scratch>;
     type Error = RenderError;
 
-    fn name(&self) -> &'static str {
-        "render loss"
-    }
-
-    fn inputs(&self) -> &[OpInput] {
-        &self.inputs
-    }
-
-    fn output(&self) -> Dims {
-        Dims::SCALAR
-    }
-
-    fn batch_len(&self) -> Option<usize> {
-        Some(self.targets.len())
-    }
-
-    fn saved_len(&self) -> usize {
-        self.inputs.iter().map(|input| input.dims.len()).sum()
+    fn signature(&self) -> &Signature {
+        &self.signature
     }
 
     fn forward(
@@ -200,11 +177,11 @@ impl<T: Real, R: Renderer<T> + fmt::Debug + Send + Sync> DiffOp<T> for RenderLos
         saved: &mut [T],
         scratch: &mut Self::Scratch,
     ) -> Result<(), RenderError> {
-        scratch.take(&self.inputs, input);
+        scratch.take(&self.signature, input);
         let RenderOpScratch { drawing, grad, renderer } = scratch;
         output[0] = self.renderer.loss_and_grad(drawing, self.targets[item].view(), self.loss, renderer, grad)?;
         if !saved.is_empty() {
-            scratch.give(&self.inputs, saved);
+            scratch.give(&self.signature, saved);
         }
         Ok(())
     }

@@ -3,17 +3,17 @@
 use core::convert::Infallible;
 
 use super::{Pose, PoseGrad};
-use crate::diff_op::{DiffOp, OpInput, split, split_mut};
-use crate::dims::{Dims, DimsError};
+use crate::diff_op::{DiffOp, OpInput, Signature};
+use crate::dims::DimsError;
 use crate::real::Real;
 
 /// Unit outlines (objects x vertices x 2), translations (objects x 2, scene units), scales (objects) and rotations
 /// (objects, radians) to posed outlines, objects x vertices x 2.
 ///
 /// *Derivative*: [`Pose::transform_vjp`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PoseOp {
-    inputs: [OpInput; 4],
+    signature: Signature,
     vertices: usize,
 }
 
@@ -29,7 +29,8 @@ impl PoseOp {
             OpInput::new("scales", &[objects])?,
             OpInput::new("rotations", &[objects])?,
         ];
-        Ok(Self { inputs, vertices })
+        let posed = inputs[0].dims;
+        Ok(Self { signature: Signature::new("pose", inputs, posed), vertices })
     }
 }
 
@@ -37,20 +38,12 @@ impl<T: Real> DiffOp<T> for PoseOp {
     type Scratch = ();
     type Error = Infallible;
 
-    fn name(&self) -> &'static str {
-        "pose"
-    }
-
-    fn inputs(&self) -> &[OpInput] {
-        &self.inputs
-    }
-
-    fn output(&self) -> Dims {
-        self.inputs[0].dims
+    fn signature(&self) -> &Signature {
+        &self.signature
     }
 
     fn forward(&self, _: usize, input: &[T], output: &mut [T], _: &mut [T], (): &mut ()) -> Result<(), Infallible> {
-        let [outlines, translations, scales, rotations] = split(&self.inputs, input);
+        let [outlines, translations, scales, rotations] = self.signature.split(input);
         output.copy_from_slice(outlines);
         let posed = output.as_chunks_mut().0.chunks_exact_mut(self.vertices.max(1));
         for (k, outline) in posed.enumerate() {
@@ -68,8 +61,8 @@ impl<T: Real> DiffOp<T> for PoseOp {
         grad_input: &mut [T],
         (): &mut (),
     ) -> Result<(), Infallible> {
-        let [outlines, translations, scales, rotations] = split(&self.inputs, input);
-        let [grad_outlines, grad_translations, grad_scales, grad_rotations] = split_mut(&self.inputs, grad_input);
+        let [outlines, translations, scales, rotations] = self.signature.split(input);
+        let [grad_outlines, grad_translations, grad_scales, grad_rotations] = self.signature.split_mut(grad_input);
         let count = self.vertices.max(1);
         let units =
             outlines.as_chunks().0.chunks_exact(count).zip(grad_outlines.as_chunks_mut().0.chunks_exact_mut(count));

@@ -1,6 +1,7 @@
 //! The way back of `pose`: gradients of a posed outline to gradients of pose and unit outline.
 
 use super::Pose;
+use crate::diff_op::{add_scaled, atan2_vjp};
 use crate::real::Real;
 
 /// Gradient of a scalar with respect to a [`Pose`].
@@ -43,9 +44,5 @@ impl<T: Real> Pose<T> {
 /// Adds to `grad_pair` the gradient of grad_rotation x [`rotation_from_pair`](super::rotation_from_pair); nothing at
 /// (0, 0), where there is none.
 pub fn rotation_from_pair_vjp<T: Real>(pair: [T; 2], grad_rotation: T, grad_pair: &mut [T; 2]) {
-    let squared = pair[0] * pair[0] + pair[1] * pair[1];
-    if squared > T::zero() {
-        grad_pair[0] += grad_rotation * pair[1] / squared;
-        grad_pair[1] -= grad_rotation * pair[0] / squared;
-    }
+    add_scaled(grad_pair, &atan2_vjp(pair, grad_rotation), T::one());
 }

@@ -3,16 +3,16 @@
 use alloc::vec::Vec;
 
 use super::{Efd, ShapeError};
-use crate::diff_op::{DiffOp, OpInput};
-use crate::dims::{Dims, DimsError};
+use crate::diff_op::{DiffOp, OpInput, Signature};
+use crate::dims::DimsError;
 use crate::real::Real;
 
 /// Descriptors to their [normal form](Efd::normalize): objects x harmonics x 4, both.
 ///
 /// *Derivative*: [`Efd::normalize_vjp`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NormalizeOp {
-    input: [OpInput; 1],
+    signature: Signature,
     harmonics: usize,
 }
 
@@ -22,7 +22,8 @@ impl NormalizeOp {
     /// # Errors
     /// As [`Dims::new`].
     pub fn new(objects: usize, harmonics: usize) -> Result<Self, DimsError> {
-        Ok(Self { input: [OpInput::new("descriptors", &[objects, harmonics, 4])?], harmonics })
+        let descriptors = OpInput::new("descriptors", &[objects, harmonics, 4])?;
+        Ok(Self { signature: Signature::new("normalize", [descriptors], descriptors.dims), harmonics })
     }
 }
 
@@ -30,16 +31,8 @@ impl<T: Real> DiffOp<T> for NormalizeOp {
     type Scratch = Efd<T>;
     type Error = ShapeError;
 
-    fn name(&self) -> &'static str {
-        "normalize"
-    }
-
-    fn inputs(&self) -> &[OpInput] {
-        &self.input
-    }
-
-    fn output(&self) -> Dims {
-        self.input[0].dims
+    fn signature(&self) -> &Signature {
+        &self.signature
     }
 
     fn forward(

@@ -1,6 +1,6 @@
 //! Unit outlines of any shape model, as one differentiable step of a batch.
 
-use crate::diff_op::{DiffOp, OpInput};
+use crate::diff_op::{DiffOp, OpInput, Signature};
 use crate::dims::{Dims, DimsError};
 use crate::real::Real;
 
@@ -15,8 +15,7 @@ use super::{PrototypeBank, ShapeError, ShapeModel};
 #[derive(Clone, Debug)]
 pub struct OutlineOp<M> {
     model: M,
-    input: [OpInput; 1],
-    output: Dims,
+    signature: Signature,
 }
 
 impl<M> OutlineOp<M> {
@@ -28,11 +27,9 @@ impl<M> OutlineOp<M> {
     where
         M: ShapeModel<T>,
     {
-        Ok(Self {
-            input: [OpInput::new("parameters", &[objects, model.parameter_count()])?],
-            output: Dims::new(&[objects, model.vertex_count(), 2])?,
-            model,
-        })
+        let parameters = OpInput::new("parameters", &[objects, model.parameter_count()])?;
+        let outlines = Dims::new(&[objects, model.vertex_count(), 2])?;
+        Ok(Self { model, signature: Signature::new("outline", [parameters], outlines) })
     }
 }
 
@@ -40,16 +37,8 @@ impl<T: Real, M: ShapeModel<T> + core::fmt::Debug + Send + Sync> DiffOp<T> for O
     type Scratch = ();
     type Error = ShapeError;
 
-    fn name(&self) -> &'static str {
-        "outline"
-    }
-
-    fn inputs(&self) -> &[OpInput] {
-        &self.input
-    }
-
-    fn output(&self) -> Dims {
-        self.output
+    fn signature(&self) -> &Signature {
+        &self.signature
     }
 
     fn forward(&self, _: usize, input: &[T], output: &mut [T], _: &mut [T], (): &mut ()) -> Result<(), ShapeError> {
@@ -86,8 +75,7 @@ impl<T: Real, M: ShapeModel<T> + core::fmt::Debug + Send + Sync> DiffOp<T> for O
 #[derive(Clone, Debug)]
 pub struct MixOp<T> {
     bank: PrototypeBank<T>,
-    input: [OpInput; 1],
-    output: Dims,
+    signature: Signature,
 }
 
 impl<T: Real> MixOp<T> {
@@ -96,11 +84,9 @@ impl<T: Real> MixOp<T> {
     /// # Errors
     /// As [`Dims::new`].
     pub fn new(bank: PrototypeBank<T>, objects: usize) -> Result<Self, DimsError> {
-        Ok(Self {
-            input: [OpInput::new("weights", &[objects, bank.prototypes().len()])?],
-            output: Dims::new(&[objects, bank.harmonic_count(), 4])?,
-            bank,
-        })
+        let weights = OpInput::new("weights", &[objects, bank.prototypes().len()])?;
+        let mixtures = Dims::new(&[objects, bank.harmonic_count(), 4])?;
+        Ok(Self { bank, signature: Signature::new("prototype mixture", [weights], mixtures) })
     }
 }
 
@@ -108,16 +94,8 @@ impl<T: Real> DiffOp<T> for MixOp<T> {
     type Scratch = ();
     type Error = ShapeError;
 
-    fn name(&self) -> &'static str {
-        "prototype mixture"
-    }
-
-    fn inputs(&self) -> &[OpInput] {
-        &self.input
-    }
-
-    fn output(&self) -> Dims {
-        self.output
+    fn signature(&self) -> &Signature {
+        &self.signature
     }
 
     fn forward(&self, _: usize, input: &[T], output: &mut [T], _: &mut [T], (): &mut ()) -> Result<(), ShapeError> {

@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use super::backend::Backend;
 use super::error::TensorError;
 use super::handle::Tensor;
-use crate::diff_op::{Batched, DiffOp, HostOp, batched_dims, with_batch};
+use crate::diff_op::{Batched, DiffOp, HostOp};
 use crate::real::Real;
 
 impl<B: Backend> Tensor<B> {
@@ -26,13 +26,14 @@ impl<B: Backend> Tensor<B> {
     /// # Errors
     /// As [`Self::apply`].
     pub fn apply_shared(op: &Arc<dyn HostOp>, inputs: &[&Self]) -> Result<Self, TensorError> {
-        let name = op.name();
+        let signature = op.signature();
+        let name = signature.name();
         let Some(first) = inputs.first() else {
             let dims = crate::dims::Dims::SCALAR;
             return Err(TensorError::Operand { op: name, dims, must: "needs its inputs" });
         };
         let batch = first.dims().get(0).ok_or_else(|| first.operand(name, "must have the batch as first axis"))?;
-        let expected = batched_dims(op.as_ref(), batch)?;
+        let expected = signature.batched_inputs(batch)?;
         if inputs.len() != expected.len() {
             return Err(first.operand(name, "needs as many inputs as the op has"));
         }
@@ -51,6 +52,6 @@ impl<B: Backend> Tensor<B> {
         let rows: Vec<&Self> = rows.iter().collect();
         let flat = Self::concat(&rows, 1)?;
         let output = Self::wrap(name, B::host_op(op, flat.array()))?;
-        output.reshape(with_batch(&op.output(), batch)?.extents())
+        output.reshape(signature.batched_output(batch)?.extents())
     }
 }

@@ -4,7 +4,7 @@ use core::convert::Infallible;
 use core::ops::Range;
 
 use super::backend::Stride;
-use crate::diff_op::{DiffOp, OpInput};
+use crate::diff_op::{DiffOp, OpInput, Signature};
 use crate::dims::{Dims, DimsError};
 use crate::real::Real;
 
@@ -14,8 +14,7 @@ use crate::real::Real;
 /// *Derivative*: each pixel gets the sum over the windows that it is in.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unfold {
-    input: [OpInput; 1],
-    output: Dims,
+    signature: Signature,
     image: [usize; 3],
     window: [usize; 2],
     /// Rows and columns of windows.
@@ -31,15 +30,9 @@ impl Unfold {
     /// As [`Dims::new`].
     pub fn new(image: [usize; 3], window: [usize; 2], stride: Stride) -> Result<Self, DimsError> {
         let windows = [stride.windows(image[1], window[0]), stride.windows(image[2], window[1])];
-        Ok(Self {
-            input: [OpInput::new("images", &image)?],
-            output: Dims::new(&[image[0] * window[0] * window[1], windows[0] * windows[1]])?,
-            image,
-            window,
-            windows,
-            stride,
-            padding: 0.0,
-        })
+        let columns = Dims::new(&[image[0] * window[0] * window[1], windows[0] * windows[1]])?;
+        let signature = Signature::new("unfold", [OpInput::new("images", &image)?], columns);
+        Ok(Self { signature, image, window, windows, stride, padding: 0.0 })
     }
 
     /// The same windows, padded with `value`.
@@ -75,16 +68,8 @@ impl<T: Real> DiffOp<T> for Unfold {
     type Scratch = ();
     type Error = Infallible;
 
-    fn name(&self) -> &'static str {
-        "unfold"
-    }
-
-    fn inputs(&self) -> &[OpInput] {
-        &self.input
-    }
-
-    fn output(&self) -> Dims {
-        self.output
+    fn signature(&self) -> &Signature {
+        &self.signature
     }
 
     fn forward(&self, _: usize, input: &[T], output: &mut [T], _: &mut [T], (): &mut ()) -> Result<(), Infallible> {

@@ -59,9 +59,11 @@ pub(crate) use step;
 impl Step {
     /// With a batch of inputs, each of a domain.
     fn with_inputs(self, batch: usize, domains: &[Domain]) -> impl Strategy<Value = (Self, Vec<Input>)> + use<> {
-        assert_eq!(domains.len(), self.f64.inputs().len(), "a domain for each input of {}", self.f64.name());
-        let all = self.f64.inputs().iter().zip(domains);
-        let all = all.map(|(input, &domain)| ([&[batch], input.dims.extents()].concat(), domain)).collect();
+        let signature = self.f64.signature();
+        let inputs_of_batch = signature.batched_inputs(batch).unwrap();
+        assert_eq!(domains.len(), inputs_of_batch.len(), "a domain for each input of {}", signature.name());
+        let all = inputs_of_batch.iter().zip(domains);
+        let all = all.map(|(dims, &domain)| (dims.extents().to_vec(), domain)).collect();
         (Just(self), inputs(all))
     }
 }

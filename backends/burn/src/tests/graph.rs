@@ -1,8 +1,7 @@
 //! What is tracked, what is refused, and tapes that go on through conversions.
 
 use burn::tensor::Device;
-use dvp_core::diff_op::{Atan2, DiffOp, OpInput};
-use dvp_core::dims::Dims;
+use dvp_core::diff_op::{Atan2, DiffOp, OpInput, Signature};
 use dvp_core::real::{DType, Real};
 use dvp_core::tensor::Tensor;
 
@@ -48,7 +47,16 @@ fn numbers_are_not_rounded_to_f32() {
 
 /// Halves its input; the way back of a negative number is refused.
 #[derive(Debug)]
-struct Half([OpInput; 1]);
+struct Half {
+    signature: Signature,
+}
+
+impl Half {
+    fn new() -> Self {
+        let x = OpInput::new("x", &[1]).unwrap();
+        Self { signature: Signature::new("half", [x], x.dims).keeping_gradient() }
+    }
+}
 
 #[derive(Debug)]
 struct Negative;
@@ -65,20 +73,8 @@ impl<T: Real> DiffOp<T> for Half {
     type Scratch = ();
     type Error = Negative;
 
-    fn name(&self) -> &'static str {
-        "half"
-    }
-
-    fn inputs(&self) -> &[OpInput] {
-        &self.0
-    }
-
-    fn output(&self) -> Dims {
-        self.0[0].dims
-    }
-
-    fn saved_len(&self) -> usize {
-        1
+    fn signature(&self) -> &Signature {
+        &self.signature
     }
 
     fn forward(&self, _: usize, input: &[T], output: &mut [T], saved: &mut [T], (): &mut ()) -> Result<(), Negative> {
@@ -95,22 +91,21 @@ impl<T: Real> DiffOp<T> for Half {
 
 #[test]
 fn steps_save_only_for_parameters_and_say_why_they_refuse() {
-    let half = || Half([OpInput::new("x", &[1]).unwrap()]);
     let rows = |values: &[f64]| Tensor::<Burn>::new(values.to_vec(), &[values.len(), 1], &Device::flex()).unwrap();
-    let constant = Tensor::apply::<f64, _>(half(), &[&rows(&[1.0, 3.0])]).unwrap();
+    let constant = Tensor::apply::<f64, _>(Half::new(), &[&rows(&[1.0, 3.0])]).unwrap();
     assert_eq!((constant.to_f64().unwrap(), constant.is_tracked()), (vec![0.5, 1.5], false));
 
     let x = rows(&[1.0, 3.0]).parameter().unwrap();
-    let tracked = Tensor::apply::<f64, _>(half(), &[&x]).unwrap();
+    let tracked = Tensor::apply::<f64, _>(Half::new(), &[&x]).unwrap();
     assert_eq!((tracked.to_f64().unwrap(), tracked.is_tracked()), (vec![100.5, 101.5], true));
     let gradients = tracked.sum_all().unwrap().backward().unwrap();
     assert_eq!(gradients.of(&x).unwrap().to_f64().unwrap(), [0.5, 0.5]);
 
-    let refused = Tensor::apply::<f64, _>(half(), &[&rows(&[1.0, 11.0])]).unwrap_err().to_string();
+    let refused = Tensor::apply::<f64, _>(Half::new(), &[&rows(&[1.0, 11.0])]).unwrap_err().to_string();
     assert_eq!(refused, "half on burn: half, item 1: negative");
 
     let x = rows(&[1.0, -3.0]).parameter().unwrap();
-    let gradients = Tensor::apply::<f64, _>(half(), &[&x]).unwrap().sum_all().unwrap().backward().unwrap();
+    let gradients = Tensor::apply::<f64, _>(Half::new(), &[&x]).unwrap().sum_all().unwrap().backward().unwrap();
     assert!(gradients.of(&x).unwrap().to_f64().unwrap().iter().all(|grad| grad.is_nan()));
 }
 

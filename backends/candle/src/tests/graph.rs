@@ -2,7 +2,7 @@
 
 use alloc::sync::Arc;
 
-use dvp_core::diff_op::{Atan2, Batched, DiffOp, HostOp, OpInput};
+use dvp_core::diff_op::{Atan2, Batched, DiffOp, HostOp, OpInput, Signature};
 use dvp_core::dims::{Dims, DimsError};
 use dvp_core::real::DType;
 use dvp_core::tensor::{Backend, Host, HostDevice, Tensor, TensorError};
@@ -25,13 +25,14 @@ fn steps_of_the_core() {
 /// Refuses every second item, forward or backward.
 #[derive(Debug)]
 struct Refuses {
-    input: [OpInput; 1],
+    signature: Signature,
     backward: bool,
 }
 
 impl Refuses {
     fn shared(backward: bool) -> Result<Arc<dyn HostOp>, DimsError> {
-        Ok(Arc::new(Batched::<f64, _>::new(Self { input: [OpInput::new("x", &[2])?], backward })))
+        let signature = Signature::new("refuses", [OpInput::new("x", &[2])?], Dims::SCALAR).keeping_gradient();
+        Ok(Arc::new(Batched::<f64, _>::new(Self { signature, backward })))
     }
 }
 
@@ -39,17 +40,8 @@ impl DiffOp<f64> for Refuses {
     type Scratch = ();
     type Error = DimsError;
 
-    fn name(&self) -> &'static str {
-        "refuses"
-    }
-    fn inputs(&self) -> &[OpInput] {
-        &self.input
-    }
-    fn output(&self) -> Dims {
-        Dims::SCALAR
-    }
-    fn saved_len(&self) -> usize {
-        1
+    fn signature(&self) -> &Signature {
+        &self.signature
     }
     fn forward(&self, item: usize, _: &[f64], _: &mut [f64], saved: &mut [f64], (): &mut ()) -> Result<(), DimsError> {
         saved.fill(1.0);
@@ -64,7 +56,7 @@ impl DiffOp<f64> for Refuses {
         _: &mut [f64],
         (): &mut (),
     ) -> Result<(), DimsError> {
-        assert_eq!(saved, [1.0]);
+        assert_eq!(saved, [1.0; 2]);
         if item == 1 { Err(Dims::new(&[1; 9]).unwrap_err()) } else { Ok(()) }
     }
 }

@@ -230,7 +230,7 @@ impl Backend for Host {
     fn host_op(op: &Arc<dyn HostOp>, input: &HostArray) -> Result<HostArray, BackendError> {
         let batch = input.dims().get(0).unwrap_or(1);
         let (values, saved) = op.forward(batch, input.values().as_ref(), input.is_tracked())?;
-        let dims = Dims::new(&[batch, op.output().len()]).map_err(|error| framework(&error))?;
+        let dims = Dims::new(&[batch, op.signature().output().len()]).map_err(|error| framework(&error))?;
         let (op, own) = (Arc::clone(op), input.clone());
         Ok(HostArray::tracked(values, dims, &[input], move |grad| {
             Ok(vec![op.vjp(batch, own.values().as_ref(), saved.as_ref(), grad.as_ref())?])
