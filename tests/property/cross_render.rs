@@ -2,9 +2,13 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
 
+use core::fmt::Debug;
+
+use dvp_core::diff_op::{Batched, HostOp as _};
+use dvp_core::real::Values;
 use dvp_core::render::{
-    ContourDistance, CoverageModel, EdgeProfile, ExactArea, HardMask, RenderError, Renderer, SoftTriangles,
-    TileRenderer,
+    Compositing, ContourDistance, CoverageModel, EdgeProfile, ExactArea, HardMask, PixelLoss, RenderError,
+    RenderLossOp, Renderer, SoftTriangles, TileRenderer,
 };
 use dvp_core::shape::OutlineBasis;
 use dvp_core::{Drawing, Efd, Image, ImageSize, Object, Pose, Scene};
@@ -93,7 +97,50 @@ fn each(outline: &[[f64; 2]], size: ImageSize) -> [(&'static str, Result<Vec<f64
     ]
 }
 
+/// Vertices of each object of [`losses`].
+const VERTICES: usize = 24;
+
+/// The loss of a drawing against a gray image, as a step without and with what its gradient needs.
+fn losses<C: CoverageModel<f64> + Copy + Debug + Send + Sync>(
+    coverage: C,
+    drawing: &Drawing<f64>,
+    size: ImageSize,
+) -> Vec<[u64; 2]> {
+    let flat =
+        [drawing.vertices.as_flattened(), drawing.colors.as_flattened(), &drawing.confidences, &drawing.background];
+    let flat = Values::F64(flat.concat());
+    let target = Image::from_planar(size, vec![0.4; 3 * size.pixels()]).unwrap();
+    let mut found = Vec::new();
+    for compositing in [Compositing::Blend, Compositing::Over] {
+        for loss in [PixelLoss::Mae, PixelLoss::Mse] {
+            let renderer = TileRenderer { coverage, compositing };
+            let op = RenderLossOp::new(renderer, loss, vec![target.clone()], drawing.object_count(), VERTICES);
+            let op = Batched::<f64, _>::new(op.unwrap());
+            found.push([false, true].map(|save| op.forward(1, flat.as_ref(), save).unwrap().0.to_f64()[0].to_bits()));
+        }
+    }
+    found
+}
+
 proptest! {
+    #[test]
+    fn the_loss_alone_is_that_worked_out_with_its_gradient(
+        scene in strategy::scene(0..5, 1..4),
+        (width, height) in (1_usize..40, 1_usize..40),
+    ) {
+        let (size, mut drawing) = (ImageSize::new(width, height).unwrap(), Drawing::default());
+        scene.draw(&OutlineBasis::new(VERTICES, 3).unwrap(), &mut drawing).unwrap();
+        let all = [
+            ("contour", losses(ContourDistance::default(), &drawing, size)),
+            ("triangles", losses(SoftTriangles::default(), &drawing, size)),
+            ("exact", losses(ExactArea, &drawing, size)),
+            ("hard", losses(HardMask, &drawing, size)),
+        ];
+        for (name, losses) in all {
+            prop_assert!(losses.iter().all(|[alone, with]| alone == with), "{}: {:x?}", name, losses);
+        }
+    }
+
     #[test]
     fn sharp_edges_agree_with_hard(star in strategy::star_px(), squared in any::<bool>()) {
         let size = ImageSize::new(24, 24).unwrap();

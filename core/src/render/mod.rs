@@ -80,7 +80,21 @@ pub trait Renderer<T: Real> {
         grad: &mut DrawingGrad<T>,
     ) -> Result<(), RenderError>;
 
-    /// The pixel loss against `target`; adds its gradient to `grad`.
+    /// The pixel loss against `target`.
+    ///
+    /// *Derivative*: [`Self::loss_and_grad`].
+    ///
+    /// # Errors
+    /// As [`Self::render`].
+    fn loss(
+        &self,
+        drawing: &Drawing<T>,
+        target: ImageView<'_, T>,
+        loss: PixelLoss,
+        scratch: &mut Self::Scratch,
+    ) -> Result<T, RenderError>;
+
+    /// As [`Self::loss`]; adds the loss's gradient to `grad`.
     ///
     /// # Errors
     /// As [`Self::render`].

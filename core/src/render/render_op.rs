@@ -51,7 +51,6 @@ impl<T: Real, S> RenderOpScratch<T, S> {
             self.drawing.push(outline, color, confidence);
         }
         self.drawing.background.copy_from_slice(background);
-        self.grad.reset(&self.drawing);
     }
 
     /// Adds the drawing's gradient in the layout of the inputs.
@@ -125,6 +124,7 @@ impl<T: Real, R: Renderer<T> + fmt::Debug + Send + Sync> DiffOp<T> for RenderOp<
     ) -> Result<(), RenderError> {
         scratch.take(&self.signature, input);
         let RenderOpScratch { drawing, grad, renderer } = scratch;
+        grad.reset(drawing);
         self.renderer.render_vjp(drawing, self.size, renderer, grad_output, grad)?;
         scratch.give(&self.signature, grad_input);
         Ok(())
@@ -179,10 +179,14 @@ impl<T: Real, R: Renderer<T> + fmt::Debug + Send + Sync> DiffOp<T> for RenderLos
     ) -> Result<(), RenderError> {
         scratch.take(&self.signature, input);
         let RenderOpScratch { drawing, grad, renderer } = scratch;
-        output[0] = self.renderer.loss_and_grad(drawing, self.targets[item].view(), self.loss, renderer, grad)?;
-        if !saved.is_empty() {
-            scratch.give(&self.signature, saved);
+        let target = self.targets[item].view();
+        if saved.is_empty() {
+            output[0] = self.renderer.loss(drawing, target, self.loss, renderer)?;
+            return Ok(());
         }
+        grad.reset(drawing);
+        output[0] = self.renderer.loss_and_grad(drawing, target, self.loss, renderer, grad)?;
+        scratch.give(&self.signature, saved);
         Ok(())
     }
 

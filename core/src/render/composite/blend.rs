@@ -2,9 +2,10 @@
 //! 1 - prod (1 - p f), the pixel b + alpha (m - b).
 
 use super::sink::PixelSink;
-use super::{Pass, Place, SHARPNESS, SMALLEST_WEIGHT};
+use super::{Pass, Place};
 use crate::image::CHANNELS;
 use crate::real::Real;
+use crate::render::Compositing;
 use crate::render::tile::{LANES, Lanes};
 use crate::simd::lanes;
 
@@ -32,7 +33,7 @@ impl<T: Real, S: PixelSink<T>> Pass<'_, '_, T, S> {
             }
         }
         // 1 where the guard sleeps, 0 where it acts.
-        let guard = T::of(SMALLEST_WEIGHT);
+        let guard = T::of(Compositing::SMALLEST_WEIGHT);
         let live: Lanes<T> = lanes(|i| if weights[i] > guard { one } else { zero });
         let guarded: Lanes<T> = lanes(|i| if weights[i] > guard { weights[i] } else { guard });
         let share: Lanes<T> = lanes(|i| one / guarded[i]);
@@ -73,7 +74,7 @@ impl<T: Real, S: PixelSink<T>> Pass<'_, '_, T, S> {
             }
             let tint: Lanes<T> = lanes(|i| tint[i] * share[i] * w);
             let others: Lanes<T> = lanes(|i| lift[i] * kept.below[0][i] * above[i]);
-            let both: Lanes<T> = lanes(|i| p[i] * (others[i] + T::of(SHARPNESS) * tint[i]));
+            let both: Lanes<T> = lanes(|i| p[i] * (others[i] + T::of(Compositing::SHARPNESS) * tint[i]));
             sums.confidence = lanes(|i| sums.confidence[i] + both[i]);
             above = lanes(|i| above[i] * (one - p[i] * f));
             if let Some(chunk) = layer.chunk {

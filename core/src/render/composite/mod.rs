@@ -32,12 +32,6 @@ use crate::scene::Drawing;
 use crate::simd::{Kernel, dispatch};
 use sink::PixelSink;
 
-/// The reference's guard of the division by the sum of weights.
-const SMALLEST_WEIGHT: f64 = 1e-7;
-
-/// The reference's 1 / gamma: a weight is p exp((f - 1) / gamma).
-const SHARPNESS: f64 = 10.0;
-
 /// What there is to composite.
 pub(super) struct Composition<'a, T> {
     pub(super) drawing: &'a Drawing<T>,

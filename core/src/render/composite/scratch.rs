@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use super::{Active, Layer, SHARPNESS, SMALLEST_WEIGHT};
+use super::{Active, Layer};
 use crate::image::CHANNELS;
 use crate::real::Real;
 use crate::render::Compositing;
@@ -60,10 +60,11 @@ impl<T: Real> CompositeScratch<T> {
         self.background = zeros();
         self.objects.clear();
         self.objects.extend(drawing.confidences.iter().map(|&f| {
-            let weight = (T::of(SHARPNESS) * (f - T::one())).exp();
+            let weight = (T::of(Compositing::SHARPNESS) * (f - T::one())).exp();
             Sums {
                 weight,
-                plain: compositing == Compositing::Over || weight * smallest_coverage >= T::of(SMALLEST_WEIGHT),
+                plain: compositing == Compositing::Over
+                    || weight * smallest_coverage >= T::of(Compositing::SMALLEST_WEIGHT),
                 covered: zeros(),
                 color: zeros(),
                 confidence: [T::zero(); LANES],

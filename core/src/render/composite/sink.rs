@@ -127,8 +127,8 @@ impl<T: Real> ValueLoss<T> for Mse {
     }
 }
 
-/// The mean of a loss per value against a target.
-pub(in crate::render) struct Loss<'a, T, L> {
+/// The mean of a loss per value against a target; with its gradient if `BACKWARD`.
+pub(in crate::render) struct Loss<'a, T, L, const BACKWARD: bool> {
     target: &'a [T],
     /// 1 / number of values.
     share: T,
@@ -137,7 +137,7 @@ pub(in crate::render) struct Loss<'a, T, L> {
     loss: PhantomData<L>,
 }
 
-impl<'a, T: Real, L: ValueLoss<T>> Loss<'a, T, L> {
+impl<'a, T: Real, L: ValueLoss<T>, const BACKWARD: bool> Loss<'a, T, L, BACKWARD> {
     /// Against planar `target`.
     pub(in crate::render) fn new(target: &'a [T]) -> Self {
         let share = T::one() / T::of_usize(target.len());
@@ -145,15 +145,15 @@ impl<'a, T: Real, L: ValueLoss<T>> Loss<'a, T, L> {
     }
 }
 
-impl<T: Real, L: ValueLoss<T>> PixelSink<T> for Loss<'_, T, L> {
-    const BACKWARD: bool = true;
+impl<T: Real, L: ValueLoss<T>, const BACKWARD: bool> PixelSink<T> for Loss<'_, T, L, BACKWARD> {
+    const BACKWARD: bool = BACKWARD;
 
     #[inline(always)]
     fn chunk(&mut self, channel: usize, place: Place, values: &Lanes<T>) -> Lanes<T> {
         let target = load(self.target, channel, place, values);
         let difference: Lanes<T> = lanes(|i| values[i] - target[i]);
         self.lanes = lanes(|i| self.lanes[i] + L::value(difference[i]));
-        lanes(|i| L::slope(difference[i]) * self.share)
+        if BACKWARD { lanes(|i| L::slope(difference[i]) * self.share) } else { [T::zero(); LANES] }
     }
 
     #[inline(always)]
@@ -164,11 +164,15 @@ impl<T: Real, L: ValueLoss<T>> PixelSink<T> for Loss<'_, T, L> {
         for block in blocks {
             let difference: Lanes<T> = lanes(|i| value - block[i]);
             losses = lanes(|i| losses[i] + L::value(difference[i]));
-            slopes = lanes(|i| slopes[i] + L::slope(difference[i]));
+            if BACKWARD {
+                slopes = lanes(|i| slopes[i] + L::slope(difference[i]));
+            }
         }
         for (i, &t) in rest.iter().enumerate() {
             losses[i] += L::value(value - t);
-            slopes[i] += L::slope(value - t);
+            if BACKWARD {
+                slopes[i] += L::slope(value - t);
+            }
         }
         self.sum += total(losses).as_f64();
         total(slopes) * self.share

@@ -1,18 +1,15 @@
 //! Coverage and colors to pixels, in both ways of mixing.
 
 use super::TensorDrawing;
+use crate::render::Compositing;
 use crate::tensor::{Backend, Tensor, TensorError};
-
-/// The reference's guard of the division by the sum of weights.
-const SMALLEST_WEIGHT: f64 = 1e-7;
-/// The reference's 1 / gamma: a weight is p exp((f - 1) / gamma).
-const SHARPNESS: f64 = 10.0;
 
 /// The confidence-weighted mean over the background. Coverage batch x objects x pixels; pixels batch x 3 x pixels.
 pub(super) fn blend<B: Backend>(drawing: &TensorDrawing<B>, coverage: &Tensor<B>) -> Result<Tensor<B>, TensorError> {
     let confidences = column(&drawing.confidences)?;
-    let weights = coverage.mul(&confidences.affine(SHARPNESS, -SHARPNESS)?.exp()?)?;
-    let total = weights.sum(1)?.affine(1.0, -SMALLEST_WEIGHT)?.relu()?.affine(1.0, SMALLEST_WEIGHT)?;
+    let (sharpness, guard) = (Compositing::SHARPNESS, Compositing::SMALLEST_WEIGHT);
+    let weights = coverage.mul(&confidences.affine(sharpness, -sharpness)?.exp()?)?;
+    let total = weights.sum(1)?.affine(1.0, -guard)?.relu()?.affine(1.0, guard)?;
     // batch x 3 x objects times batch x objects x pixels.
     let mean = drawing.colors.transpose()?.matmul(&weights)?.div(&total)?;
     let opacity = coverage.mul(&confidences)?;

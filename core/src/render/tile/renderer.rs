@@ -121,6 +121,25 @@ impl<C> TileRenderer<C> {
         let smallest_coverage = self.coverage.smallest_coverage();
         Composition { drawing, size, compositing: self.compositing, smallest_coverage, tiles }
     }
+
+    /// Paints the tiles against `target`; if `BACKWARD`, [`Self::pull_back`] is to follow.
+    fn compare<T: Real, const BACKWARD: bool>(
+        &self,
+        drawing: &Drawing<T>,
+        target: ImageView<'_, T>,
+        loss: PixelLoss,
+        scratch: &mut TileScratch<T, C::Record>,
+    ) -> T
+    where
+        C: CoverageModel<T>,
+    {
+        let composition = self.composition(drawing, target.size(), &mut scratch.tiles[..drawing.object_count()]);
+        let (target, scratch) = (target.data(), &mut scratch.composite);
+        match loss {
+            PixelLoss::Mae => composition.run(scratch, Loss::<T, Mae, BACKWARD>::new(target)),
+            PixelLoss::Mse => composition.run(scratch, Loss::<T, Mse, BACKWARD>::new(target)),
+        }
+    }
 }
 
 impl<T: Real, C: CoverageModel<T>> Renderer<T> for TileRenderer<C> {
@@ -158,6 +177,17 @@ impl<T: Real, C: CoverageModel<T>> Renderer<T> for TileRenderer<C> {
         Ok(())
     }
 
+    fn loss(
+        &self,
+        drawing: &Drawing<T>,
+        target: ImageView<'_, T>,
+        loss: PixelLoss,
+        scratch: &mut Self::Scratch,
+    ) -> Result<T, RenderError> {
+        self.cover_all(drawing, target.size(), scratch, false)?;
+        Ok(self.compare::<T, false>(drawing, target, loss, scratch))
+    }
+
     fn loss_and_grad(
         &self,
         drawing: &Drawing<T>,
@@ -169,12 +199,7 @@ impl<T: Real, C: CoverageModel<T>> Renderer<T> for TileRenderer<C> {
         check_grad(drawing, grad)?;
         let size = target.size();
         self.cover_all(drawing, size, scratch, true)?;
-        let composition = self.composition(drawing, size, &mut scratch.tiles[..drawing.object_count()]);
-        let target = target.data();
-        let value = match loss {
-            PixelLoss::Mae => composition.run(&mut scratch.composite, Loss::<T, Mae>::new(target)),
-            PixelLoss::Mse => composition.run(&mut scratch.composite, Loss::<T, Mse>::new(target)),
-        };
+        let value = self.compare::<T, true>(drawing, target, loss, scratch);
         self.pull_back(drawing, size, scratch, grad);
         Ok(value)
     }

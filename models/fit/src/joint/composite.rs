@@ -33,7 +33,7 @@ pub(super) fn composite<T: Real>(
     match compositing {
         Compositing::Blend => {
             let (mut total, mut mean) = (T::zero(), [T::zero(); 3]);
-            let importance = |k: usize| ((scene.objects[k].confidence - one) * T::of(10.0)).exp();
+            let importance = |k: usize| ((scene.objects[k].confidence - one) * T::of(Compositing::SHARPNESS)).exp();
             for cover in covers.iter() {
                 let weight = cover.coverage * importance(cover.object);
                 total += weight;
@@ -41,7 +41,7 @@ pub(super) fn composite<T: Real>(
                     mean[c] += weight * scene.objects[cover.object].color[c];
                 }
             }
-            let total = total.max(T::of(1e-7));
+            let total = total.max(T::of(Compositing::SMALLEST_WEIGHT));
             let mean = mean.map(|value| value / total);
             let alpha = one - clear;
             for at in 0..covers.len() {
