@@ -2,7 +2,7 @@
 //!
 //! | id | a step of |
 //! |---|---|
-//! | `optp/<backend>` | OptP on 32 images of 128 x 128, 4 objects, 64 vertices, 16 harmonics, a bank of 3, f32: activations, the core's outlines, poses and MAE, gradients of all parameters, Adam; `core` does it on slices, without tensors |
+//! | `optp/<backend>` | OptP on 32 images of 128 x 128, 4 objects, 64 vertices, 16 harmonics, a bank of 3, f32: activations, the core's outlines, poses and MAE, gradients of all parameters, Adam; `core` does it on slices in kept memory, without tensors |
 //! | `optp_dense/<backend>` | the same on one image, painted by tensor operations alone |
 //! | `network/<backend>` | three convolutions (3, 16, 32, 64 channels, 3 x 3, steps of 2) of 32 images of 128 x 128 and attention over the 256 positions left, forward and backward |
 //!
@@ -12,6 +12,8 @@
 
 extern crate alloc;
 
+mod slices;
+
 use alloc::sync::Arc;
 use core::error::Error;
 use core::hint::black_box;
@@ -20,18 +22,18 @@ use cpu_time::ProcessTime;
 use criterion::{Criterion, criterion_group, criterion_main};
 use dvp_burn::Burn;
 use dvp_candle::{Candle, CandleDevice};
+use dvp_core::ImageSize;
 use dvp_core::diff_op::{Batched, HostOp};
 use dvp_core::optim::AdamSettings;
-use dvp_core::real::{Real, Values, ValuesRef};
 use dvp_core::render::{
-    Compositing, ContourRenderer, DenseRenderer, EdgeProfile, PixelLoss, RenderLossOp, RenderOp, TensorDrawing,
+    Compositing, ContourRenderer, DenseRenderer, EdgeProfile, PixelLoss, RenderLossOp, TensorDrawing,
 };
 use dvp_core::scene::PoseOp;
 use dvp_core::shape::{OutlineBasis, OutlineOp, PrototypeModel, mdshr_bank};
 use dvp_core::tensor::{Adam, Backend, Host, HostDevice, Parameters, Stride, Tensor};
-use dvp_core::{Image, ImageSize};
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
+use slices::{Batch, LossOp, Slices};
 
 type Outcome<T> = Result<T, Box<dyn Error>>;
 
@@ -67,17 +69,20 @@ fn width(k: usize) -> usize {
 }
 
 /// Parameters of scenes, `seed` for each of `batch` items.
-fn parameters(seed: u64, batch: usize) -> [Vec<f32>; 7] {
+fn parameters(seed: u64, batch: usize) -> Batch {
     core::array::from_fn(|k| numbers(10 * seed + k as u64, batch * width(k)))
 }
 
 /// The steps of a batch and where it starts.
 struct Work {
     batch: usize,
-    start: [Vec<f32>; 7],
+    start: Batch,
     outline: Arc<dyn HostOp>,
     pose: Arc<dyn HostOp>,
     loss: Arc<dyn HostOp>,
+    /// The same steps for slices.
+    slices: Slices,
+    slices_loss: LossOp,
     targets: Vec<f32>,
 }
 
@@ -85,95 +90,22 @@ impl Work {
     fn new(batch: usize) -> Outcome<Self> {
         let (bank, basis) = (mdshr_bank::<f32>(16), OutlineBasis::new(VERTICES, 16)?);
         let renderer = ContourRenderer::<f32>::new(EdgeProfile::reference(), Compositing::default());
-        let outline = Arc::new(Batched::new(OutlineOp::new(PrototypeModel::new(&bank, &basis)?, OBJECTS)?));
-        let pose: Arc<dyn HostOp> = Arc::new(Batched::<f32, _>::new(PoseOp::new(OBJECTS, VERTICES)?));
-        let render = Batched::<f32, _>::new(RenderOp::new(renderer, size(), OBJECTS, VERTICES)?);
-        let mut work =
-            Self { batch, start: parameters(1, batch), outline, loss: pose.clone(), pose, targets: Vec::new() };
-        let truth = work.activate(&parameters(0, batch));
-        let [_, _, drawing] = work.rows(&truth)?;
-        work.targets = taken(render.forward(batch, ValuesRef::F32(&drawing), false)?.0)?;
-        let images = work.targets.chunks_exact(3 * size().pixels());
-        let images = images.map(|image| Image::from_planar(size(), image.to_vec())).collect::<Result<_, _>>()?;
+        let outline = OutlineOp::new(PrototypeModel::new(&bank, &basis)?, OBJECTS)?;
+        let pose = PoseOp::new(OBJECTS, VERTICES)?;
+        let mut slices = Slices::new(outline.clone(), pose.clone(), batch);
+        let images = slices.paint(&parameters(0, batch), renderer)?;
+        let targets = images.iter().flat_map(|image| image.data()).copied().collect();
         let loss = RenderLossOp::new(renderer, PixelLoss::Mae, images, OBJECTS, VERTICES)?;
-        work.loss = Arc::new(Batched::<f32, _>::new(loss));
-        Ok(work)
-    }
-
-    /// Parameters in the units of scenes.
-    fn activate(&self, raw: &[Vec<f32>; 7]) -> [Vec<f32>; 7] {
-        let mut scenes = raw.clone();
-        for k in [0, 1, 2, 5, 6] {
-            scenes[k].iter_mut().for_each(|x| *x = 1.0 / (1.0 + (-*x).exp()));
-        }
-        for weights in scenes[3].chunks_exact_mut(PROTOTYPES) {
-            let most = weights.iter().copied().fold(f32::MIN, f32::max);
-            weights.iter_mut().for_each(|x| *x = (*x - most).exp());
-            let sum: f32 = weights.iter().sum();
-            weights.iter_mut().for_each(|x| *x /= sum);
-        }
-        scenes[5].iter_mut().for_each(|x| *x = f32::of(SCALES[0]) * *x + f32::of(SCALES[1]));
-        scenes
-    }
-
-    /// Inputs of the steps, item by item: of outlines, poses and the loss.
-    fn rows(&self, scenes: &[Vec<f32>; 7]) -> Outcome<[Vec<f32>; 3]> {
-        let [background, colors, confidences, weights, rotations, scales, translations] = scenes;
-        let units = taken(self.outline.forward(self.batch, ValuesRef::F32(weights), true)?.0)?;
-        let units = self.join(&[&units, translations, scales, rotations]);
-        let posed = taken(self.pose.forward(self.batch, ValuesRef::F32(&units), true)?.0)?;
-        Ok([weights.clone(), units, self.join(&[&posed, colors, confidences, background])])
-    }
-
-    /// Items of several inputs, side by side.
-    fn join(&self, parts: &[&[f32]]) -> Vec<f32> {
-        let item = |item: usize| {
-            parts.iter().flat_map(move |part| &part[item * (part.len() / self.batch)..][..part.len() / self.batch])
-        };
-        (0..self.batch).flat_map(item).copied().collect()
-    }
-
-    /// Undoes [`Self::join`].
-    fn cut<const N: usize>(&self, rows: &[f32], widths: [usize; N]) -> [Vec<f32>; N] {
-        let total = rows.len() / self.batch;
-        let mut start = 0;
-        widths.map(|width| {
-            start += width;
-            rows.chunks_exact(total).flat_map(|row| &row[start - width..start]).copied().collect()
+        Ok(Self {
+            batch,
+            start: parameters(1, batch),
+            outline: Arc::new(Batched::<f32, _>::new(outline)),
+            pose: Arc::new(Batched::<f32, _>::new(pose)),
+            loss: Arc::new(Batched::<f32, _>::new(loss.clone())),
+            slices,
+            slices_loss: loss,
+            targets,
         })
-    }
-
-    /// A step on slices; the loss before it.
-    fn core(&self, raw: &mut [Vec<f32>; 7], adam: &mut [dvp_fit::adam::Adam<f32>; 7]) -> Outcome<f64> {
-        let scenes = self.activate(raw);
-        let [weights, units, drawing] = self.rows(&scenes)?;
-        let (losses, saved) = self.loss.forward(self.batch, ValuesRef::F32(&drawing), true)?;
-        let share = vec![f32::of(1.0 / self.batch as f64); self.batch];
-        let back = |op: &Arc<dyn HostOp>, input: &[f32], saved: ValuesRef<'_>, grad: &[f32]| {
-            taken(op.vjp(self.batch, ValuesRef::F32(input), saved, ValuesRef::F32(grad))?)
-        };
-        let (nothing, outline) = (ValuesRef::F32(&[]), OBJECTS * VERTICES * 2);
-        let grad = back(&self.loss, &drawing, saved.as_ref(), &share)?;
-        let [posed, colors, confidences, background] = self.cut(&grad, [outline, width(1), width(2), width(0)]);
-        let grad = back(&self.pose, &units, nothing, &posed)?;
-        let [unit, translations, scales, rotations] = self.cut(&grad, [outline, width(6), width(5), width(4)]);
-        let weights_grad = back(&self.outline, &weights, nothing, &unit)?;
-        let mut grads = [background, colors, confidences, weights_grad, rotations, scales, translations];
-        for (k, factor) in [(0, 1.0), (1, 1.0), (2, 1.0), (5, SCALES[0]), (6, 1.0)] {
-            let offset = if k == 5 { SCALES[1] } else { 0.0 };
-            for (slope, &value) in grads[k].iter_mut().zip(&scenes[k]) {
-                let unit = (value - f32::of(offset)) / f32::of(factor);
-                *slope *= f32::of(factor) * unit * (1.0 - unit);
-            }
-        }
-        for (slopes, weights) in grads[3].chunks_exact_mut(PROTOTYPES).zip(weights.chunks_exact(PROTOTYPES)) {
-            let mean: f32 = slopes.iter().zip(weights).map(|(slope, weight)| slope * weight).sum();
-            slopes.iter_mut().zip(weights).for_each(|(slope, weight)| *slope = weight * (*slope - mean));
-        }
-        for ((values, grad), adam) in raw.iter_mut().zip(&grads).zip(adam) {
-            adam.step(values, grad, LEARNING_RATE);
-        }
-        Ok(losses.to_f64().iter().sum::<f64>() / self.batch as f64)
     }
 
     /// The start as named parameters.
@@ -218,10 +150,6 @@ fn size() -> ImageSize {
     ImageSize::new(128, 128).expect("a size")
 }
 
-fn taken(values: Values) -> Outcome<Vec<f32>> {
-    f32::from_values(values).ok_or_else(|| "f32 expected".into())
-}
-
 /// Times steps, in processor time of all threads: what else runs on the machine counts little.
 fn time<T>(criterion: &mut Criterion, id: &str, mut step: impl FnMut() -> Outcome<T>) {
     criterion.bench_function(id, |bencher| {
@@ -233,11 +161,13 @@ fn time<T>(criterion: &mut Criterion, id: &str, mut step: impl FnMut() -> Outcom
     });
 }
 
-fn core_alone(criterion: &mut Criterion, work: &Work) -> f64 {
-    let mut raw = work.start.clone();
+fn core_alone(criterion: &mut Criterion, work: &mut Work) -> f64 {
+    let Work { start, slices, slices_loss, .. } = work;
+    let mut raw = start.clone();
     let mut adam = raw.each_ref().map(|values| dvp_fit::adam::Adam::new(AdamSettings::default(), values.len()));
-    let tenth = (0..10).map(|_| work.core(&mut raw, &mut adam).expect("a step")).fold(0.0, |_, loss| loss);
-    time(criterion, "optp/core", || work.core(&mut raw, &mut adam));
+    let mut step = || slices.step(slices_loss, &mut raw, &mut adam);
+    let tenth = (0..10).map(|_| step().expect("a step")).fold(0.0, |_, loss| loss);
+    time(criterion, "optp/core", step);
     tenth
 }
 
@@ -281,8 +211,8 @@ fn network<B: Backend>(criterion: &mut Criterion, device: &B::Device) {
 }
 
 fn backends(criterion: &mut Criterion) {
-    let [work, one] = [BATCH, 1].map(|batch| Work::new(batch).expect("work"));
-    let tenth = core_alone(criterion, &work);
+    let [mut work, one] = [BATCH, 1].map(|batch| Work::new(batch).expect("work"));
+    let tenth = core_alone(criterion, &mut work);
     let (host, burn, candle) = (HostDevice, <Burn as Backend>::Device::flex(), CandleDevice::CPU);
     optp::<Host>(criterion, "optp", &host, &work, Some(tenth));
     optp::<Burn>(criterion, "optp", &burn, &work, Some(tenth));
