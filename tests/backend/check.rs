@@ -39,7 +39,7 @@ pub(crate) trait Computation: fmt::Debug {
 }
 
 /// What a computation gives: its output, and the gradient of each tracked input for a fixed cotangent.
-struct Evaluation {
+pub(crate) struct Evaluation {
     dims: Dims,
     value: Vec<f64>,
     gradients: Vec<Vec<f64>>,
@@ -49,7 +49,7 @@ struct Evaluation {
 pub(crate) fn check<B: Tested>(computation: &impl Computation, inputs: &[Input], tally: &Tally) -> Outcome {
     let reference = evaluate::<Host>(computation, inputs, DType::F64, 1)?;
     let double = evaluate::<B>(computation, inputs, DType::F64, 1)?;
-    agree(tally, "f64", &double, &reference, TOLERANCE_F64)?;
+    agree(tally, "f64", &double, &reference, [TOLERANCE_F64; 2])?;
 
     // The f32 run must not be blamed for the rounding of its inputs.
     let mut rounded = inputs.to_vec();
@@ -57,9 +57,9 @@ pub(crate) fn check<B: Tested>(computation: &impl Computation, inputs: &[Input],
         *value = f64::from(*value as f32);
     }
     let single = evaluate::<B>(computation, &rounded, DType::F32, 1)?;
-    agree(tally, "f32", &single, &evaluate::<Host>(computation, &rounded, DType::F32, 1)?, TOLERANCE_F32)?;
+    agree(tally, "f32", &single, &evaluate::<Host>(computation, &rounded, DType::F32, 1)?, [TOLERANCE_F32; 2])?;
     let exact = evaluate::<Host>(computation, &rounded, DType::F64, 1)?;
-    agree(tally, "f32 against f64", &single, &exact, computation.rounding())?;
+    agree(tally, "f32 against f64", &single, &exact, [computation.rounding(); 2])?;
 
     if computation.is_constant() {
         return Ok(());
@@ -73,7 +73,7 @@ pub(crate) fn check<B: Tested>(computation: &impl Computation, inputs: &[Input],
 }
 
 /// Runs a computation `uses` times on the same parameters; gradients are of the sum of all uses.
-fn evaluate<B: Tested>(
+pub(crate) fn evaluate<B: Tested>(
     computation: &impl Computation,
     inputs: &[Input],
     dtype: DType,
@@ -124,12 +124,20 @@ fn cotangent(len: usize) -> Vec<f64> {
     (0..len).map(|k| ((37 * k + 11) % 32) as f64 / 16.0 - 31.0 / 32.0).collect()
 }
 
-fn agree(tally: &Tally, what: &str, found: &Evaluation, reference: &Evaluation, tolerance: f64) -> Outcome {
+/// The same extents, and values and gradients within a tolerance each, as [`close`] says.
+pub(crate) fn agree(
+    tally: &Tally,
+    what: &str,
+    found: &Evaluation,
+    reference: &Evaluation,
+    tolerances: [f64; 2],
+) -> Outcome {
     tally.check(found.dims == reference.dims, || format!("{what}: {} for {}", found.dims, reference.dims))?;
-    close(tally, &format!("{what} value"), &found.value, &reference.value, tolerance)?;
+    let [value, gradient] = tolerances;
+    close(tally, &format!("{what} value"), &found.value, &reference.value, value)?;
     tally.check(found.gradients.len() == reference.gradients.len(), || format!("{what}: gradients are missing"))?;
     for (k, (found, reference)) in found.gradients.iter().zip(&reference.gradients).enumerate() {
-        close(tally, &format!("{what} gradient of tracked input {k}"), found, reference, tolerance)?;
+        close(tally, &format!("{what} gradient of tracked input {k}"), found, reference, gradient)?;
     }
     Ok(())
 }

@@ -12,6 +12,7 @@
 //! | `elementwise`, `layout`, `reduce`, `product`, `convolution`, `compose` | the operations of tensors |
 //! | `kinks` | where there is no derivative: what is taken instead |
 //! | `step` | every differentiable step of the core |
+//! | `dense` | the renderer in tensor operations, the same as the step |
 //! | `refusal` | what is refused, in the same words everywhere |
 //! | `scene` | parameters to activations, prototypes, outlines, images and losses: one graph, and a fit |
 //! | `network`, `training` | 50 steps of Adam from the same weights; replicas on threads |
@@ -24,6 +25,7 @@ extern crate alloc;
 mod check;
 mod compose;
 mod convolution;
+mod dense;
 mod elementwise;
 mod input;
 mod kinks;

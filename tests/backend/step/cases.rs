@@ -116,7 +116,7 @@ fn pose() -> Cases {
 }
 
 /// Posed outlines, colors, confidences, background.
-const DRAWING: [Domain; 4] =
+pub(crate) const DRAWING: [Domain; 4] =
     [Domain::Outlines, Domain::Between(0.0, 1.0), Domain::Between(0.1, 0.9), Domain::Between(0.0, 1.0)];
 
 /// So soft that coverage is neither cut off nor saturated, where it would jump, anywhere in the image.
@@ -125,7 +125,7 @@ pub(crate) fn soft<T: Real>(compositing: Compositing) -> ContourRenderer<T> {
     ContourRenderer::new(EdgeProfile { cut: T::of(100.0), ..EdgeProfile::distance(sigma) }, compositing)
 }
 
-fn compositing() -> impl Strategy<Value = Compositing> {
+pub(crate) fn compositing() -> impl Strategy<Value = Compositing> {
     prop::sample::select(vec![Compositing::Blend, Compositing::Over])
 }
 

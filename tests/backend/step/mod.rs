@@ -58,7 +58,11 @@ pub(crate) use step;
 
 impl Step {
     /// With a batch of inputs, each of a domain.
-    fn with_inputs(self, batch: usize, domains: &[Domain]) -> impl Strategy<Value = (Self, Vec<Input>)> + use<> {
+    pub(crate) fn with_inputs(
+        self,
+        batch: usize,
+        domains: &[Domain],
+    ) -> impl Strategy<Value = (Self, Vec<Input>)> + use<> {
         let signature = self.f64.signature();
         let inputs_of_batch = signature.batched_inputs(batch).unwrap();
         assert_eq!(domains.len(), inputs_of_batch.len(), "a domain for each input of {}", signature.name());

@@ -32,6 +32,11 @@ fn cases<B: Backend>() -> Vec<Case<B>> {
         case("expand", &[&[3, 1]], |x| x[0].expand(&[2, 3, 4])),
         case("slice", &[&[3, 5]], |x| x[0].slice(1, 1, 3)),
         case("slice of nothing", &[&[3, 5]], |x| Tensor::concat(&[&x[0].slice(1, 5, 0)?, &x[0]], 1)),
+        case("slices of nothing", &[&[3, 5]], |x| {
+            let nothing = x[0].slice(0, 3, 0)?.exp()?;
+            let nothing = nothing.slice(1, 0, 3)?.mul(&nothing.slice(1, 1, 3)?)?;
+            Tensor::concat(&[&nothing, &x[0].slice(1, 2, 3)?], 0)
+        }),
         case("concat", &[&[2, 3], &[2, 1]], |x| Tensor::concat(&[&x[0], &x[1], &x[0]], 1)),
         case("select", &[&[3, 4]], |x| x[0].select(1, &[3, 0, 3])),
         case("sum", &[&[2, 3, 4]], |x| x[0].sum(1)),

@@ -1,5 +1,7 @@
 //! The checks of tensors, and the host backend on numbers worked out by hand.
 
+mod devices;
+
 use alloc::string::ToString;
 use alloc::vec;
 use alloc::vec::Vec;
