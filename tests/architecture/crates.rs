@@ -15,7 +15,7 @@ const PLAN: [(&str, &str, &[&str]); 7] = [
     ("dvp-fit", "models/fit", &["dvp-core"]),
     ("dvp-net", "models/net", &["dvp-core", "dvp-fit"]),
     ("dvp", "models/cli", &["dvp-core", "dvp-fit"]),
-    ("dvp-tests", "tests", &["dvp-core", "dvp-burn", "dvp-candle", "dvp-fit", "dvp"]),
+    ("dvp-tests", "tests", &["dvp-core", "dvp-burn", "dvp-candle", "dvp-fit", "dvp-net", "dvp"]),
 ];
 
 /// How names of tensor frameworks, and of the compilers and drivers below them, begin.

@@ -15,7 +15,7 @@
 //! | [`weights`] | [`Weights`](weights::Weights): parameters under a path, checked as they are taken |
 //! | [`error`] | [`NetError`](error::NetError) |
 //!
-//! `tests/parity` compares both models with their public PyTorch implementations.
+//! `tests/backend/published` compares both models with their public PyTorch implementations, on every backend.
 
 pub mod detr;
 pub mod dinov2;
