@@ -36,14 +36,7 @@
 //!
 //! # Speed
 //!
-//! | one step, ms of processor time | core alone | host | burn | candle |
-//! |---|---|---|---|---|
-//! | OptP: 32 images of 128 x 128, 4 objects, parameters to Adam | 4.8 - 6.5 | 3.9 - 6.6 | 4.4 - 5.8 | 3.7 - 6.2 |
-//! | the tensor-only renderer's loss and gradient, one image | - | 694 | 342 | 753 |
-//! | strided convolutions and attention, 32 images, forward and backward | - | 547 | 378 | 334 |
-//!
-//! `cargo bench -p dvp-tests --bench backends`, one thread of a virtual machine (AMD Zen 3, 2.45 GHz) under load; OptP: spread of
-//! five runs.
+//! Under *Backends* in the README of the repository, beside the other backends; `cargo bench -p dvp-tests --bench backends`.
 //!
 //! # Limits
 //!
