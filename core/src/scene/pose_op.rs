@@ -21,7 +21,7 @@ impl PoseOp {
     /// Poses of `objects` outlines of `vertices` vertices per item.
     ///
     /// # Errors
-    /// As [`Dims::new`].
+    /// As [`Dims::new`](crate::dims::Dims::new).
     pub fn new(objects: usize, vertices: usize) -> Result<Self, DimsError> {
         let inputs = [
             OpInput::new("unit outlines", &[objects, vertices, 2])?,

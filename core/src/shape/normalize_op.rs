@@ -20,7 +20,7 @@ impl NormalizeOp {
     /// Normal forms of `objects` shapes of `harmonics` harmonics per item.
     ///
     /// # Errors
-    /// As [`Dims::new`].
+    /// As [`Dims::new`](crate::dims::Dims::new).
     pub fn new(objects: usize, harmonics: usize) -> Result<Self, DimsError> {
         let descriptors = OpInput::new("descriptors", &[objects, harmonics, 4])?;
         Ok(Self { signature: Signature::new("normalize", [descriptors], descriptors.dims), harmonics })
