@@ -128,6 +128,12 @@ impl<T: Real> Scene<T> {
     pub fn empty(background: [T; 3]) -> Self {
         Self { background, objects: Vec::new(), edge: EdgeProfile::reference(), compositing: Compositing::default() }
     }
+
+    /// Rounds confidences: objects of more than 1/2 are there, the others are taken out.
+    pub fn keep_visible(&mut self) {
+        self.objects.retain(|object| object.confidence > T::of(0.5));
+        self.objects.iter_mut().for_each(|object| object.confidence = T::one());
+    }
 }
 
 impl<T: Real> SceneGrad<T> {

@@ -15,6 +15,17 @@ impl<B: Backend> Tensor<B> {
         self.affine(0.5, 0.0)?.tanh()?.affine(0.5, 0.5)
     }
 
+    /// Numbers below `low` as `low`, above `high` as `high`.
+    ///
+    /// *Derivative*: 1 between the two, 0 outside and at both.
+    ///
+    /// # Errors
+    /// If the framework refuses.
+    pub fn clamp(&self, low: f64, high: f64) -> Result<Self, TensorError> {
+        let above = self.affine(1.0, -low)?.relu()?;
+        above.sub(&self.affine(1.0, -high)?.relu()?)?.affine(1.0, low)
+    }
+
     /// x Phi(x), Phi the distribution of the normal distribution: GELU without approximation.
     ///
     /// # Errors

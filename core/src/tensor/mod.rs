@@ -45,4 +45,6 @@ pub use gradient::Gradients;
 pub use handle::Tensor;
 pub use host::{Host, HostArray, HostDevice, HostGradients};
 pub use parameters::{Parameters, ParametersError};
+#[cfg(feature = "safetensors")]
+pub use safetensors::safetensors_note;
 pub use unfold::Unfold;

@@ -3,7 +3,7 @@
 use alloc::borrow::Cow;
 use alloc::boxed::Box;
 use alloc::format;
-use alloc::string::ToString;
+use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 
 use safetensors::tensor::{Dtype, SafeTensors, View, serialize};
@@ -13,6 +13,9 @@ use super::handle::Tensor;
 use super::parameters::{Parameters, ParametersError};
 use crate::dims::Dims;
 use crate::real::Values;
+
+/// The key of notes among a file's metadata.
+const NOTE: &str = "dvp";
 
 /// Values on their way to a file.
 struct Stored {
@@ -53,11 +56,20 @@ impl<B: Backend> Parameters<B> {
     /// # Errors
     /// If the framework refuses to hand out its values.
     pub fn to_safetensors(&self) -> Result<Vec<u8>, ParametersError> {
+        self.to_safetensors_with(None)
+    }
+
+    /// As [`Self::to_safetensors`], with a note among the file's metadata that [`safetensors_note`] finds again.
+    ///
+    /// # Errors
+    /// As [`Self::to_safetensors`].
+    pub fn to_safetensors_with(&self, note: Option<&str>) -> Result<Vec<u8>, ParametersError> {
         let mut stored = Vec::with_capacity(self.len());
         for (name, tensor) in self.iter() {
             stored.push((name, Stored { values: tensor.values()?, dims: *tensor.dims() }));
         }
-        serialize(stored, None).map_err(|error| ParametersError::Format(error.to_string()))
+        let metadata = note.map(|note| [(NOTE.to_string(), note.to_string())].into_iter().collect());
+        serialize(stored, metadata).map_err(|error| ParametersError::Format(error.to_string()))
     }
 
     /// All parameters of a safetensors file, given by its bytes.
@@ -95,8 +107,18 @@ impl<B: Backend> Parameters<B> {
     }
 }
 
+/// The note of a safetensors file, given by its bytes; none if it was written without one, or by another program.
+///
+/// # Errors
+/// [`ParametersError::Format`] if it is damaged or another format.
+pub fn safetensors_note(bytes: &[u8]) -> Result<Option<String>, ParametersError> {
+    let (_, metadata) =
+        SafeTensors::read_metadata(bytes).map_err(|error| ParametersError::Format(error.to_string()))?;
+    Ok(metadata.metadata().as_ref().and_then(|all| all.get(NOTE).cloned()))
+}
+
 /// Names, values and extents of a file.
-fn read(bytes: &[u8]) -> Result<Vec<(alloc::string::String, Values, Dims)>, ParametersError> {
+fn read(bytes: &[u8]) -> Result<Vec<(String, Values, Dims)>, ParametersError> {
     let file = SafeTensors::deserialize(bytes).map_err(|error| ParametersError::Format(error.to_string()))?;
     let mut found = Vec::with_capacity(file.len());
     for (name, view) in file.iter() {

@@ -3,14 +3,29 @@
 use std::path::Path;
 
 use anyhow::{Result, bail};
+use plotters::coord::ranged1d::ValueFormatter;
 use plotters::prelude::*;
 
 use crate::format::write_atomic;
 
 /// Width and height, px.
 const SIZE: (u32, u32) = (480, 320);
+/// Fewer points than this are dots on their line.
+const DOTS: usize = 40;
+/// Colors of lines, in order; told apart also without colors of red and green.
+const COLORS: [RGBColor; 4] =
+    [RGBColor(0, 90, 181), RGBColor(220, 50, 32), RGBColor(80, 80, 80), RGBColor(230, 160, 0)];
 
-/// One line with a dot at every point.
+/// A line, with a dot at every point if they are few.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Line {
+    /// What it is, where there are several.
+    pub name: &'static str,
+    /// Points from left to right.
+    pub points: Vec<(f64, f64)>,
+}
+
+/// Lines over one axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chart {
     /// Above the plot.
@@ -19,8 +34,10 @@ pub struct Chart {
     pub x: &'static str,
     /// Beside the vertical axis.
     pub y: &'static str,
-    /// Points from left to right.
-    pub points: Vec<(f64, f64)>,
+    /// What is drawn.
+    pub lines: Vec<Line>,
+    /// Whether the vertical axis is logarithmic; points that are not above 0 are then left out. Else it ends at 1.
+    pub log: bool,
 }
 
 /// Refuses names that charts are not written to, before any work is done.
@@ -34,44 +51,73 @@ pub fn check_name(file: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Writes the chart as SVG, whole or not at all.
-///
-/// # Errors
-/// If the name of the file does not end in .svg, or it cannot be written.
-pub fn write_chart(chart: &Chart, file: &Path) -> Result<()> {
-    check_name(file)?;
-    Ok(write_atomic(file, to_svg(chart)?.as_bytes())?)
-}
+impl Chart {
+    /// Writes the chart as SVG, whole or not at all.
+    ///
+    /// # Errors
+    /// If the name of the file does not end in .svg, or it cannot be written.
+    pub fn write(&self, file: &Path) -> Result<()> {
+        check_name(file)?;
+        Ok(write_atomic(file, self.to_svg()?.as_bytes())?)
+    }
 
-/// The text of the SVG.
-///
-/// # Errors
-/// If a point is not finite.
-pub fn to_svg(chart: &Chart) -> Result<String> {
-    let mut svg = String::new();
+    /// The text of the SVG.
+    ///
+    /// # Errors
+    /// If plotters refuses.
+    pub fn to_svg(&self) -> Result<String> {
+        let points = || self.lines.iter().flat_map(|line| &line.points).filter(|point| !self.log || point.1 > 0.0);
+        let ends = |value: fn(&(f64, f64)) -> f64| {
+            points().map(value).fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
+        };
+        let ((left, right), (bottom, top)) = (ends(|point| point.0), ends(|point| point.1));
+        let (left, right) = if left <= right { (left, right) } else { (0.0, 1.0) };
+        let mut svg = String::new();
+        {
+            let area = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
+            area.fill(&WHITE)?;
+            let mut builder = ChartBuilder::on(&area);
+            builder.caption(self.title, ("sans-serif", 18)).margin(12).x_label_area_size(36).y_label_area_size(48);
+            if self.log {
+                let (bottom, top) = if bottom <= top { (bottom / 1.1, top * 1.1) } else { (0.1, 1.0) };
+                self.draw(builder.build_cartesian_2d(left..right, (bottom..top).log_scale())?, 8)?;
+            } else {
+                let steps = points().count().max(2);
+                let plot = builder.build_cartesian_2d(left - 0.25..right + 0.25, bottom.min(0.0)..1.0)?;
+                self.draw(plot, steps)?;
+            }
+            area.present()?;
+        }
+        Ok(svg)
+    }
+
+    fn draw<'a, Y>(
+        &self,
+        mut plot: ChartContext<'a, SVGBackend<'a>, Cartesian2d<plotters::coord::types::RangedCoordf64, Y>>,
+        steps: usize,
+    ) -> Result<()>
+    where
+        Y: Ranged<ValueType = f64> + ValueFormatter<f64>,
     {
-        let area = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
-        area.fill(&WHITE)?;
-        let last = chart.points.last().map_or(1.0, |point| point.0);
-        let first = chart.points.first().map_or(0.0, |point| point.0);
-        let least = chart.points.iter().map(|point| point.1).fold(0.0, f64::min);
-        let mut plot = ChartBuilder::on(&area)
-            .caption(chart.title, ("sans-serif", 18))
-            .margin(12)
-            .x_label_area_size(36)
-            .y_label_area_size(48)
-            .build_cartesian_2d(first - 0.25..last + 0.25, least..1.0)?;
-        let steps = chart.points.len().max(2);
         plot.configure_mesh()
-            .x_desc(chart.x)
-            .y_desc(chart.y)
+            .x_desc(self.x)
+            .y_desc(self.y)
             .x_labels(steps)
             .x_label_formatter(&|x| format!("{x:.0}"))
             .light_line_style(TRANSPARENT)
             .draw()?;
-        plot.draw_series(LineSeries::new(chart.points.iter().copied(), &BLUE))?;
-        plot.draw_series(chart.points.iter().map(|&point| Circle::new(point, 3, BLUE.filled())))?;
-        area.present()?;
+        for (line, color) in self.lines.iter().zip(COLORS.iter().cycle()) {
+            let points = || line.points.iter().copied().filter(|point| !self.log || point.1 > 0.0);
+            plot.draw_series(LineSeries::new(points(), color))?
+                .label(line.name)
+                .legend(move |(x, y)| PathElement::new([(x, y), (x + 16, y)], color));
+            if line.points.len() < DOTS {
+                plot.draw_series(points().map(|point| Circle::new(point, 3, color.filled())))?;
+            }
+        }
+        if self.lines.len() > 1 {
+            plot.configure_series_labels().background_style(WHITE.mix(0.8)).border_style(BLACK).draw()?;
+        }
+        Ok(())
     }
-    Ok(svg)
 }

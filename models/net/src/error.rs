@@ -1,6 +1,8 @@
 //! Why a model was not loaded, or refused its input.
 
 use dvp_core::dims::Dims;
+use dvp_core::render::RenderError;
+use dvp_core::shape::ShapeError;
 use dvp_core::tensor::{ParametersError, TensorError};
 use thiserror::Error;
 
@@ -46,6 +48,29 @@ pub enum NetError {
         /// What is needed.
         must: &'static str,
     },
+    /// A batch that cannot be judged.
+    #[error("the batch {must}")]
+    Batch {
+        /// What is needed.
+        must: String,
+    },
+    /// An outline could not be drawn.
+    #[error(transparent)]
+    Shape(#[from] ShapeError),
+    /// A scene could not be painted.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+    /// A loss that is no number: the weights are those before the step.
+    #[error("step {step}: the loss is {loss}; a smaller learning rate or --clip-norm may help")]
+    NotFinite {
+        /// Number of the step, from 1.
+        step: u64,
+        /// What came out.
+        loss: f64,
+    },
+    /// A file of weights that is not what its name says.
+    #[error("{0}")]
+    Checkpoint(String),
 }
 
 /// Refuses sizes unless `holds`.

@@ -1,24 +1,41 @@
 //! Networks that look at an image and propose its scene.
 //!
-//! In: images and named weights, [`Parameters`](dvp_core::tensor::Parameters). Out: tokens of the image and, from them,
-//! one latent vector per object. Everything is written once over [`Tensor`](dvp_core::tensor::Tensor) and runs on every
-//! [`Backend`](dvp_core::tensor::Backend); no framework is needed.
+//! In: images and named weights, [`Parameters`](dvp_core::tensor::Parameters). Out: scenes. Everything is written once
+//! over [`Tensor`](dvp_core::tensor::Tensor) and runs on every [`Backend`](dvp_core::tensor::Backend); no framework is
+//! needed.
+//!
+//! ```text
+//! image -> encoder -> features -> detr -> latents -> heads -> scene -> scene_steps -> image, loss -> train
+//! ```
 //!
 //! A model is a view: it holds handles of the weights that it was loaded with. After a step of an optimizer it is
 //! loaded again from the new ones, which copies no number.
 //!
 //! | module | holds |
 //! |---|---|
-//! | [`dinov2`] | [`Dinov2`](dinov2::Dinov2): image to tokens; loads the published weights by their names |
-//! | [`detr`] | [`ConditionalDetr`](detr::ConditionalDetr): tokens to one latent per object slot |
-//! | [`layers`] | what both are made of: linear maps, layer norm, perceptrons, attention |
 //! | [`weights`] | [`Weights`](weights::Weights): parameters under a path, checked as they are taken |
+//! | [`initial`] | weights of a model that has learned nothing |
+//! | [`layers`] | linear maps, norms, perceptrons, attention |
+//! | [`dinov2`] | [`Dinov2`](dinov2::Dinov2): image to tokens; loads the published weights by their names |
+//! | [`encoder`] | [`Encoder`](encoder::Encoder): image to features, by DINOv2 or strided convolutions |
+//! | [`detr`] | [`ConditionalDetr`](detr::ConditionalDetr): features to one latent per object slot |
+//! | [`model`] | [`Model`](model::Model): the whole, with its seven heads |
+//! | [`scene_steps`] | predicted scenes painted and judged by the core's differentiable steps |
+//! | [`train`] | modes, steps of training, checkpoints |
 //! | [`error`] | [`NetError`](error::NetError) |
 //!
-//! `tests/backend/published` compares both models with their public PyTorch implementations, on every backend.
+//! `tests/backend/published` compares DINOv2 and Conditional DETR with their public PyTorch implementations, on every
+//! backend.
+
+extern crate alloc;
 
 pub mod detr;
 pub mod dinov2;
+pub mod encoder;
 pub mod error;
+pub mod initial;
 pub mod layers;
+pub mod model;
+pub mod scene_steps;
+pub mod train;
 pub mod weights;

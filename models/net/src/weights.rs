@@ -1,6 +1,9 @@
 //! Parameters under a path.
 
+use core::cell::RefCell;
+
 use dvp_core::dims::Dims;
+use dvp_core::real::DType;
 use dvp_core::tensor::{Backend, Parameters, ParametersError, Tensor, TensorError};
 
 use crate::error::NetError;
@@ -21,16 +24,43 @@ use crate::error::NetError;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Weights<'a, B: Backend> {
-    parameters: &'a Parameters<B>,
+    source: Source<'a, B>,
     path: String,
     frozen: bool,
+}
+
+/// Where weights come from.
+#[derive(Clone, Copy, Debug)]
+enum Source<'a, B: Backend> {
+    Stored(&'a Parameters<B>),
+    /// Nowhere: what is asked for is written down, and zeros are handed out.
+    Asked {
+        device: &'a B::Device,
+        names: &'a RefCell<Vec<Asked>>,
+    },
+}
+
+/// A weight that a model takes: its name and its extents.
+pub type Asked = (String, Dims);
+
+/// The weights that `load` takes, in the order in which it takes them: names and extents.
+///
+/// # Errors
+/// As `load` does.
+pub fn asked<B: Backend, M>(
+    device: &B::Device,
+    load: impl FnOnce(&Weights<'_, B>) -> Result<M, NetError>,
+) -> Result<Vec<Asked>, NetError> {
+    let names = RefCell::new(Vec::new());
+    load(&Weights { source: Source::Asked { device, names: &names }, path: String::new(), frozen: false })?;
+    Ok(names.into_inner())
 }
 
 impl<'a, B: Backend> Weights<'a, B> {
     /// All of them.
     #[must_use]
     pub fn new(parameters: &'a Parameters<B>) -> Self {
-        Self { parameters, path: String::new(), frozen: false }
+        Self { source: Source::Stored(parameters), path: String::new(), frozen: false }
     }
 
     /// Those under `path`, which is added to the path so far with a dot.
@@ -48,7 +78,7 @@ impl<'a, B: Backend> Weights<'a, B> {
     /// Whether there is one of that name under the path.
     #[must_use]
     pub fn contains(&self, name: &str) -> bool {
-        self.parameters.get(&self.name(name)).is_ok()
+        matches!(self.source, Source::Stored(parameters) if parameters.get(&self.name(name)).is_ok())
     }
 
     /// The one of that name under the path.
@@ -57,8 +87,15 @@ impl<'a, B: Backend> Weights<'a, B> {
     /// [`ParametersError::Missing`], with the whole name; [`ParametersError::Dims`] if its extents are not `extents`.
     pub fn get(&self, name: &str, extents: &[usize]) -> Result<Tensor<B>, NetError> {
         let name = self.name(name);
-        let found = self.parameters.get(&name)?;
         let expected = Dims::new(extents).map_err(TensorError::from)?;
+        let parameters = match self.source {
+            Source::Stored(parameters) => parameters,
+            Source::Asked { device, names } => {
+                names.borrow_mut().push((name, expected));
+                return Ok(Tensor::full(0.0, extents, DType::F32, device)?);
+            }
+        };
+        let found = parameters.get(&name)?;
         if *found.dims() != expected {
             return Err(ParametersError::Dims { name, extents: Box::new([expected, *found.dims()]) }.into());
         }

@@ -10,6 +10,7 @@ mod options;
 mod progress;
 mod prototypes;
 mod render;
+mod train;
 
 use std::ffi::OsString;
 use std::io::Write;
@@ -46,6 +47,7 @@ enum Command {
     Render(render::Arguments),
     Fit(fit::Arguments),
     Prototypes(prototypes::Arguments),
+    Train(train::Arguments),
     Evaluate(evaluate::Arguments),
 }
 
@@ -78,6 +80,7 @@ fn dispatch(command: Command, console: &mut Console<'_>) -> Result<Outcome> {
         Command::Render(arguments) => render::run(&arguments, console),
         Command::Fit(arguments) => fit::run(&arguments, console),
         Command::Prototypes(arguments) => prototypes::run(&arguments, console),
+        Command::Train(arguments) => train::run(&arguments, console),
         Command::Evaluate(arguments) => evaluate::run(&arguments, console),
     }
 }

@@ -32,6 +32,7 @@ pub use labels::{labels_beside, read_labels};
 pub use npy::read_npy;
 pub use picture::{DEFAULT_MAX_PIXELS, encode_png, read_picture};
 pub use scene_checks::edge_cut;
+pub(crate) use scene_json::read_text;
 pub use scene_json::{CompositingJson, EdgeJson, EdgeLawJson, ObjectJson, SceneJson, read_scene};
 
 #[cfg(test)]

@@ -179,7 +179,7 @@ pub fn read_scene(path: &Path) -> Result<SceneJson, FormatError> {
 }
 
 /// A whole file of at most [`MAX_TEXT`] bytes.
-pub(super) fn read_text(path: &Path) -> Result<Vec<u8>, FormatError> {
+pub(crate) fn read_text(path: &Path) -> Result<Vec<u8>, FormatError> {
     let refused = |source| FormatError::Read { path: path.to_path_buf(), source };
     let mut text = Vec::new();
     File::open(path).map_err(refused)?.take(MAX_TEXT + 1).read_to_end(&mut text).map_err(refused)?;

@@ -3,7 +3,7 @@
 use dvp_core::real::DType;
 use dvp_core::tensor::{Host, HostDevice, Parameters, ParametersError, Tensor};
 
-use super::position::{bicubic, resample};
+use super::position::resample;
 use super::{Dinov2, Dinov2Config};
 use crate::error::NetError;
 use crate::weights::Weights;
@@ -68,28 +68,6 @@ fn without(name: &str) -> Parameters<Host> {
         rest.insert(other, tensor).unwrap();
     }
     rest
-}
-
-#[test]
-fn a_table_comes_out_unchanged_for_its_own_extents() {
-    let identity: Vec<f64> = (0..16).map(|k| if k % 5 == 0 { 1.0 } else { 0.0 }).collect();
-    assert_eq!(bicubic(4, 4), identity);
-}
-
-#[test]
-fn resampling_by_hand() {
-    // 2 samples as 4: the first of 4 lies at 1/4, 1/4 before sample 0 (at 1/2) and 5/4 before sample 1.
-    // cubic(1/4) = 1.5/64 - 2.5/16 + 1 = 0.8671875; cubic(5/4) = -0.5 125/64 + 2.5 25/16 - 5 + 2 = -0.0703125.
-    let sum = 0.8671875 - 0.0703125;
-    let up = bicubic(2, 4);
-    assert!((up[0] - 0.8671875 / sum).abs() < 1e-15 && (up[1] + 0.0703125 / sum).abs() < 1e-15, "{up:?}");
-    // 4 samples as 1, at 2: the kernel is 4 times as wide; distances 3/2, 1/2, 1/2, 3/2 count as 3/8 and 1/8.
-    // cubic(3/8) = 1.5 27/512 - 2.5 9/64 + 1 = 0.7275390625; cubic(1/8) = 1.5/512 - 2.5/64 + 1 = 0.9638671875.
-    let sum = 2.0 * (0.7275390625 + 0.9638671875);
-    let down = bicubic(4, 1);
-    for (found, expected) in down.iter().zip([0.7275390625, 0.9638671875, 0.9638671875, 0.7275390625]) {
-        assert!((found - expected / sum).abs() < 1e-15, "{down:?}");
-    }
 }
 
 #[test]

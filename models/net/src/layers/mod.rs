@@ -6,10 +6,14 @@
 //! | `layer_norm` | [`LayerNorm`] |
 //! | `mlp` | [`Mlp`]: linear maps with ReLU between |
 //! | `attention` | [`attend`]: attention of several heads |
+//! | `batch_norm` | [`BatchNorm`] |
+//! | `bicubic` | resampling along an axis |
 //!
 //! Weights have the names and the orientation of PyTorch's modules.
 
 mod attention;
+mod batch_norm;
+mod bicubic;
 mod layer_norm;
 mod linear;
 mod mlp;
@@ -18,6 +22,8 @@ mod tests;
 
 pub use attention::attend;
 pub(crate) use attention::join_heads;
+pub use batch_norm::{BatchNorm, Phase};
+pub(crate) use bicubic::bicubic;
 pub use layer_norm::LayerNorm;
 pub use linear::Linear;
 pub use mlp::Mlp;

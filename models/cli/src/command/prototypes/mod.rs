@@ -14,7 +14,7 @@ use dvp_fit::{Bank, Fit, FitOptions, FitScratch, Fitter};
 use self::report::Report;
 use super::options::BatchArguments;
 use super::{Console, Outcome};
-use crate::chart::{Chart, check_name, write_chart};
+use crate::chart::{Chart, Line, check_name};
 use crate::format::{bank_to_json, pictures_of, read_picture, write_atomic};
 
 /// Learns the shapes that the objects of pictures share, and writes them as a bank.
@@ -74,7 +74,7 @@ pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Ou
     }
     write_atomic(&arguments.out, bank_to_json(&bank).as_bytes())?;
     if let Some(file) = &arguments.chart {
-        write_chart(&silhouette_chart(&found.learned), file)?;
+        silhouette_chart(&found.learned).write(file)?;
     }
     let report = Report::new(&found, &bank, paths.len(), clock.elapsed());
     let text = if arguments.batch.json { report.json()? } else { report.table() };
@@ -151,5 +151,6 @@ fn each<R: Send>(
 /// Silhouette over the number of shapes.
 fn silhouette_chart(learned: &Learned) -> Chart {
     let points = (2_u32..).map(f64::from).zip(learned.silhouettes.iter().map(|value| value.mean)).collect();
-    Chart { title: "Silhouette", x: "shapes", y: "mean silhouette", points }
+    let lines = vec![Line { name: "mean silhouette", points }];
+    Chart { title: "Silhouette", x: "shapes", y: "mean silhouette", lines, log: false }
 }

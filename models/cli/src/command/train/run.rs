@@ -1,0 +1,274 @@
+//! The steps of a run.
+
+use std::fs;
+use std::path::Path;
+use std::time::Instant;
+
+use anyhow::{Context, Result, bail};
+use dvp_core::ImageSize;
+use dvp_core::render::{EdgeProfile, PixelLoss};
+use dvp_core::shape::{Efd, PrototypeBank};
+use dvp_core::tensor::{Backend, Parameters};
+use dvp_fit::Bank;
+use dvp_net::error::NetError;
+use dvp_net::model::{ModelConfig, ShapeHead};
+use dvp_net::scene_steps::SceneSteps;
+use dvp_net::train::{Batch, Checkpoint, Judge, Mode, Schedule, Trainer};
+
+use super::curves::Curves;
+use super::data::Data;
+use super::samples;
+use super::settings::Settings;
+use super::store::Store;
+use crate::command::options::BankChoice;
+use crate::command::{Console, Outcome, progress};
+use crate::format::{SceneJson, encode_png, write_atomic};
+
+/// Side of generated images: that of MDS-HR.
+const SIDE: usize = 128;
+/// Steps between lines of the curves.
+const LINE_EVERY: u64 = 10;
+/// Validation images that are drawn.
+const SAMPLES: usize = 8;
+
+/// A run, ready to go.
+pub(super) struct Run {
+    mode: Mode,
+    config: ModelConfig,
+    data: Data,
+    /// The shapes that the model knows, with as many harmonics as it does.
+    bank: PrototypeBank<f32>,
+    painter: SceneSteps<f32>,
+    settings: Settings,
+}
+
+/// Numbers of a run that are set: [`Settings::complete`] leaves none open.
+struct Numbers {
+    steps: u64,
+    batch: usize,
+    save_every: u64,
+    validation: usize,
+    seed: u64,
+}
+
+impl Run {
+    pub(super) fn new(settings: &Settings) -> Result<Self> {
+        let (mode, config) = (settings.mode()?, settings.model()?);
+        let numbers = Numbers::of(settings);
+        if numbers.batch == 0 || numbers.save_every == 0 || numbers.steps == 0 || numbers.validation == 0 {
+            bail!("--steps, --batch, --save-every and --validation must be at least 1");
+        }
+        if mode.continues() && settings.start.is_none() {
+            bail!(
+                "mode {mode} goes on from the weights of another run: name them with --start, an early gp for example"
+            );
+        }
+        let bank_name = settings.bank.as_deref().unwrap_or("mdshr");
+        let bank: Bank<f32> = BankChoice::from(bank_name).load()?.context("--bank none: a model needs shapes")?;
+        let harmonics = settings.harmonics.unwrap_or(16);
+        if harmonics == 0 {
+            bail!("--harmonics must be at least 1");
+        }
+        let cut = |efd: &Efd<f32>| Efd::new(efd.rows().iter().copied().take(harmonics).collect());
+        let known = PrototypeBank::new(bank.prototypes.iter().map(|(_, efd)| cut(efd)).collect());
+        let own = match config.shape {
+            ShapeHead::Prototypes => known.harmonic_count(),
+            ShapeHead::Direct { harmonics } => harmonics,
+        };
+        let data = match &settings.data {
+            Some(folder) => Data::folder(folder, mode.source(), numbers.validation, numbers.seed)?,
+            None => {
+                let size = ImageSize::new(SIDE, SIDE)?;
+                Data::generated(bank, size, numbers.seed, settings.scenes.unwrap_or(0))
+            }
+        };
+        let painter = SceneSteps::new(config.objects(), own, EdgeProfile::reference())?;
+        Ok(Self { mode, config, data, bank: known, painter, settings: settings.clone() })
+    }
+
+    /// Makes all steps that are left.
+    pub(super) fn go<B: Backend>(
+        &self,
+        device: B::Device,
+        store: &Store,
+        resume: bool,
+        console: &mut Console<'_>,
+    ) -> Result<Outcome> {
+        let numbers = Numbers::of(&self.settings);
+        let mut trainer = self.trainer::<B>(&device, numbers.steps)?;
+        let mut curves = Curves::default();
+        if resume {
+            store.newest(console)?.resume(&mut trainer, &device)?;
+            curves = Curves::read(&store.path("losses.csv"), trainer.steps())?;
+        } else if let Some(file) = &self.settings.start {
+            start_from(&mut trainer, file, &device)?;
+        }
+        let held_out = self.data.held_out(numbers.validation, &self.painter)?;
+        let (clock, before) = (Instant::now(), curves.seconds());
+        let bar = progress::steps(numbers.steps, trainer.steps());
+        let mut recent = Recent::default();
+        while trainer.steps() < numbers.steps {
+            let batch = self.data.batch(trainer.steps(), numbers.batch, &self.painter)?;
+            let step = trainer.step(&batch).map_err(|error| self.study(store, &batch, &trainer, error))?;
+            recent.add(step.loss);
+            let save = step.number.is_multiple_of(numbers.save_every) || step.number == numbers.steps;
+            let seen = if save { Some(self.look(&trainer, &held_out, store)?) } else { None };
+            if save || step.number.is_multiple_of(LINE_EVERY) {
+                let improved = seen.is_some_and(|[image, _]| curves.best().is_none_or(|best| image < Some(best)));
+                let loss = recent.take();
+                curves.push(&step, loss, before + clock.elapsed().as_secs_f64(), seen);
+                bar.set_message(format!("loss {loss:.4}"));
+                if save {
+                    self.save(store, &trainer, &curves, improved)?;
+                }
+            }
+            bar.set_position(step.number);
+        }
+        bar.finish_and_clear();
+        let best = curves.best().unwrap_or(f64::NAN);
+        let (parameters, steps) = (trainer.parameters().value_count(), trainer.steps());
+        let seconds = before + clock.elapsed().as_secs_f64();
+        writeln!(console.out, "{parameters} numbers, {steps} steps of {} images, {seconds:.0} s", numbers.batch)?;
+        writeln!(console.out, "image loss on {} validation images: {best:.5}", held_out.images.len())?;
+        writeln!(console.out, "{}", store.path("best.safetensors").display())?;
+        Ok(Outcome::Done)
+    }
+
+    fn trainer<B: Backend>(&self, device: &B::Device, steps: u64) -> Result<Trainer<B, f32>> {
+        let Settings { learning_rate, warm_up, cosine, clip_norm, threads, seed, .. } = &self.settings;
+        let judge =
+            Judge { mode: self.mode, image_loss: PixelLoss::Mae, steps: self.painter.clone(), bank: self.bank.clone() };
+        let schedule = Schedule {
+            learning_rate: learning_rate.unwrap_or(5e-4),
+            warm_up: warm_up.unwrap_or(0),
+            end: cosine.unwrap_or(true).then_some(steps),
+        };
+        let (config, bank, seed) = (self.config.clone(), self.bank.clone(), seed.unwrap_or(1));
+        let mut trainer = Trainer::new(config, bank, judge, schedule, seed, device.clone())?;
+        trainer.clip_norm = clip_norm.filter(|norm| *norm > 0.0);
+        trainer.threads = threads.unwrap_or(1);
+        Ok(trainer)
+    }
+
+    /// L_x and, where scenes are known, L_p on the validation images, which are drawn.
+    fn look<B: Backend>(
+        &self,
+        trainer: &Trainer<B, f32>,
+        held_out: &Batch<f32>,
+        store: &Store,
+    ) -> Result<[Option<f64>; 2]> {
+        let image = trainer.validate(Mode::Ti, held_out)?.image;
+        let known = !held_out.scenes.is_empty();
+        let parameters = if known { trainer.validate(Mode::Gp, held_out)?.parameters } else { None };
+        let some = held_out.part(0, SAMPLES);
+        let grid = samples::grid(&some.images, &trainer.reconstruct(&some.images)?)?;
+        let path = store.path("samples").join(format!("{:08}.png", trainer.steps()));
+        write_atomic(&path, &encode_png(grid.view())?)?;
+        Ok([image, parameters])
+    }
+
+    fn save<B: Backend>(
+        &self,
+        store: &Store,
+        trainer: &Trainer<B, f32>,
+        curves: &Curves,
+        improved: bool,
+    ) -> Result<()> {
+        let about = serde_json::to_string(&self.settings)?;
+        curves.write(&store.path("losses.csv"), &store.path("losses.svg"))?;
+        if improved {
+            let best = Checkpoint::of(trainer, false, &about)?;
+            write_atomic(&store.path("best.safetensors"), &best.to_bytes()?)?;
+        }
+        // Last: a checkpoint stands for all that was written before it.
+        store.save(&Checkpoint::of(trainer, true, &about)?)
+    }
+
+    /// Keeps the batch of a step that failed.
+    fn study<B: Backend>(
+        &self,
+        store: &Store,
+        batch: &Batch<f32>,
+        trainer: &Trainer<B, f32>,
+        error: NetError,
+    ) -> anyhow::Error {
+        if !matches!(error, NetError::NotFinite { .. }) {
+            return error.into();
+        }
+        let folder = store.path(&format!("failed-{:08}", trainer.steps() + 1));
+        match self.write_failed(&folder, batch, trainer) {
+            Ok(()) => anyhow::Error::from(error).context(format!("batch and weights are in {}", folder.display())),
+            Err(second) => anyhow::Error::from(error).context(format!("and the batch was not written: {second:#}")),
+        }
+    }
+
+    fn write_failed<B: Backend>(&self, folder: &Path, batch: &Batch<f32>, trainer: &Trainer<B, f32>) -> Result<()> {
+        let mut lines = String::new();
+        for (k, image) in batch.images.iter().enumerate() {
+            let path = folder.join(format!("{k:05}.png"));
+            write_atomic(&path, &encode_png(image.view())?)?;
+            if let Some(scene) = batch.scenes.get(k) {
+                let mut json = SceneJson::from_scene(scene, image.size());
+                json.id = Some(k as u64);
+                lines += &(json.to_line(&crate::format::Place::file(&path))? + "\n");
+            }
+        }
+        if !lines.is_empty() {
+            write_atomic(&folder.join(crate::format::SCENES_FILE), lines.as_bytes())?;
+        }
+        let weights = Checkpoint::of(trainer, true, &serde_json::to_string(&self.settings)?)?;
+        Ok(write_atomic(&folder.join("weights.safetensors"), &weights.to_bytes()?)?)
+    }
+}
+
+impl Numbers {
+    fn of(settings: &Settings) -> Self {
+        Self {
+            steps: settings.steps.unwrap_or(0),
+            batch: settings.batch.unwrap_or(0),
+            save_every: settings.save_every.unwrap_or(0),
+            validation: settings.validation.unwrap_or(0),
+            seed: settings.seed.unwrap_or(0),
+        }
+    }
+}
+
+/// Takes weights of a file of ours, or of published ones for the encoder.
+fn start_from<B: Backend>(trainer: &mut Trainer<B, f32>, file: &Path, device: &B::Device) -> Result<()> {
+    let bytes = fs::read(file).with_context(|| format!("{} cannot be read", file.display()))?;
+    let named = || file.display().to_string();
+    let weights = match dvp_core::tensor::safetensors_note(&bytes).with_context(named)? {
+        Some(_) => Checkpoint::from_bytes(&bytes).with_context(named)?.weights(device)?,
+        None => published(&Parameters::from_safetensors(&bytes, device).with_context(named)?)?,
+    };
+    trainer.set_weights(&weights).with_context(named)
+}
+
+/// Published weights of an encoder, under the path where a model has them.
+fn published<B: Backend>(weights: &Parameters<B>) -> Result<Parameters<B>> {
+    let mut encoder = Parameters::new();
+    for (name, tensor) in weights.iter().filter(|(name, _)| !name.ends_with("mask_token")) {
+        encoder.insert(format!("encoder.{name}"), tensor)?;
+    }
+    Ok(encoder)
+}
+
+/// The mean loss since the last line.
+#[derive(Default)]
+struct Recent {
+    sum: f64,
+    count: f64,
+}
+
+impl Recent {
+    fn add(&mut self, loss: f64) {
+        self.sum += loss;
+        self.count += 1.0;
+    }
+
+    fn take(&mut self) -> f64 {
+        let mean = self.sum / self.count.max(1.0);
+        *self = Self::default();
+        mean
+    }
+}

@@ -1,0 +1,118 @@
+//! Sizes of a model.
+
+use dvp_core::real::DType;
+use serde::{Deserialize, Serialize};
+
+use crate::detr::DetrConfig;
+use crate::dinov2::Dinov2Config;
+use crate::encoder::{ConvConfig, EncoderConfig, VitConfig};
+use crate::error::{NetError, require};
+
+/// How a model says what shape an object has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ShapeHead {
+    /// Attention to the prototypes of a bank, mixed softly: DVP+.
+    Prototypes,
+    /// The descriptors themselves, of so many harmonics: DVP.
+    Direct {
+        /// Harmonics, at least 1.
+        harmonics: usize,
+    },
+}
+
+/// Sizes of a [`Model`](super::Model).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ModelConfig {
+    /// From an image to features.
+    pub encoder: EncoderConfig,
+    /// Whether features are standardized over a batch before the transformer: for frozen encoders.
+    pub batch_norm: bool,
+    /// From features to a latent per object slot.
+    pub transformer: DetrConfig,
+    /// Width of the perceptrons in the heads, of three layers each.
+    pub head_width: usize,
+    /// How shapes are told.
+    pub shape: ShapeHead,
+}
+
+impl ModelConfig {
+    /// The paper's: a frozen DINOv2 ViT-B/14 with registers, a transformer of 6 + 6 layers of width 256, 8 queries.
+    /// 86.6 M numbers in the encoder, 18 M that train.
+    #[must_use]
+    pub fn paper() -> Self {
+        let model = Dinov2Config {
+            hidden_size: 768,
+            num_hidden_layers: 12,
+            num_attention_heads: 12,
+            mlp_ratio: 4,
+            hidden_act: "gelu".into(),
+            layer_norm_eps: 1e-6,
+            image_size: 518,
+            patch_size: 14,
+            num_channels: 3,
+            qkv_bias: true,
+            use_swiglu_ffn: false,
+            num_register_tokens: 4,
+        };
+        Self {
+            encoder: EncoderConfig::Vit(VitConfig { model, side: 126, frozen: true }),
+            batch_norm: true,
+            transformer: transformer(256, 8, 6, 2048),
+            head_width: 256,
+            shape: ShapeHead::Prototypes,
+        }
+    }
+
+    /// About 1 M numbers, trained from nothing.
+    #[must_use]
+    pub fn small() -> Self {
+        Self::conv(&[32, 64, 128], 1, transformer(128, 8, 2, 256))
+    }
+
+    /// About 0.1 M numbers: for tests and first looks.
+    #[must_use]
+    pub fn tiny() -> Self {
+        Self::conv(&[16, 24, 32], 0, transformer(32, 8, 1, 64))
+    }
+
+    fn conv(channels: &[usize], residual: usize, transformer: DetrConfig) -> Self {
+        let head_width = transformer.d_model;
+        let encoder = EncoderConfig::Conv(ConvConfig { patch: 4, channels: channels.to_vec(), residual });
+        Self { encoder, batch_norm: false, transformer, head_width, shape: ShapeHead::Prototypes }
+    }
+
+    /// Slots for objects.
+    #[must_use]
+    pub fn objects(&self) -> usize {
+        self.transformer.num_queries
+    }
+
+    /// The type that models train in.
+    pub const DTYPE: DType = DType::F32;
+
+    /// Checks what the parts do not check themselves.
+    pub(super) fn validate(&self) -> Result<(), NetError> {
+        require(self.head_width > 0, "head_width", self.head_width, "must be at least 1")?;
+        match self.shape {
+            ShapeHead::Direct { harmonics: 0 } => require(false, "shape.direct.harmonics", 0, "must be at least 1"),
+            _ => Ok(()),
+        }
+    }
+}
+
+fn transformer(width: usize, heads: usize, layers: usize, wide: usize) -> DetrConfig {
+    DetrConfig {
+        d_model: width,
+        num_queries: 8,
+        encoder_layers: layers,
+        encoder_attention_heads: heads,
+        encoder_ffn_dim: wide,
+        decoder_layers: layers,
+        decoder_attention_heads: heads,
+        decoder_ffn_dim: wide,
+        activation_function: "relu".into(),
+        position_embedding_type: "sine".into(),
+    }
+}

@@ -1,0 +1,79 @@
+//! Latents to the parameters of scenes.
+
+use dvp_core::diff_op::Atan2;
+use dvp_core::real::Real;
+use dvp_core::shape::PrototypeBank;
+use dvp_core::tensor::{Backend, Tensor, TensorError};
+
+use super::Latents;
+use super::config::ModelConfig;
+use super::prediction::Prediction;
+use super::shape_head::ShapeReader;
+use crate::error::NetError;
+use crate::layers::Mlp;
+use crate::weights::Weights;
+
+/// Seven heads, perceptrons of three layers: sigmoid on translation, scale, color, confidence and background, tanh on the
+/// sine and cosine of the rotation, attention or descriptors for the shape. The background is read off the mean latent.
+#[derive(Clone, Debug)]
+pub struct Heads<B: Backend> {
+    translation: Mlp<B>,
+    scale: Mlp<B>,
+    rotation: Mlp<B>,
+    color: Mlp<B>,
+    confidence: Mlp<B>,
+    background: Mlp<B>,
+    shape: ShapeReader<B>,
+}
+
+impl<B: Backend> Heads<B> {
+    /// Takes `translation`, `scale`, `rotation`, `color`, `confidence`, `background` and `shape`.
+    ///
+    /// # Errors
+    /// [`NetError::Config`]; as [`Weights::get`].
+    pub fn load<T: Real>(
+        config: &ModelConfig,
+        bank: &PrototypeBank<T>,
+        weights: &Weights<'_, B>,
+    ) -> Result<Self, NetError> {
+        let (width, wide) = (config.transformer.d_model, config.head_width);
+        let head = |name, outputs| Mlp::load(&weights.under(name), &[width, wide, wide, outputs]);
+        Ok(Self {
+            translation: head("translation", 2)?,
+            scale: head("scale", 1)?,
+            rotation: head("rotation", 2)?,
+            color: head("color", 3)?,
+            confidence: head("confidence", 1)?,
+            background: head("background", 3)?,
+            shape: ShapeReader::load(config, bank, &weights.under("shape"))?,
+        })
+    }
+
+    /// Scenes of latents; `T` is the number type of the latents.
+    ///
+    /// # Errors
+    /// [`NetError::Tensor`] if the latents are of another width, number type or device than the weights.
+    pub fn forward<T: Real>(&self, latents: &Latents<B>) -> Result<Prediction<B>, NetError> {
+        let x = &latents.objects;
+        let &[batch, objects, _] = x.dims().extents() else {
+            let must = "must be batch x objects x width";
+            return Err(NetError::Input { input: "latents", dims: *x.dims(), must });
+        };
+        let pairs = self.rotation.forward(x)?.tanh()?;
+        let part = |k| pairs.slice(2, k, 1)?.reshape(&[batch, objects]);
+        let (descriptors, prototypes) = self.shape.forward(x)?;
+        Ok(Prediction {
+            translations: self.translation.forward(x)?.sigmoid()?,
+            scales: self.scale.forward(x)?.sigmoid()?.reshape(&[batch, objects])?,
+            rotations: Tensor::apply::<T, _>(
+                Atan2::new(&[objects]).map_err(TensorError::from)?,
+                &[&part(0)?, &part(1)?],
+            )?,
+            colors: self.color.forward(x)?.sigmoid()?,
+            confidences: self.confidence.forward(x)?.sigmoid()?.reshape(&[batch, objects])?,
+            background: self.background.forward(&latents.image)?.sigmoid()?,
+            descriptors,
+            prototypes,
+        })
+    }
+}

@@ -1,0 +1,143 @@
+//! The paper's model: an image to a scene of as many objects as it has slots.
+//!
+//! ```text
+//! images -> encoder -> (batch norm) -> 1 x 1 convolution -> Conditional DETR -> latents -> seven heads -> scene
+//! ```
+//!
+//! | file | holds |
+//! |---|---|
+//! | `mod` | [`Model`] |
+//! | `config` | [`ModelConfig`]: the paper's sizes, small ones, and what a file says |
+//! | `heads` | [`Heads`]: latents to the parameters of scenes |
+//! | `shape_head` | attention to the prototypes, or descriptors themselves |
+//! | `prediction` | [`Prediction`]: scenes of a batch as tensors, and as scenes |
+//!
+//! *Source*: the paper, section on the architecture; sizes and activations as its implementation has them.
+
+mod config;
+mod heads;
+mod prediction;
+mod shape_head;
+#[cfg(test)]
+mod tests;
+
+use std::sync::Arc;
+
+use dvp_core::real::Real;
+use dvp_core::shape::PrototypeBank;
+use dvp_core::tensor::{Backend, Stride, Tensor, TensorError};
+
+pub use config::{ModelConfig, ShapeHead};
+pub use heads::Heads;
+pub use prediction::Prediction;
+
+use crate::detr::ConditionalDetr;
+use crate::encoder::Encoder;
+use crate::error::NetError;
+use crate::layers::{BatchNorm, Phase};
+use crate::weights::Weights;
+
+/// What the heads look at.
+#[derive(Clone, Debug)]
+pub struct Latents<B: Backend> {
+    /// One vector per slot, batch x objects x width.
+    pub objects: Tensor<B>,
+    /// One of the whole image, batch x width: the mean of the slots'.
+    pub image: Tensor<B>,
+}
+
+/// The network, from images to scenes.
+#[derive(Clone, Debug)]
+pub struct Model<B: Backend> {
+    encoder: Arc<dyn Encoder<B>>,
+    norm: Option<BatchNorm<B>>,
+    kernels: Tensor<B>,
+    bias: Tensor<B>,
+    transformer: ConditionalDetr<B>,
+    heads: Heads<B>,
+}
+
+/// Weights that a step of training changes without a gradient: names and new values.
+pub type Running<B> = Vec<(String, Tensor<B>)>;
+
+impl<B: Backend> Model<B> {
+    /// Takes `encoder`, `norm`, `projection`, `transformer` and `heads`. `bank`: the prototypes that shapes are mixed of;
+    /// not looked at by [`ShapeHead::Direct`].
+    ///
+    /// # Errors
+    /// [`NetError::Config`], also for an empty bank; as [`Weights::get`].
+    pub fn load<T: Real>(
+        config: &ModelConfig,
+        bank: &PrototypeBank<T>,
+        weights: &Weights<'_, B>,
+    ) -> Result<Self, NetError> {
+        config.validate()?;
+        let encoder = config.encoder.load(&weights.under("encoder"))?;
+        let (from, width) = (encoder.channels(), config.transformer.d_model);
+        let norm = if config.batch_norm { Some(BatchNorm::load(&weights.under("norm"), from)?) } else { None };
+        let projection = weights.under("projection");
+        Ok(Self {
+            encoder,
+            norm,
+            kernels: projection.get("weight", &[width, from, 1, 1])?,
+            bias: projection.get("bias", &[width])?.reshape(&[width, 1, 1])?,
+            transformer: ConditionalDetr::load(&config.transformer, &weights.under("transformer"))?,
+            heads: Heads::load(config, bank, &weights.under("heads"))?,
+        })
+    }
+
+    /// Features of images: what a frozen encoder makes once and for all.
+    ///
+    /// *Dimensions*: batch x 3 x height x width, colors in \[0, 1\], to batch x channels x rows x columns.
+    ///
+    /// # Errors
+    /// As [`Encoder::forward`].
+    pub fn features(&self, images: &Tensor<B>) -> Result<Tensor<B>, NetError> {
+        self.encoder.forward(images)
+    }
+
+    /// Latents of features; in training also the weights that follow the batch.
+    ///
+    /// # Errors
+    /// [`NetError::Tensor`] or [`NetError::Input`] if these are no features of this model.
+    pub fn latents(&self, features: &Tensor<B>, phase: Phase) -> Result<(Latents<B>, Running<B>), NetError> {
+        let mut running = Vec::new();
+        let features = match &self.norm {
+            None => features.clone(),
+            Some(norm) => {
+                let (normal, statistics) = norm.forward(features, phase)?;
+                let names = BatchNorm::<B>::RUNNING.map(|name| format!("norm.{name}"));
+                running.extend(names.into_iter().zip(statistics.into_iter().flatten()));
+                normal
+            }
+        };
+        let width = features.conv2d(&self.kernels, Stride { step: 1, padding: 0 })?.add(&self.bias)?;
+        let objects = self.transformer.forward(&width)?.latents;
+        Ok((Latents { image: image_latent(&objects)?, objects }, running))
+    }
+
+    /// Scenes of latents.
+    ///
+    /// # Errors
+    /// [`NetError::Tensor`] if these are no latents of this model.
+    pub fn scenes<T: Real>(&self, latents: &Latents<B>) -> Result<Prediction<B>, NetError> {
+        self.heads.forward::<T>(latents)
+    }
+
+    /// Scenes of images, by what was learned: [`Self::features`], [`Self::latents`], [`Self::scenes`].
+    ///
+    /// # Errors
+    /// As the three.
+    pub fn predict<T: Real>(&self, images: &Tensor<B>) -> Result<Prediction<B>, NetError> {
+        let (latents, _) = self.latents(&self.features(images)?, Phase::Inference)?;
+        self.scenes::<T>(&latents)
+    }
+}
+
+/// The mean over the slots: batch x width.
+fn image_latent<B: Backend>(objects: &Tensor<B>) -> Result<Tensor<B>, TensorError> {
+    match *objects.dims().extents() {
+        [batch, _, width] => objects.mean(1)?.reshape(&[batch, width]),
+        _ => objects.mean(1),
+    }
+}

@@ -1,0 +1,153 @@
+//! The loss of a batch in each mode.
+
+use core::f64::consts::TAU;
+
+use dvp_core::render::PixelLoss;
+use dvp_core::shape::PrototypeBank;
+use dvp_core::tensor::{Backend, Tensor};
+use dvp_core::{Image, Real, Scene};
+use rand::{RngExt as _, SeedableRng as _};
+use rand_chacha::ChaCha8Rng;
+
+use super::mode::{Mode, Source};
+use crate::error::NetError;
+use crate::layers::Phase;
+use crate::model::{Model, Prediction, Running};
+use crate::scene_steps::{SceneSteps, image_tensor};
+
+/// Images of one size and, if they are known, their scenes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Batch<T> {
+    /// At least one.
+    pub images: Vec<Image<T>>,
+    /// One per image, or none at all.
+    pub scenes: Vec<Scene<T>>,
+}
+
+impl<T: Clone> Batch<T> {
+    /// Items `start..start + len`, as far as there are.
+    #[must_use]
+    pub fn part(&self, start: usize, len: usize) -> Self {
+        let images = self.images.iter().skip(start).take(len).cloned().collect();
+        Self { images, scenes: self.scenes.iter().skip(start).take(len).cloned().collect() }
+    }
+}
+
+/// How a model is judged.
+#[derive(Clone, Debug)]
+pub struct Judge<T: Real> {
+    /// The regime.
+    pub mode: Mode,
+    /// L_x.
+    pub image_loss: PixelLoss,
+    /// Steps on the scenes of the model.
+    pub steps: SceneSteps<T>,
+    /// Shapes that TI-TP gives to the objects it paints again; if there are none they keep theirs.
+    pub bank: PrototypeBank<T>,
+}
+
+/// A batch, judged.
+#[derive(Clone, Debug)]
+pub struct Judged<B: Backend> {
+    /// A number.
+    pub loss: Tensor<B>,
+    /// L_x, where the mode has it.
+    pub image: Option<f64>,
+    /// L_p, where the mode has it.
+    pub parameters: Option<f64>,
+    /// Weights that follow the batch without a gradient.
+    pub running: Running<B>,
+}
+
+impl<T: Real> Judge<T> {
+    /// The loss of `batch`; `chance` numbers what TI-TP draws at random.
+    ///
+    /// # Errors
+    /// [`NetError::Batch`] if the batch is empty, or scenes are missing that the mode needs; as the model and the steps.
+    pub fn judge<B: Backend>(
+        &self,
+        model: &Model<B>,
+        batch: &Batch<T>,
+        phase: Phase,
+        device: &B::Device,
+        chance: u64,
+    ) -> Result<Judged<B>, NetError> {
+        if batch.images.is_empty() {
+            return Err(NetError::Batch { must: "must hold at least one image".into() });
+        }
+        if self.mode.source() == Source::Scenes && batch.scenes.len() != batch.images.len() {
+            return Err(NetError::Batch { must: format!("must hold a scene for each image in mode {}", self.mode) });
+        }
+        let (first, running) = look::<B, T>(model, &image_tensor(&batch.images, device)?, phase)?;
+        let image_loss = |scenes: &Prediction<B>| self.steps.image_loss(scenes, batch.images.clone(), self.image_loss);
+        let (image, parameters) = match self.mode {
+            Mode::Ti | Mode::Gi | Mode::TiPlus => (Some(image_loss(&first)?), None),
+            Mode::Gp => (None, Some(self.steps.parameter_loss(&first, batch.scenes.clone())?)),
+            Mode::Tp => (None, Some(self.again(model, &first, batch, phase)?)),
+            Mode::TiTp => {
+                // What is there and which shape it has is learned from scenes alone.
+                let image = image_loss(&first.detach([false, false, false, false, true, true, false])?)?;
+                (Some(image), Some(self.dreamed(model, &first, batch, phase, device, chance)?))
+            }
+        };
+        let loss = match (&image, &parameters) {
+            (Some(image), Some(parameters)) => image.add(parameters)?,
+            (Some(loss), None) | (None, Some(loss)) => loss.clone(),
+            (None, None) => return Err(NetError::Batch { must: "must be judged by something".into() }),
+        };
+        let number = |loss: &Option<Tensor<B>>| loss.as_ref().map(Tensor::number).transpose();
+        Ok(Judged { image: number(&image)?, parameters: number(&parameters)?, loss, running })
+    }
+
+    /// TP: what is read off the repainted image, against what was painted; the gradient flows through the painting, what
+    /// was painted is taken for the truth.
+    fn again<B: Backend>(
+        &self,
+        model: &Model<B>,
+        first: &Prediction<B>,
+        batch: &Batch<T>,
+        phase: Phase,
+    ) -> Result<Tensor<B>, NetError> {
+        let truths = first.scenes(self.steps.edge())?;
+        let painted = self.steps.render(first, batch.images[0].size())?;
+        self.steps.parameter_loss(&look::<B, T>(model, &painted, phase)?.0, truths)
+    }
+
+    /// TI-TP: the objects that are there, turned at random and with the shapes of prototypes at random, painted and read.
+    fn dreamed<B: Backend>(
+        &self,
+        model: &Model<B>,
+        first: &Prediction<B>,
+        batch: &Batch<T>,
+        phase: Phase,
+        device: &B::Device,
+        chance: u64,
+    ) -> Result<Tensor<B>, NetError> {
+        let mut rng = ChaCha8Rng::seed_from_u64(chance);
+        let prototypes = self.bank.prototypes();
+        let mut scenes = first.scenes(self.steps.edge())?;
+        let mut images = Vec::with_capacity(scenes.len());
+        for scene in &mut scenes {
+            scene.keep_visible();
+            for object in &mut scene.objects {
+                object.pose.rotation = T::of(rng.random_range(0.0..TAU));
+                if !prototypes.is_empty() {
+                    let k = rng.random_range(0..prototypes.len());
+                    (object.efd, object.prototype) = (prototypes[k].clone(), Some(k));
+                }
+            }
+            images.push(self.steps.paint(scene, batch.images[0].size())?);
+        }
+        self.steps.parameter_loss(&look::<B, T>(model, &image_tensor(&images, device)?, phase)?.0, scenes)
+    }
+}
+
+/// Scenes of images, and what follows the batch.
+fn look<B: Backend, T: Real>(
+    model: &Model<B>,
+    images: &Tensor<B>,
+    phase: Phase,
+) -> Result<(Prediction<B>, Running<B>), NetError> {
+    let (latents, running) = model.latents(&model.features(images)?, phase)?;
+    Ok((model.scenes::<T>(&latents)?, running))
+}
