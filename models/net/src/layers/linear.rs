@@ -21,6 +21,12 @@ impl<B: Backend> Linear<B> {
         Ok(Self { weight: weights.get("weight", &[outputs, inputs])?, bias: weights.get("bias", &[outputs])? })
     }
 
+    /// The bias, outputs.
+    #[must_use]
+    pub fn bias(&self) -> &Tensor<B> {
+        &self.bias
+    }
+
     /// .. x inputs to .. x outputs.
     ///
     /// # Errors

@@ -77,7 +77,7 @@ impl<B: Backend> ShapeReader<B> {
                 let values = T::into_values(prototypes.iter().flat_map(rows).collect());
                 let dims = Dims::new(&[prototypes.len(), len]).map_err(TensorError::from)?;
                 // In the type and on the device of the weights.
-                let like = weights.under("query").under("linear").get("bias", &[wide])?;
+                let like = query.linear.bias();
                 let bank = Tensor::from_values(values.cast(like.dtype()), &dims, &like.device())?;
                 Ok(Self::Prototypes { query, key, bank })
             }
