@@ -5,7 +5,7 @@
 
 use std::fs;
 use std::io::Write;
-use std::process::Command;
+use std::process::{Child, Command, Stdio};
 
 use crate::runner::{dvp, dvp_done, names, text};
 
@@ -26,7 +26,18 @@ fn limited(arguments: &[&str], blocks: u32) -> String {
     String::from_utf8(child.stdout).unwrap()
 }
 
-/// Not a test of its own: what [`limited`] runs.
+/// Runs `dvp` in a process of its own, which can be killed.
+pub(crate) fn spawned(arguments: &[&str]) -> Child {
+    Command::new(std::env::current_exe().unwrap())
+        .args(["--exact", "interrupted::child"])
+        .env(VARIABLE, arguments.join(&SEPARATOR.to_string()))
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap()
+}
+
+/// Not a test of its own: what [`limited`] and [`spawned`] run.
 #[test]
 fn child() {
     if let Ok(arguments) = std::env::var(VARIABLE) {

@@ -13,3 +13,4 @@ mod prototypes;
 mod raw_png;
 mod runner;
 mod svg;
+mod train;

@@ -4,7 +4,7 @@ use core::fmt;
 use std::sync::Arc;
 
 use dvp_core::diff_op::{Batched, HostOp};
-use dvp_core::loss::{SceneLoss, SceneLossOp};
+use dvp_core::loss::{SceneLoss, SceneLossOp, SceneTerms};
 use dvp_core::render::{Compositing, ContourRenderer, EdgeProfile, PixelLoss, RenderLossOp, RenderOp, Renderer};
 use dvp_core::scene::PoseOp;
 use dvp_core::shape::{EfdModel, OutlineBasis, OutlineOp, REFERENCE_VERTICES};
@@ -16,6 +16,9 @@ use crate::model::Prediction;
 
 /// Most harmonics of a true outline: those that MDS-HR is generated with.
 const TRUE_HARMONICS: usize = 64;
+
+/// Slots of the reference's model.
+const REFERENCE_SLOTS: usize = 8;
 
 /// What predictions of one extent are painted and judged by.
 #[derive(Clone)]
@@ -47,16 +50,24 @@ impl<T: Real> SceneSteps<T> {
         let outline = OutlineOp::new::<T>(EfdModel::new(basis), objects).map_err(TensorError::from)?;
         let pose = PoseOp::new(objects, REFERENCE_VERTICES).map_err(TensorError::from)?;
         let widest = harmonics.max(TRUE_HARMONICS);
+        let mut loss = SceneLoss::reference(REFERENCE_VERTICES, widest)?;
+        // The reference takes the mean over 8 slots: an object that is missed counts as much among more.
+        loss.weights.confidence = T::of_usize(objects.max(REFERENCE_SLOTS)) / T::of_usize(REFERENCE_SLOTS);
         Ok(Self {
             outline: Arc::new(Batched::<T, _>::new(outline)),
             pose: Arc::new(Batched::<T, _>::new(pose)),
             renderer: ContourRenderer::new(edge, Compositing::Blend),
             edge,
             basis: OutlineBasis::new(REFERENCE_VERTICES, widest)?,
-            loss: SceneLoss::reference(REFERENCE_VERTICES, widest)?,
+            loss,
             objects,
             harmonics,
         })
+    }
+
+    /// The weights of the terms of L_p.
+    pub fn weights_mut(&mut self) -> &mut SceneTerms<T> {
+        &mut self.loss.weights
     }
 
     /// The edge profile that scenes are painted with.

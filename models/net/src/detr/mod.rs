@@ -4,7 +4,7 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `mod` | [`ConditionalDetr`] |
+//! | `mod` | [`ConditionalDetr`]; its encoder alone is [`DetrEncoder`] |
 //! | `config` | [`DetrConfig`], read from the published `config.json` |
 //! | `sine` | positions as sines and cosines |
 //! | `encoder`, `decoder` | a layer of each |
@@ -33,10 +33,17 @@ use crate::weights::Weights;
 /// Added to variances: PyTorch's default, with which the published weights were trained.
 const NORM_EPSILON: f64 = 1e-5;
 
+/// The layers that let the tokens of an image look at each other.
+#[derive(Clone, Debug)]
+pub struct DetrEncoder<B: Backend> {
+    layers: Vec<EncoderLayer<B>>,
+    width: usize,
+}
+
 /// The transformer.
 #[derive(Clone, Debug)]
 pub struct ConditionalDetr<B: Backend> {
-    encoder: Vec<EncoderLayer<B>>,
+    encoder: DetrEncoder<B>,
     decoder: Vec<DecoderLayer<B>>,
     norm: LayerNorm<B>,
     /// What tells the queries apart, 1 x queries x width.
@@ -57,6 +64,38 @@ pub struct DetrOutput<B: Backend> {
     pub latents: Tensor<B>,
 }
 
+impl<B: Backend> DetrEncoder<B> {
+    /// Takes `layers.0`, `layers.1`, ...; of the sizes those of the encoder are looked at.
+    ///
+    /// # Errors
+    /// [`NetError::Config`]; as [`Weights::get`].
+    pub fn load(config: &DetrConfig, weights: &Weights<'_, B>) -> Result<Self, NetError> {
+        config.validate()?;
+        let layer = |k| EncoderLayer::load(&weights.under(&format!("layers.{k}")), config);
+        Ok(Self { layers: (0..config.encoder_layers).map(layer).collect::<Result<_, _>>()?, width: config.d_model })
+    }
+
+    /// Features, batch x width x rows x columns, none of them 0, to tokens, batch x rows * columns x width, and where
+    /// they stand, 1 x rows * columns x width.
+    ///
+    /// # Errors
+    /// [`NetError::Input`] for other extents; [`NetError::Tensor`] if the features are of another number type or device
+    /// than the weights.
+    pub fn forward(&self, features: &Tensor<B>) -> Result<[Tensor<B>; 2], NetError> {
+        let extents = features.dims().extents();
+        let &[batch, width, rows, columns] = extents else { return Err(not_features(features)) };
+        if width != self.width || extents.contains(&0) {
+            return Err(not_features(features));
+        }
+        let positions = embed_grid(rows, columns, width, features)?;
+        let mut memory = features.reshape(&[batch, width, rows * columns])?.transpose()?;
+        for layer in &self.layers {
+            memory = layer.forward(&memory, &positions)?;
+        }
+        Ok([memory, positions])
+    }
+}
+
 impl<B: Backend> ConditionalDetr<B> {
     /// Takes the weights by their public names: `encoder.layers.0.self_attn.q_proj.weight`, ...,
     /// `decoder.layernorm.bias`, `query_position_embeddings.weight` (or `query_position_embedding.weight`). Others are
@@ -67,13 +106,12 @@ impl<B: Backend> ConditionalDetr<B> {
     pub fn load(config: &DetrConfig, weights: &Weights<'_, B>) -> Result<Self, NetError> {
         config.validate()?;
         let (width, count) = (config.d_model, config.num_queries);
-        let (encoder, decoder) = (weights.under("encoder"), weights.under("decoder"));
-        let encoder_layer = |k| EncoderLayer::load(&encoder.under(&format!("layers.{k}")), config);
+        let decoder = weights.under("decoder");
         let decoder_layer = |k| DecoderLayer::load(&decoder.under(&format!("layers.{k}")), config, k == 0);
         let singular = "query_position_embedding.weight";
         let name = if weights.contains(singular) { singular } else { "query_position_embeddings.weight" };
         Ok(Self {
-            encoder: (0..config.encoder_layers).map(encoder_layer).collect::<Result<_, _>>()?,
+            encoder: DetrEncoder::load(config, &weights.under("encoder"))?,
             decoder: (0..config.decoder_layers).map(decoder_layer).collect::<Result<_, _>>()?,
             norm: LayerNorm::load(&decoder.under("layernorm"), width, NORM_EPSILON)?,
             queries: weights.get(name, &[count, width])?.reshape(&[1, count, width])?,
@@ -85,22 +123,12 @@ impl<B: Backend> ConditionalDetr<B> {
 
     /// Tokens and latents of features.
     ///
-    /// *Dimensions*: batch x width x rows x columns, none of them 0.
+    /// *Dimensions*: as [`DetrEncoder::forward`].
     ///
     /// # Errors
-    /// [`NetError::Input`] for other extents; [`NetError::Tensor`] if the features are of another number type or device
-    /// than the weights.
+    /// As [`DetrEncoder::forward`].
     pub fn forward(&self, features: &Tensor<B>) -> Result<DetrOutput<B>, NetError> {
-        let extents = features.dims().extents();
-        let &[batch, width, rows, columns] = extents else { return Err(not_features(features)) };
-        if width != self.width || extents.contains(&0) {
-            return Err(not_features(features));
-        }
-        let positions = embed_grid(rows, columns, width, features)?;
-        let mut memory = features.reshape(&[batch, width, rows * columns])?.transpose()?;
-        for layer in &self.encoder {
-            memory = layer.forward(&memory, &positions)?;
-        }
+        let [memory, positions] = self.encoder.forward(features)?;
         let latents = self.decode(&memory, &positions)?;
         Ok(DetrOutput { memory, latents })
     }

@@ -55,10 +55,7 @@ fn other_extents_are_refused() {
 fn sizes_of_no_encoder_are_refused() {
     for (patch, channels) in [(0, vec![3]), (4, vec![]), (4, vec![3, 0])] {
         let config = EncoderConfig::Conv(ConvConfig { patch, channels, residual: 0 });
-        assert!(matches!(
-            asked::<Host, _>(&HostDevice, |weights| config.load(weights)),
-            Err(NetError::Config { .. })
-        ));
+        assert!(matches!(asked::<Host, _>(&HostDevice, |weights| config.load(weights)), Err(NetError::Config { .. })));
     }
 }
 

@@ -1,5 +1,6 @@
 //! Perceptrons.
 
+use dvp_core::dims::Dims;
 use dvp_core::tensor::{Backend, Tensor, TensorError};
 
 use super::linear::Linear;
@@ -23,6 +24,16 @@ impl<B: Backend> Mlp<B> {
             Linear::load(&weights.under(&format!("layers.{k}")), inputs, outputs)
         };
         Ok(Self { layers: widths.windows(2).enumerate().map(layer).collect::<Result<_, _>>()? })
+    }
+
+    /// A constant in the type and on the device of the weights.
+    ///
+    /// # Errors
+    /// As [`Tensor::like`]; [`TensorError::Operand`] without a layer.
+    pub(crate) fn like(&self, values: Vec<f64>, extents: &[usize]) -> Result<Tensor<B>, TensorError> {
+        let dims = Dims::SCALAR;
+        let first = self.layers.first().ok_or(TensorError::Operand { op: "mlp", dims, must: "needs a layer" })?;
+        first.bias().like(values, extents)
     }
 
     /// .. x first width to .. x last width.

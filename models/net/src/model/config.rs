@@ -21,6 +21,23 @@ pub enum ShapeHead {
     },
 }
 
+/// What an object can be told by.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Slots {
+    /// Learned queries of a decoder, `num_queries` of them: the paper's.
+    #[default]
+    Queries,
+    /// The places of the grid of features: each speaks for objects whose center is near its own. Learns in far fewer
+    /// steps, as no query has to find out where to look; the decoder's sizes are not used.
+    Cells {
+        /// Rows of the grid.
+        rows: usize,
+        /// Columns of the grid.
+        columns: usize,
+    },
+}
+
 /// Sizes of a [`Model`](super::Model).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -31,6 +48,9 @@ pub struct ModelConfig {
     pub batch_norm: bool,
     /// From features to a latent per object slot.
     pub transformer: DetrConfig,
+    /// What fills the slots.
+    #[serde(default)]
+    pub slots: Slots,
     /// Width of the perceptrons in the heads, of three layers each.
     pub head_width: usize,
     /// How shapes are told.
@@ -60,6 +80,7 @@ impl ModelConfig {
             encoder: EncoderConfig::Vit(VitConfig { model, side: 126, frozen: true }),
             batch_norm: true,
             transformer: transformer(256, 8, 6, 2048),
+            slots: Slots::Queries,
             head_width: 256,
             shape: ShapeHead::Prototypes,
         }
@@ -77,16 +98,35 @@ impl ModelConfig {
         Self::conv(&[16, 24, 32], 0, transformer(32, 8, 1, 64))
     }
 
+    /// About 0.8 M numbers, trained from nothing, with cells for slots: learns in the fewest steps. For images of 128 x 128
+    /// pixels.
+    #[must_use]
+    pub fn cells() -> Self {
+        let encoder = EncoderConfig::Conv(ConvConfig { patch: 8, channels: vec![64, 128], residual: 1 });
+        let transformer = transformer(128, 8, 1, 256);
+        Self { encoder, transformer, slots: Slots::Cells { rows: 8, columns: 8 }, head_width: 128, ..Self::small() }
+    }
+
     fn conv(channels: &[usize], residual: usize, transformer: DetrConfig) -> Self {
         let head_width = transformer.d_model;
         let encoder = EncoderConfig::Conv(ConvConfig { patch: 4, channels: channels.to_vec(), residual });
-        Self { encoder, batch_norm: false, transformer, head_width, shape: ShapeHead::Prototypes }
+        Self {
+            encoder,
+            batch_norm: false,
+            transformer,
+            slots: Slots::Queries,
+            head_width,
+            shape: ShapeHead::Prototypes,
+        }
     }
 
     /// Slots for objects.
     #[must_use]
     pub fn objects(&self) -> usize {
-        self.transformer.num_queries
+        match self.slots {
+            Slots::Queries => self.transformer.num_queries,
+            Slots::Cells { rows, columns } => rows * columns,
+        }
     }
 
     /// The type that models train in.

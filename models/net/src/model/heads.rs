@@ -6,15 +6,17 @@ use dvp_core::shape::PrototypeBank;
 use dvp_core::tensor::{Backend, Tensor, TensorError};
 
 use super::Latents;
-use super::config::ModelConfig;
+use super::config::{ModelConfig, Slots};
 use super::prediction::Prediction;
 use super::shape_head::ShapeReader;
+use super::slots::centers;
 use crate::error::NetError;
 use crate::layers::Mlp;
 use crate::weights::Weights;
 
 /// Seven heads, perceptrons of three layers: sigmoid on translation, scale, color, confidence and background, tanh on the
 /// sine and cosine of the rotation, attention or descriptors for the shape. The background is read off the mean latent.
+/// Translations of cells are told from their centers, inside the sigmoid, as boxes are in Conditional DETR.
 #[derive(Clone, Debug)]
 pub struct Heads<B: Backend> {
     translation: Mlp<B>,
@@ -24,6 +26,8 @@ pub struct Heads<B: Backend> {
     confidence: Mlp<B>,
     background: Mlp<B>,
     shape: ShapeReader<B>,
+    /// Logits of the places that translations are told from, 1 x objects x 2; none: of the middle.
+    anchors: Option<Tensor<B>>,
 }
 
 impl<B: Backend> Heads<B> {
@@ -38,8 +42,17 @@ impl<B: Backend> Heads<B> {
     ) -> Result<Self, NetError> {
         let (width, wide) = (config.transformer.d_model, config.head_width);
         let head = |name, outputs| Mlp::load(&weights.under(name), &[width, wide, wide, outputs]);
+        let translation = head("translation", 2)?;
+        let anchors = match config.slots {
+            Slots::Queries => None,
+            Slots::Cells { rows, columns } => {
+                let logits = centers(rows, columns).into_iter().map(|x| (x / (1.0 - x)).ln()).collect();
+                Some(translation.like(logits, &[1, rows * columns, 2])?)
+            }
+        };
         Ok(Self {
-            translation: head("translation", 2)?,
+            translation,
+            anchors,
             scale: head("scale", 1)?,
             rotation: head("rotation", 2)?,
             color: head("color", 3)?,
@@ -62,8 +75,12 @@ impl<B: Backend> Heads<B> {
         let pairs = self.rotation.forward(x)?.tanh()?;
         let part = |k| pairs.slice(2, k, 1)?.reshape(&[batch, objects]);
         let (descriptors, prototypes) = self.shape.forward(x)?;
+        let mut places = self.translation.forward(x)?;
+        if let Some(anchors) = &self.anchors {
+            places = places.add(anchors)?;
+        }
         Ok(Prediction {
-            translations: self.translation.forward(x)?.sigmoid()?,
+            translations: places.sigmoid()?,
             scales: self.scale.forward(x)?.sigmoid()?.reshape(&[batch, objects])?,
             rotations: Tensor::apply::<T, _>(
                 Atan2::new(&[objects]).map_err(TensorError::from)?,

@@ -1,13 +1,14 @@
 //! The paper's model: an image to a scene of as many objects as it has slots.
 //!
 //! ```text
-//! images -> encoder -> (batch norm) -> 1 x 1 convolution -> Conditional DETR -> latents -> seven heads -> scene
+//! images -> encoder -> (batch norm) -> 1 x 1 convolution -> slots -> latents -> seven heads -> scene
 //! ```
 //!
 //! | file | holds |
 //! |---|---|
 //! | `mod` | [`Model`] |
 //! | `config` | [`ModelConfig`]: the paper's sizes, small ones, and what a file says |
+//! | `slots` | Conditional DETR, or the places of the grid |
 //! | `heads` | [`Heads`]: latents to the parameters of scenes |
 //! | `shape_head` | attention to the prototypes, or descriptors themselves |
 //! | `prediction` | [`Prediction`]: scenes of a batch as tensors, and as scenes |
@@ -18,6 +19,7 @@ mod config;
 mod heads;
 mod prediction;
 mod shape_head;
+mod slots;
 #[cfg(test)]
 mod tests;
 
@@ -27,11 +29,11 @@ use dvp_core::real::Real;
 use dvp_core::shape::PrototypeBank;
 use dvp_core::tensor::{Backend, Stride, Tensor, TensorError};
 
-pub use config::{ModelConfig, ShapeHead};
+pub use config::{ModelConfig, ShapeHead, Slots};
 pub use heads::Heads;
 pub use prediction::Prediction;
+use slots::SlotReader;
 
-use crate::detr::ConditionalDetr;
 use crate::encoder::Encoder;
 use crate::error::NetError;
 use crate::layers::{BatchNorm, Phase};
@@ -53,7 +55,7 @@ pub struct Model<B: Backend> {
     norm: Option<BatchNorm<B>>,
     kernels: Tensor<B>,
     bias: Tensor<B>,
-    transformer: ConditionalDetr<B>,
+    slots: SlotReader<B>,
     heads: Heads<B>,
 }
 
@@ -81,7 +83,7 @@ impl<B: Backend> Model<B> {
             norm,
             kernels: projection.get("weight", &[width, from, 1, 1])?,
             bias: projection.get("bias", &[width])?.reshape(&[width, 1, 1])?,
-            transformer: ConditionalDetr::load(&config.transformer, &weights.under("transformer"))?,
+            slots: SlotReader::load(config, &weights.under("transformer"))?,
             heads: Heads::load(config, bank, &weights.under("heads"))?,
         })
     }
@@ -112,7 +114,7 @@ impl<B: Backend> Model<B> {
             }
         };
         let width = features.conv2d(&self.kernels, Stride { step: 1, padding: 0 })?.add(&self.bias)?;
-        let objects = self.transformer.forward(&width)?.latents;
+        let objects = self.slots.forward(&width)?;
         Ok((Latents { image: image_latent(&objects)?, objects }, running))
     }
 

@@ -30,7 +30,8 @@ fn predictions_have_the_extents_and_ranges_of_scenes() {
         let model = Model::load(&config, &bank, &Weights::new(&weights)).unwrap();
         let found = model.predict::<f64>(&images(2)).unwrap();
         let extents = found.parts().map(|part| part.dims().extents().to_vec());
-        let expected: [&[usize]; 7] = [&[2, 8, 2], &[2, 8], &[2, 8], &[2, 8, 3], &[2, 8], &[2, 8, harmonics, 4], &[2, 3]];
+        let expected: [&[usize]; 7] =
+            [&[2, 8, 2], &[2, 8], &[2, 8], &[2, 8, 3], &[2, 8], &[2, 8, harmonics, 4], &[2, 3]];
         assert_eq!(extents.each_ref().map(Vec::as_slice), expected);
         for k in [0, 1, 3, 4, 6] {
             assert!(found.parts()[k].to_f64().unwrap().iter().all(|x| (0.0..=1.0).contains(x)), "part {k}");

@@ -40,6 +40,8 @@ pub struct Judge<T: Real> {
     pub mode: Mode,
     /// L_x.
     pub image_loss: PixelLoss,
+    /// Factor on L_x where L_p is there too; 1 in the paper.
+    pub image_weight: f64,
     /// Steps on the scenes of the model.
     pub steps: SceneSteps<T>,
     /// Shapes that TI-TP gives to the objects it paints again; if there are none they keep theirs.
@@ -83,6 +85,7 @@ impl<T: Real> Judge<T> {
         let (image, parameters) = match self.mode {
             Mode::Ti | Mode::Gi | Mode::TiPlus => (Some(image_loss(&first)?), None),
             Mode::Gp => (None, Some(self.steps.parameter_loss(&first, batch.scenes.clone())?)),
+            Mode::GpGi => (Some(image_loss(&first)?), Some(self.steps.parameter_loss(&first, batch.scenes.clone())?)),
             Mode::Tp => (None, Some(self.again(model, &first, batch, phase)?)),
             Mode::TiTp => {
                 // What is there and which shape it has is learned from scenes alone.
@@ -91,7 +94,7 @@ impl<T: Real> Judge<T> {
             }
         };
         let loss = match (&image, &parameters) {
-            (Some(image), Some(parameters)) => image.add(parameters)?,
+            (Some(image), Some(parameters)) => image.affine(self.image_weight, 0.0)?.add(parameters)?,
             (Some(loss), None) | (None, Some(loss)) => loss.clone(),
             (None, None) => return Err(NetError::Batch { must: "must be judged by something".into() }),
         };

@@ -15,6 +15,8 @@ pub enum Mode {
     Gp,
     /// Scenes, judged by how they are painted again: L_x(r(p), r(g(f(r(p))))).
     Gi,
+    /// Both at once, which is not in the paper: L_p finds the objects and keeps them one to one, L_x gives them their edges.
+    GpGi,
     /// Images, judged by what is read off the repainted image: L_p(g(f(x)), g(f(r(g(f(x)))))).
     Tp,
     /// As [`Self::Ti`], from the weights of an early [`Self::Gp`].
@@ -35,7 +37,7 @@ pub enum Source {
 
 impl Mode {
     /// All of them.
-    pub const ALL: [Self; 6] = [Self::Ti, Self::Gp, Self::Gi, Self::Tp, Self::TiPlus, Self::TiTp];
+    pub const ALL: [Self; 7] = [Self::Ti, Self::Gp, Self::Gi, Self::GpGi, Self::Tp, Self::TiPlus, Self::TiTp];
 
     /// The name on the command line and in files.
     #[must_use]
@@ -44,6 +46,7 @@ impl Mode {
             Self::Ti => "ti",
             Self::Gp => "gp",
             Self::Gi => "gi",
+            Self::GpGi => "gp-gi",
             Self::Tp => "tp",
             Self::TiPlus => "ti+",
             Self::TiTp => "ti-tp",
@@ -54,7 +57,7 @@ impl Mode {
     #[must_use]
     pub fn source(self) -> Source {
         match self {
-            Self::Gp | Self::Gi => Source::Scenes,
+            Self::Gp | Self::Gi | Self::GpGi => Source::Scenes,
             Self::Ti | Self::Tp | Self::TiPlus | Self::TiTp => Source::Images,
         }
     }
@@ -62,13 +65,13 @@ impl Mode {
     /// Whether L_x is part of its loss.
     #[must_use]
     pub fn has_image_loss(self) -> bool {
-        matches!(self, Self::Ti | Self::Gi | Self::TiPlus | Self::TiTp)
+        matches!(self, Self::Ti | Self::Gi | Self::GpGi | Self::TiPlus | Self::TiTp)
     }
 
     /// Whether L_p is part of its loss.
     #[must_use]
     pub fn has_parameter_loss(self) -> bool {
-        matches!(self, Self::Gp | Self::Tp | Self::TiTp)
+        matches!(self, Self::Gp | Self::GpGi | Self::Tp | Self::TiTp)
     }
 
     /// Whether it goes on from the weights of another run.

@@ -19,7 +19,7 @@ fn judge<T: Real>(mode: Mode, config: &ModelConfig) -> Judge<T> {
     // Softer than the reference's, and cut where nothing is left to cut: differences then meet no jump.
     let edge = EdgeProfile { sigma: T::of(1e-3), cut: T::of(0.03), ..EdgeProfile::reference() };
     let steps = SceneSteps::new(config.objects(), HARMONICS, edge).unwrap();
-    Judge { mode, image_loss: PixelLoss::Mse, steps, bank: mdshr_bank(HARMONICS) }
+    Judge { mode, image_loss: PixelLoss::Mse, image_weight: 1.0, steps, bank: mdshr_bank(HARMONICS) }
 }
 
 fn trainer<T: Real>(mode: Mode) -> Trainer<Host, T> {
@@ -143,7 +143,7 @@ fn scenes_that_are_missing_are_named() {
     for mode in Mode::ALL {
         let result = trainer::<f32>(mode).step(&pictures);
         let refused = matches!(&result, Err(NetError::Batch { .. }));
-        assert_eq!(refused, matches!(mode, Mode::Gp | Mode::Gi), "{mode}: {result:?}");
+        assert_eq!(refused, matches!(mode, Mode::Gp | Mode::Gi | Mode::GpGi), "{mode}: {result:?}");
     }
     let none = Batch::<f32> { images: Vec::<Image<f32>>::new(), scenes: Vec::new() };
     assert!(matches!(trainer(Mode::Ti).step(&none), Err(NetError::Batch { .. })));
@@ -170,7 +170,7 @@ fn nudged(mode: Mode, name: &str, at: usize, by: f64) -> (f64, f64) {
 #[test]
 fn gradients_are_those_of_the_loss() {
     // TP and TI-TP take what they paint for the truth, so that their gradient is not that of their value.
-    for mode in [Mode::Ti, Mode::Gp, Mode::Gi] {
+    for mode in [Mode::Ti, Mode::Gp, Mode::Gi, Mode::GpGi] {
         for (name, at) in [
             ("encoder.patches.weight", 11),
             ("projection.weight", 5),

@@ -3,7 +3,7 @@
 use core::ops::Range;
 use std::path::Path;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Result, bail};
 use dvp_core::{Image, ImageSize, Scene};
 use dvp_fit::Bank;
 use dvp_net::scene_steps::SceneSteps;

@@ -32,6 +32,7 @@ use crate::format::write_atomic;
 /// `dvp fit --start` and `dvp evaluate --model`), curves (losses.csv, losses.svg) and sample reconstructions. It may be
 /// stopped at any moment: --resume goes on from the last checkpoint, to the same numbers.
 #[derive(Debug, Args)]
+#[command(args_override_self = true)]
 #[command(before_help = "Example: dvp train --out run\n         \
                          dvp train --out run --mode ti+ --start gp/best.safetensors\n         \
                          dvp train --out run --resume")]

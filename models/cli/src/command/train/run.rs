@@ -5,10 +5,10 @@ use std::path::Path;
 use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
-use dvp_core::ImageSize;
 use dvp_core::render::{EdgeProfile, PixelLoss};
 use dvp_core::shape::{Efd, PrototypeBank};
 use dvp_core::tensor::{Backend, Parameters};
+use dvp_core::{ImageSize, Real};
 use dvp_fit::Bank;
 use dvp_net::error::NetError;
 use dvp_net::model::{ModelConfig, ShapeHead};
@@ -82,7 +82,10 @@ impl Run {
                 Data::generated(bank, size, numbers.seed, settings.scenes.unwrap_or(0))
             }
         };
-        let painter = SceneSteps::new(config.objects(), own, EdgeProfile::reference())?;
+        let mut painter = SceneSteps::new(config.objects(), own, EdgeProfile::reference())?;
+        let weights = painter.weights_mut();
+        weights.scale = settings.scale_weight.map_or(weights.scale, f32::of);
+        weights.rotation = settings.rotation_weight.map_or(weights.rotation, f32::of);
         Ok(Self { mode, config, data, bank: known, painter, settings: settings.clone() })
     }
 
@@ -136,8 +139,13 @@ impl Run {
 
     fn trainer<B: Backend>(&self, device: &B::Device, steps: u64) -> Result<Trainer<B, f32>> {
         let Settings { learning_rate, warm_up, cosine, clip_norm, threads, seed, .. } = &self.settings;
-        let judge =
-            Judge { mode: self.mode, image_loss: PixelLoss::Mae, steps: self.painter.clone(), bank: self.bank.clone() };
+        let judge = Judge {
+            mode: self.mode,
+            image_loss: PixelLoss::Mae,
+            image_weight: self.settings.image_weight.unwrap_or(1.0),
+            steps: self.painter.clone(),
+            bank: self.bank.clone(),
+        };
         let schedule = Schedule {
             learning_rate: learning_rate.unwrap_or(5e-4),
             warm_up: warm_up.unwrap_or(0),

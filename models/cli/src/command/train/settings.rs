@@ -15,13 +15,13 @@ use crate::format::read_text;
 #[derive(Clone, Debug, Default, PartialEq, Args, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) struct Settings {
-    /// What it learns from: ti, gp, gi, tp, ti+ or ti-tp, as in the paper [gp]
+    /// What it learns from: ti, gp, gi, tp, ti+ or ti-tp, as in the paper, or gp-gi [gp]
     #[arg(long)]
     pub(super) mode: Option<String>,
     /// What computes [host]
     #[arg(long, value_enum)]
     pub(super) backend: Option<BackendName>,
-    /// Size of the model: tiny, small, paper, or a JSON file of sizes [small]
+    /// Size of the model: tiny, small, cells, paper, or a JSON file of sizes [small]
     #[arg(long, value_name = "SIZE")]
     pub(super) size: Option<String>,
     /// Folder of pictures to learn from, with their scenes for gp and gi; else MDS-HR scenes are generated
@@ -57,6 +57,15 @@ pub(super) struct Settings {
     /// Longest gradient; 0: as long as it is [1]
     #[arg(long, value_name = "LENGTH")]
     pub(super) clip_norm: Option<f64>,
+    /// Factor on L_x where L_p is there too [1]
+    #[arg(long, value_name = "FACTOR")]
+    pub(super) image_weight: Option<f64>,
+    /// Weight of scales in L_p [1]
+    #[arg(long, value_name = "WEIGHT")]
+    pub(super) scale_weight: Option<f64>,
+    /// Weight of rotations in L_p [0.05]
+    #[arg(long, value_name = "WEIGHT")]
+    pub(super) rotation_weight: Option<f64>,
     /// Parts of a batch that are worked on at the same time [1]
     #[arg(long, value_name = "N")]
     pub(super) threads: Option<usize>,
@@ -118,6 +127,9 @@ impl Settings {
             warm_up: Some(500),
             cosine: Some(true),
             clip_norm: Some(1.0),
+            image_weight: Some(1.0),
+            scale_weight: Some(1.0),
+            rotation_weight: Some(0.05),
             threads: Some(1),
             seed: Some(1),
             save_every: Some(500),
@@ -133,10 +145,11 @@ impl Settings {
         Ok(match self.size.as_deref().unwrap_or("small") {
             "tiny" => ModelConfig::tiny(),
             "small" => ModelConfig::small(),
+            "cells" => ModelConfig::cells(),
             "paper" => ModelConfig::paper(),
             file => {
-                let text =
-                    fs::read(file).with_context(|| format!("--size {file}: no tiny, small, paper, nor a file"))?;
+                let text = fs::read(file)
+                    .with_context(|| format!("--size {file}: no tiny, small, cells, paper, nor a file"))?;
                 serde_json::from_slice(&text).with_context(|| format!("{file}: no sizes of a model"))?
             }
         })
