@@ -1,8 +1,9 @@
 //! `train`: what it writes, and that it goes on to the same numbers whatever stopped it.
 
+use core::time::Duration;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use crate::interrupted::spawned;
 use crate::runner::{dvp, dvp_done, names, text};

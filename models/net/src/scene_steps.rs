@@ -1,7 +1,7 @@
 //! The core's differentiable steps on predicted scenes: outlines, poses, images, losses.
 
+use alloc::sync::Arc;
 use core::fmt;
-use std::sync::Arc;
 
 use dvp_core::diff_op::{Batched, HostOp};
 use dvp_core::loss::{SceneLoss, SceneLossOp, SceneTerms};

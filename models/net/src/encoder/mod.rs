@@ -13,8 +13,8 @@ mod conv;
 mod tests;
 mod vit;
 
+use alloc::sync::Arc;
 use core::fmt::Debug;
-use std::sync::Arc;
 
 use dvp_core::tensor::{Backend, Tensor};
 use serde::{Deserialize, Serialize};

@@ -30,6 +30,9 @@ pub struct BatchNorm<B: Backend> {
     running: [Tensor<B>; 2],
 }
 
+/// What a [`BatchNorm`] makes of a batch: the batch, and in training the running mean and variance after it.
+pub type Normed<B> = (Tensor<B>, Option<[Tensor<B>; 2]>);
+
 impl<B: Backend> BatchNorm<B> {
     /// Names of the running mean and variance.
     pub const RUNNING: [&'static str; 2] = ["running_mean", "running_var"];
@@ -51,7 +54,7 @@ impl<B: Backend> BatchNorm<B> {
     ///
     /// # Errors
     /// As [`Tensor::permute`] and [`Tensor::mul`] for other extents.
-    pub fn forward(&self, x: &Tensor<B>, phase: Phase) -> Result<(Tensor<B>, Option<[Tensor<B>; 2]>), TensorError> {
+    pub fn forward(&self, x: &Tensor<B>, phase: Phase) -> Result<Normed<B>, TensorError> {
         let [mean, variance] = match phase {
             Phase::Inference => self.running.clone(),
             Phase::Training => {

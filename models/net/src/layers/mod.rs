@@ -22,7 +22,7 @@ mod tests;
 
 pub use attention::attend;
 pub(crate) use attention::join_heads;
-pub use batch_norm::{BatchNorm, Phase};
+pub use batch_norm::{BatchNorm, Normed, Phase};
 pub(crate) use bicubic::bicubic;
 pub use layer_norm::LayerNorm;
 pub use linear::Linear;

@@ -23,7 +23,7 @@ mod slots;
 #[cfg(test)]
 mod tests;
 
-use std::sync::Arc;
+use alloc::sync::Arc;
 
 use dvp_core::real::Real;
 use dvp_core::shape::PrototypeBank;

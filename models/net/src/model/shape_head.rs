@@ -21,14 +21,18 @@ const NORM_EPSILON: f64 = 1e-5;
 #[derive(Clone, Debug)]
 pub(super) enum ShapeReader<B: Backend> {
     /// Attention of a latent to the prototypes of a bank.
-    Prototypes {
-        query: Projector<B>,
-        key: Projector<B>,
-        /// Descriptors, prototypes x 4 harmonics.
-        bank: Tensor<B>,
-    },
+    Prototypes(Box<Attention<B>>),
     /// The descriptors after the first ellipse's position and size, which normal forms fix.
     Direct { head: Mlp<B>, harmonics: usize },
+}
+
+/// What latents and prototypes are compared by.
+#[derive(Clone, Debug)]
+pub(super) struct Attention<B: Backend> {
+    query: Projector<B>,
+    key: Projector<B>,
+    /// Descriptors, prototypes x 4 harmonics.
+    bank: Tensor<B>,
 }
 
 /// Layer norm, a linear map, GELU.
@@ -79,7 +83,7 @@ impl<B: Backend> ShapeReader<B> {
                 // In the type and on the device of the weights.
                 let like = query.linear.bias();
                 let bank = Tensor::from_values(values.cast(like.dtype()), &dims, &like.device())?;
-                Ok(Self::Prototypes { query, key, bank })
+                Ok(Self::Prototypes(Box::new(Attention { query, key, bank })))
             }
         }
     }
@@ -91,7 +95,8 @@ impl<B: Backend> ShapeReader<B> {
             return Err(NetError::Input { input: "latents", dims: *x.dims(), must: "must be batch x objects x width" });
         };
         match self {
-            Self::Prototypes { query, key, bank } => {
+            Self::Prototypes(attention) => {
+                let Attention { query, key, bank } = &**attention;
                 let count = bank.dims().get(0).unwrap_or(1);
                 let harmonics = bank.dims().get(1).unwrap_or(0) / 4;
                 let scores = query.forward(x)?.matmul(&key.forward(bank)?.transpose()?)?;
