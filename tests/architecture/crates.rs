@@ -1,5 +1,5 @@
-//! Between crates: `core -> backends/*`, `core -> models/fit -> models/net -> models/cli -> tests`, a tensor framework in its own adapter
-//! only, and none in what a newcomer builds.
+//! Between crates: `core -> backends/*`, `core -> models/fit -> models/net -> models/cli -> tests`, a tensor framework in
+//! its own adapter only, and none in what a newcomer builds.
 
 use std::process::Command;
 
@@ -14,7 +14,8 @@ const PLAN: [(&str, &str, &[&str]); 7] = [
     ("dvp-candle", "backends/candle", &["dvp-core"]),
     ("dvp-fit", "models/fit", &["dvp-core"]),
     ("dvp-net", "models/net", &["dvp-core", "dvp-fit"]),
-    ("dvp", "models/cli", &["dvp-core", "dvp-fit"]),
+    // The adapters behind features that the default build leaves out, as another test here shows.
+    ("dvp", "models/cli", &["dvp-core", "dvp-burn", "dvp-candle", "dvp-fit", "dvp-net"]),
     ("dvp-tests", "tests", &["dvp-core", "dvp-burn", "dvp-candle", "dvp-fit", "dvp-net", "dvp"]),
 ];
 
