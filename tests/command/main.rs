@@ -6,6 +6,7 @@ mod edges;
 mod evaluate;
 mod fit;
 mod generate;
+mod gradients;
 mod interrupted;
 mod picture_kinds;
 mod pictures;

@@ -12,17 +12,27 @@ use crate::format::write_atomic;
 const SIZE: (u32, u32) = (480, 320);
 /// Fewer points than this are dots on their line.
 const DOTS: usize = 40;
+/// Most numbers under the horizontal axis.
+const MOST_LABELS: usize = 12;
 /// Colors of lines, in order; told apart also without colors of red and green.
-const COLORS: [RGBColor; 4] =
-    [RGBColor(0, 90, 181), RGBColor(220, 50, 32), RGBColor(80, 80, 80), RGBColor(230, 160, 0)];
+const COLORS: [RGBColor; 6] = [
+    RGBColor(0, 90, 181),
+    RGBColor(220, 50, 32),
+    RGBColor(80, 80, 80),
+    RGBColor(230, 160, 0),
+    RGBColor(0, 158, 115),
+    RGBColor(170, 90, 180),
+];
 
 /// A line, with a dot at every point if they are few.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Line {
     /// What it is, where there are several.
-    pub name: &'static str,
+    pub name: String,
     /// Points from left to right.
     pub points: Vec<(f64, f64)>,
+    /// What it is compared with, from left to right: rings of its color.
+    pub others: Vec<(f64, f64)>,
 }
 
 /// Lines over one axis.
@@ -66,7 +76,12 @@ impl Chart {
     /// # Errors
     /// If plotters refuses.
     pub fn to_svg(&self) -> Result<String> {
-        let points = || self.lines.iter().flat_map(|line| &line.points).filter(|point| !self.log || point.1 > 0.0);
+        let points = || {
+            self.lines
+                .iter()
+                .flat_map(|line| line.points.iter().chain(&line.others))
+                .filter(|point| !self.log || point.1 > 0.0)
+        };
         let ends = |value: fn(&(f64, f64)) -> f64| {
             points().map(value).fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
         };
@@ -77,13 +92,14 @@ impl Chart {
             let area = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
             area.fill(&WHITE)?;
             let mut builder = ChartBuilder::on(&area);
-            builder.caption(self.title, ("sans-serif", 18)).margin(12).x_label_area_size(36).y_label_area_size(48);
+            builder.caption(self.title, ("sans-serif", 18)).margin(12).x_label_area_size(36).y_label_area_size(60);
             if self.log {
                 let (bottom, top) = if bottom <= top { (bottom / 1.1, top * 1.1) } else { (0.1, 1.0) };
                 self.draw(builder.build_cartesian_2d(left..right, (bottom..top).log_scale())?, 8)?;
             } else {
-                let steps = points().count().max(2);
-                let plot = builder.build_cartesian_2d(left - 0.25..right + 0.25, bottom.min(0.0)..1.0)?;
+                let steps = self.lines.iter().map(|line| line.points.len()).max().unwrap_or(0).clamp(2, MOST_LABELS);
+                let room = 0.05 * (right - left).min(5.0);
+                let plot = builder.build_cartesian_2d(left - room..right + room, bottom.min(0.0)..1.0)?;
                 self.draw(plot, steps)?;
             }
             area.present()?;
@@ -99,21 +115,24 @@ impl Chart {
     where
         Y: Ranged<ValueType = f64> + ValueFormatter<f64>,
     {
+        let digits = if plot.x_range().end <= 2.0 { 1 } else { 0 };
         plot.configure_mesh()
             .x_desc(self.x)
             .y_desc(self.y)
             .x_labels(steps)
-            .x_label_formatter(&|x| format!("{x:.0}"))
+            .x_label_formatter(&|x| format!("{x:.digits$}"))
             .light_line_style(TRANSPARENT)
             .draw()?;
         for (line, color) in self.lines.iter().zip(COLORS.iter().cycle()) {
             let points = || line.points.iter().copied().filter(|point| !self.log || point.1 > 0.0);
             plot.draw_series(LineSeries::new(points(), color))?
-                .label(line.name)
+                .label(&line.name)
                 .legend(move |(x, y)| PathElement::new([(x, y), (x + 16, y)], color));
             if line.points.len() < DOTS {
                 plot.draw_series(points().map(|point| Circle::new(point, 3, color.filled())))?;
             }
+            let others = line.others.iter().copied().filter(|point| !self.log || point.1 > 0.0);
+            plot.draw_series(others.map(|point| Circle::new(point, 4, color)))?;
         }
         if self.lines.len() > 1 {
             plot.configure_series_labels().background_style(WHITE.mix(0.8)).border_style(BLACK).draw()?;

@@ -6,6 +6,7 @@
 mod evaluate;
 mod fit;
 mod generate;
+mod gradients;
 mod options;
 mod progress;
 mod prototypes;
@@ -49,6 +50,7 @@ enum Command {
     Prototypes(prototypes::Arguments),
     Train(train::Arguments),
     Evaluate(evaluate::Arguments),
+    Gradients(gradients::Arguments),
 }
 
 /// Runs the command with the arguments `args` (the program's name first) and returns its exit code.
@@ -82,5 +84,6 @@ fn dispatch(command: Command, console: &mut Console<'_>) -> Result<Outcome> {
         Command::Prototypes(arguments) => prototypes::run(&arguments, console),
         Command::Train(arguments) => train::run(&arguments, console),
         Command::Evaluate(arguments) => evaluate::run(&arguments, console),
+        Command::Gradients(arguments) => gradients::run(&arguments, console),
     }
 }

@@ -151,6 +151,6 @@ fn each<R: Send>(
 /// Silhouette over the number of shapes.
 fn silhouette_chart(learned: &Learned) -> Chart {
     let points = (2_u32..).map(f64::from).zip(learned.silhouettes.iter().map(|value| value.mean)).collect();
-    let lines = vec![Line { name: "mean silhouette", points }];
+    let lines = vec![Line { name: "mean silhouette".to_owned(), points, ..Line::default() }];
     Chart { title: "Silhouette", x: "shapes", y: "mean silhouette", lines, log: false }
 }

@@ -77,10 +77,8 @@ impl Curves {
         let at = |row: &Row| row.step as f64;
         let training = self.rows.iter().map(|row| (at(row), row.loss)).collect();
         let seen = self.rows.iter().filter_map(|row| Some((at(row), row.validation?))).collect();
-        let lines = vec![
-            Line { name: "training loss", points: training },
-            Line { name: "image loss, validation", points: seen },
-        ];
+        let line = |name: &str, points| Line { name: name.to_owned(), points, ..Line::default() };
+        let lines = vec![line("training loss", training), line("image loss, validation", seen)];
         Chart { title: "Losses", x: "step", y: "loss", lines, log: true }.write(svg)
     }
 }

@@ -1,0 +1,132 @@
+//! The angle between the gradients of L_x and L_p.
+
+use anyhow::Result;
+use dvp_core::loss::{Loss, SceneLoss, SceneLossScratch, ScenePairs};
+use dvp_core::render::contour::ContourRenderer;
+use dvp_core::render::{PixelLoss, Renderer};
+use dvp_core::scene::{DrawingGrad, SceneGrad};
+use dvp_core::shape::{OutlineBasis, REFERENCE_VERTICES};
+use dvp_core::{Drawing, Image, ImageSize, Scene};
+
+/// Harmonics of the scenes of MDS-HR.
+pub(super) const HARMONICS: usize = 64;
+
+/// What a scene's numbers are about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Aspect {
+    Translation,
+    Scale,
+    Rotation,
+    Color,
+    Shape,
+    Background,
+}
+
+impl Aspect {
+    pub(super) const ALL: [Self; 6] =
+        [Self::Translation, Self::Scale, Self::Rotation, Self::Color, Self::Shape, Self::Background];
+
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Translation => "translation",
+            Self::Scale => "scale",
+            Self::Rotation => "rotation",
+            Self::Color => "color",
+            Self::Shape => "shape",
+            Self::Background => "background",
+        }
+    }
+
+    /// The numbers of a gradient that are about it.
+    fn of(self, grad: &SceneGrad<f32>) -> Vec<f64> {
+        let objects = grad.objects.iter();
+        let values: Vec<f32> = match self {
+            Self::Translation => objects.flat_map(|object| object.translation).collect(),
+            Self::Scale => objects.map(|object| object.scale).collect(),
+            Self::Rotation => objects.map(|object| object.rotation).collect(),
+            Self::Color => objects.flat_map(|object| object.color).collect(),
+            Self::Shape => objects.flat_map(|object| object.efd.as_flattened().iter().copied()).collect(),
+            Self::Background => grad.background.to_vec(),
+        };
+        values.into_iter().map(f64::from).collect()
+    }
+}
+
+/// Works out cosines; keeps its memory.
+pub(super) struct Cosines {
+    pixel_loss: PixelLoss,
+    size: ImageSize,
+    scene_loss: SceneLoss<f32>,
+    basis: OutlineBasis<f32>,
+    match_scratch: SceneLossScratch<f32>,
+    drawing: Drawing<f32>,
+    drawing_grad: DrawingGrad<f32>,
+    grads: [SceneGrad<f32>; 2],
+}
+
+impl Cosines {
+    /// The one in `place`, made if there is none.
+    pub(super) fn in_place(place: &mut Option<Self>, pixel_loss: PixelLoss, size: ImageSize) -> Result<&mut Self> {
+        if place.is_none() {
+            *place = Some(Self {
+                pixel_loss,
+                size,
+                scene_loss: SceneLoss::reference(REFERENCE_VERTICES, HARMONICS)?,
+                basis: OutlineBasis::new(REFERENCE_VERTICES, HARMONICS)?,
+                match_scratch: SceneLossScratch::default(),
+                drawing: Drawing::default(),
+                drawing_grad: DrawingGrad::default(),
+                grads: <[SceneGrad<f32>; 2]>::default(),
+            });
+        }
+        place.as_mut().ok_or_else(|| anyhow::anyhow!("just made"))
+    }
+
+    /// Cosines at `moved` by aspect; 0 where a gradient is 0.
+    pub(super) fn of(&mut self, truth: &Scene<f32>, moved: &Scene<f32>) -> Result<[f64; 6]> {
+        let renderer = ContourRenderer::new(truth.edge, truth.compositing);
+        let mut scratch = Default::default();
+        let mut image = Image::zeros(self.size);
+        truth.draw(&self.basis, &mut self.drawing)?;
+        renderer.render(&self.drawing, self.size, &mut scratch, image.data_mut())?;
+        moved.draw(&self.basis, &mut self.drawing)?;
+        self.drawing_grad.reset(&self.drawing);
+        let grad = &mut self.drawing_grad;
+        renderer.loss_and_grad(&self.drawing, image.view(), self.pixel_loss, &mut scratch, grad)?;
+        self.grads.iter_mut().for_each(|grad| grad.reset(moved));
+        moved.draw_vjp(&self.basis, &self.drawing_grad, &mut self.grads[0])?;
+        let pairs = ScenePairs::new(core::slice::from_ref(moved), core::slice::from_ref(truth))?;
+        self.scene_loss.vjp(pairs, 1.0, &mut self.match_scratch, &mut self.grads[1..])?;
+        Ok(Aspect::ALL.map(|aspect| cosine(&aspect.of(&self.grads[0]), &aspect.of(&self.grads[1]))))
+    }
+}
+
+fn cosine(a: &[f64], b: &[f64]) -> f64 {
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let lengths = (dot(a, a) * dot(b, b)).sqrt();
+    if lengths > 0.0 { dot(a, b) / lengths } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::pairs::pairs;
+    use super::*;
+
+    #[test]
+    fn cosines_by_hand() {
+        assert!((cosine(&[3.0, 0.0], &[1.0, 1.0]) - 0.5_f64.sqrt()).abs() < 1e-12);
+        assert!(cosine(&[0.0, 0.0], &[1.0, 1.0]).abs() < 1e-12);
+    }
+
+    #[test]
+    fn colors_of_a_scene_that_is_all_but_right_agree() {
+        let size = ImageSize::new(64, 64).unwrap();
+        let pair = &pairs(1, size, 3)[0];
+        let mut wrong = pair.truth.clone();
+        wrong.background[0] += 0.05;
+        let mut place = None;
+        let cosines = Cosines::in_place(&mut place, PixelLoss::Mse, size).unwrap();
+        let found = cosines.of(&pair.truth, &wrong).unwrap();
+        assert!((found[5] - 1.0).abs() < 1e-6, "both losses pull at the background's red alone: {found:?}");
+    }
+}
