@@ -150,6 +150,9 @@ fn pictures_of_a_folder_are_learned_from() {
     dvp_done(quick(&gp, &["--data", text(&data), "--steps", "2"]));
     fs::remove_file(data.join("scenes.jsonl")).unwrap();
     dvp_done(quick(&ti, &["--mode", "ti", "--data", text(&data), "--steps", "2"]));
+    // What a preliminary model sees stands for scenes.
+    let (model, reread) = (gp.join("best.safetensors"), folder.path().join("reread"));
+    dvp_done(quick(&reread, &["--data", text(&data), "--preliminary", text(&model), "--steps", "2"]));
     let out = folder.path().join("none");
     let run = dvp(quick(&out, &["--data", text(&data)]));
     assert!(run.code == 1 && run.err.contains("learns from scenes"), "{}", run.err);

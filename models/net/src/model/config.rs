@@ -86,25 +86,25 @@ impl ModelConfig {
         }
     }
 
-    /// About 1 M numbers, trained from nothing.
+    /// About 1.4 M numbers, trained from nothing.
     #[must_use]
     pub fn small() -> Self {
         Self::conv(&[32, 64, 128], 1, transformer(128, 8, 2, 256))
     }
 
-    /// About 0.1 M numbers: for tests and first looks.
+    /// About 0.06 M numbers: for tests and first looks.
     #[must_use]
     pub fn tiny() -> Self {
         Self::conv(&[16, 24, 32], 0, transformer(32, 8, 1, 64))
     }
 
-    /// About 0.8 M numbers, trained from nothing, with cells for slots: learns in the fewest steps. For images of 128 x 128
+    /// About 0.4 M numbers, trained from nothing, with cells for slots: learns in the fewest steps. For images of 128 x 128
     /// pixels.
     #[must_use]
     pub fn cells() -> Self {
-        let encoder = EncoderConfig::Conv(ConvConfig { patch: 8, channels: vec![64, 128], residual: 1 });
-        let transformer = transformer(128, 8, 1, 256);
-        Self { encoder, transformer, slots: Slots::Cells { rows: 8, columns: 8 }, head_width: 128, ..Self::small() }
+        let encoder = EncoderConfig::Conv(ConvConfig { patch: 8, channels: vec![48, 96], residual: 1 });
+        let transformer = transformer(96, 8, 1, 192);
+        Self { encoder, transformer, slots: Slots::Cells { rows: 8, columns: 8 }, head_width: 96, ..Self::small() }
     }
 
     fn conv(channels: &[usize], residual: usize, transformer: DetrConfig) -> Self {

@@ -48,7 +48,9 @@ fn predictions_have_the_extents_and_ranges_of_scenes() {
 #[test]
 fn names_are_asked_once_and_sizes_are_those_told() {
     let bank = mdshr_bank::<f64>(16);
-    for (config, about) in [(ModelConfig::tiny(), 0.06e6), (ModelConfig::small(), 1.4e6)] {
+    for (config, about) in
+        [(ModelConfig::tiny(), 0.06e6), (ModelConfig::cells(), 0.39e6), (ModelConfig::small(), 1.4e6)]
+    {
         let asked = asked::<Host, _>(&HostDevice, |weights| Model::load(&config, &bank, weights)).unwrap();
         let mut names: Vec<&str> = asked.iter().map(|(name, _)| name.as_str()).collect();
         let count: usize = asked.iter().map(|(_, dims)| dims.len()).sum();

@@ -3,10 +3,12 @@
 use core::ops::Range;
 use std::path::Path;
 
-use anyhow::{Result, bail};
+use anyhow::{Context, Result, bail};
+use dvp_core::tensor::{Host, HostDevice};
 use dvp_core::{Image, ImageSize, Scene};
 use dvp_fit::Bank;
-use dvp_net::scene_steps::SceneSteps;
+use dvp_net::model::Model;
+use dvp_net::scene_steps::{SceneSteps, image_tensor};
 use dvp_net::train::{Batch, Source};
 use rand::SeedableRng as _;
 use rand::seq::SliceRandom as _;
@@ -96,6 +98,17 @@ impl Data {
             Self::Folder { all, held_out, .. } => Ok(all.part(all.images.len() - held_out, len)),
         }
     }
+}
+
+/// What a preliminary model sees in images, as scenes, and the images of these scenes.
+///
+/// *Source*: the paper, section on training: the source of P where no scenes are known.
+pub(super) fn reread(model: &Model<Host>, images: &[Image<f32>], painter: &SceneSteps<f32>) -> Result<Batch<f32>> {
+    let seen = model.predict::<f32>(&image_tensor(images, &HostDevice)?)?;
+    let mut scenes = seen.scenes(painter.edge())?;
+    scenes.iter_mut().for_each(Scene::keep_visible);
+    let size = images.first().context("no images")?.size();
+    paint(scenes, size, painter)
 }
 
 fn paint(scenes: Vec<Scene<f32>>, size: ImageSize, painter: &SceneSteps<f32>) -> Result<Batch<f32>> {

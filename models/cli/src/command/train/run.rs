@@ -7,16 +7,16 @@ use std::time::Instant;
 use anyhow::{Context, Result, bail};
 use dvp_core::render::{EdgeProfile, PixelLoss};
 use dvp_core::shape::{Efd, PrototypeBank};
-use dvp_core::tensor::{Backend, Parameters};
+use dvp_core::tensor::{Backend, Host, HostDevice, Parameters};
 use dvp_core::{ImageSize, Real};
 use dvp_fit::Bank;
 use dvp_net::error::NetError;
-use dvp_net::model::{ModelConfig, ShapeHead};
+use dvp_net::model::{Model, ModelConfig, ShapeHead};
 use dvp_net::scene_steps::SceneSteps;
-use dvp_net::train::{Batch, Checkpoint, Judge, Mode, Schedule, Trainer};
+use dvp_net::train::{Batch, Checkpoint, Judge, Mode, Schedule, Source, Trainer};
 
 use super::curves::Curves;
-use super::data::Data;
+use super::data::{Data, reread};
 use super::samples;
 use super::settings::Settings;
 use super::store::Store;
@@ -39,6 +39,8 @@ pub(super) struct Run {
     /// The shapes that the model knows, with as many harmonics as it does.
     bank: PrototypeBank<f32>,
     painter: SceneSteps<f32>,
+    /// Reads the scenes that images are learned from.
+    preliminary: Option<Model<Host>>,
     settings: Settings,
 }
 
@@ -75,8 +77,11 @@ impl Run {
             ShapeHead::Prototypes => known.harmonic_count(),
             ShapeHead::Direct { harmonics } => harmonics,
         };
+        let preliminary = settings.preliminary.as_deref().map(model_of).transpose()?;
+        // A preliminary model needs no scenes.
+        let source = if preliminary.is_some() { Source::Images } else { mode.source() };
         let data = match &settings.data {
-            Some(folder) => Data::folder(folder, mode.source(), numbers.validation, numbers.seed)?,
+            Some(folder) => Data::folder(folder, source, numbers.validation, numbers.seed)?,
             None => {
                 let size = ImageSize::new(SIDE, SIDE)?;
                 Data::generated(bank, size, numbers.seed, settings.scenes.unwrap_or(0))
@@ -86,7 +91,7 @@ impl Run {
         let weights = painter.weights_mut();
         weights.scale = settings.scale_weight.map_or(weights.scale, f32::of);
         weights.rotation = settings.rotation_weight.map_or(weights.rotation, f32::of);
-        Ok(Self { mode, config, data, bank: known, painter, settings: settings.clone() })
+        Ok(Self { mode, config, data, bank: known, painter, preliminary, settings: settings.clone() })
     }
 
     /// Makes all steps that are left.
@@ -111,7 +116,10 @@ impl Run {
         let bar = progress::steps(numbers.steps, trainer.steps());
         let mut recent = Recent::default();
         while trainer.steps() < numbers.steps {
-            let batch = self.data.batch(trainer.steps(), numbers.batch, &self.painter)?;
+            let mut batch = self.data.batch(trainer.steps(), numbers.batch, &self.painter)?;
+            if let Some(model) = &self.preliminary {
+                batch = reread(model, &batch.images, &self.painter)?;
+            }
             let step = trainer.step(&batch).map_err(|error| self.study(store, &batch, &trainer, error))?;
             recent.add(step.loss);
             let save = step.number.is_multiple_of(numbers.save_every) || step.number == numbers.steps;
@@ -239,6 +247,13 @@ impl Numbers {
             seed: settings.seed.unwrap_or(0),
         }
     }
+}
+
+/// The model of a file of ours.
+fn model_of(file: &Path) -> Result<Model<Host>> {
+    let bytes = fs::read(file).with_context(|| format!("{} cannot be read", file.display()))?;
+    let model = Checkpoint::from_bytes(&bytes).and_then(|checkpoint| checkpoint.model(&HostDevice));
+    model.with_context(|| file.display().to_string())
 }
 
 /// Takes weights of a file of ours, or of published ones for the encoder.

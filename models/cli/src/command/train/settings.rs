@@ -30,6 +30,10 @@ pub(super) struct Settings {
     /// Number of generated scenes, seen again and again; 0: never the same twice [0]
     #[arg(long, value_name = "N")]
     pub(super) scenes: Option<u64>,
+    /// Preliminary model (safetensors) whose reading of the images stands for their scenes: gp and gi then learn from
+    /// pictures alone
+    #[arg(long, value_name = "FILE")]
+    pub(super) preliminary: Option<PathBuf>,
     /// Shapes that the model knows: mdshr or a bank file [mdshr]
     #[arg(long, value_name = "BANK")]
     pub(super) bank: Option<String>,
@@ -118,6 +122,7 @@ impl Settings {
             size: Some("small".into()),
             data: None,
             scenes: Some(0),
+            preliminary: None,
             bank: Some("mdshr".into()),
             harmonics: Some(16),
             start: None,
