@@ -21,6 +21,7 @@
 //! | [`detr`] | [`ConditionalDetr`](detr::ConditionalDetr): features to one latent per object slot |
 //! | [`model`] | [`Model`](model::Model): the whole, with its seven heads |
 //! | [`scene_steps`] | predicted scenes painted and judged by the core's differentiable steps |
+//! | [`optimize`] | OptZ and Rand-OptZ: scenes sought in the space of latents |
 //! | [`train`] | modes, steps of training, checkpoints |
 //! | [`error`] | [`NetError`](error::NetError) |
 //!
@@ -36,6 +37,7 @@ pub mod error;
 pub mod initial;
 pub mod layers;
 pub mod model;
+pub mod optimize;
 pub mod scene_steps;
 pub mod train;
 pub mod weights;

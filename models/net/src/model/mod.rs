@@ -48,6 +48,16 @@ pub struct Latents<B: Backend> {
     pub image: Tensor<B>,
 }
 
+impl<B: Backend> Latents<B> {
+    /// Those of slots, batch x objects x width, with their mean as that of the image.
+    ///
+    /// # Errors
+    /// If the framework refuses.
+    pub fn of_objects(objects: Tensor<B>) -> Result<Self, TensorError> {
+        Ok(Self { image: image_latent(&objects)?, objects })
+    }
+}
+
 /// The network, from images to scenes.
 #[derive(Clone, Debug)]
 pub struct Model<B: Backend> {
@@ -114,8 +124,7 @@ impl<B: Backend> Model<B> {
             }
         };
         let width = features.conv2d(&self.kernels, Stride { step: 1, padding: 0 })?.add(&self.bias)?;
-        let objects = self.slots.forward(&width)?;
-        Ok((Latents { image: image_latent(&objects)?, objects }, running))
+        Ok((Latents::of_objects(self.slots.forward(&width)?)?, running))
     }
 
     /// Scenes of latents.
