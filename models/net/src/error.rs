@@ -1,6 +1,7 @@
 //! Why a model was not loaded, or refused its input.
 
 use dvp_core::dims::Dims;
+use dvp_core::image::ImageError;
 use dvp_core::render::RenderError;
 use dvp_core::shape::ShapeError;
 use dvp_core::tensor::{ParametersError, TensorError};
@@ -54,6 +55,9 @@ pub enum NetError {
         /// What is needed.
         must: String,
     },
+    /// An image with NaN or infinity.
+    #[error(transparent)]
+    Image(#[from] ImageError),
     /// An outline could not be drawn.
     #[error(transparent)]
     Shape(#[from] ShapeError),

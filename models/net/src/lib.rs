@@ -22,6 +22,7 @@
 //! | [`model`] | [`Model`](model::Model): the whole, with its seven heads |
 //! | [`scene_steps`] | predicted scenes painted and judged by the core's differentiable steps |
 //! | [`optimize`] | OptZ and Rand-OptZ: scenes sought in the space of latents |
+//! | [`propose`] | [`Proposer`](propose::Proposer): a trained model that reads pictures of any size, on the host |
 //! | [`train`] | modes, steps of training, checkpoints |
 //! | [`error`] | [`NetError`](error::NetError) |
 //!
@@ -38,6 +39,7 @@ pub mod initial;
 pub mod layers;
 pub mod model;
 pub mod optimize;
+pub mod propose;
 pub mod scene_steps;
 pub mod train;
 pub mod weights;

@@ -1,18 +1,39 @@
-//! Resampling along one axis, as a matrix.
+//! Resampling along one axis.
 
-/// Weights of `from` samples in each of `to`, `to` x `from`; each row sums to 1.
+/// Weights of samples in one of those that are made of them: of sample `start` and the ones that follow it.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Taps {
+    pub(crate) start: usize,
+    /// Sum to 1.
+    pub(crate) weights: Vec<f64>,
+}
+
+/// How each of `to` samples is made of `from`, both at least 1.
 ///
 /// Sample k lies at k + 1/2 of as many; where samples get fewer, the kernel is stretched by as much, so that none is
 /// passed over.
-pub(crate) fn bicubic(from: usize, to: usize) -> Vec<f64> {
+pub(crate) fn taps(from: usize, to: usize) -> Vec<Taps> {
     let step = from as f64 / to as f64;
     let stretch = step.max(1.0);
-    let mut weights = Vec::with_capacity(from * to);
-    for k in 0..to {
+    // The kernel is 0 beyond 2.
+    let reach = 2 * from.div_ceil(to) + 1;
+    let one = |k: usize| {
         let center = step * (k as f64 + 0.5);
-        let row: Vec<f64> = (0..from).map(|j| cubic((j as f64 + 0.5 - center) / stretch)).collect();
+        let nearest = from * (2 * k + 1) / (2 * to);
+        let start = nearest.saturating_sub(reach);
+        let row: Vec<f64> =
+            (start..from.min(nearest + reach + 1)).map(|j| cubic((j as f64 + 0.5 - center) / stretch)).collect();
         let sum: f64 = row.iter().sum();
-        weights.extend(row.iter().map(|weight| weight / sum));
+        Taps { start, weights: row.iter().map(|weight| weight / sum).collect() }
+    };
+    (0..to).map(one).collect()
+}
+
+/// [`taps`] as a matrix, `to` x `from`.
+pub(crate) fn bicubic(from: usize, to: usize) -> Vec<f64> {
+    let mut weights = vec![0.0; from * to];
+    for (Taps { start, weights: own }, row) in taps(from, to).iter().zip(weights.chunks_exact_mut(from)) {
+        row[*start..start + own.len()].copy_from_slice(own);
     }
     weights
 }

@@ -23,7 +23,7 @@ mod tests;
 pub use attention::attend;
 pub(crate) use attention::join_heads;
 pub use batch_norm::{BatchNorm, Normed, Phase};
-pub(crate) use bicubic::bicubic;
+pub(crate) use bicubic::{Taps, bicubic, taps};
 pub use layer_norm::LayerNorm;
 pub use linear::Linear;
 pub use mlp::Mlp;

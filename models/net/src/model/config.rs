@@ -1,6 +1,7 @@
 //! Sizes of a model.
 
-use dvp_core::real::DType;
+use dvp_core::real::{DType, Real};
+use dvp_core::shape::PrototypeBank;
 use serde::{Deserialize, Serialize};
 
 use crate::detr::DetrConfig;
@@ -126,6 +127,15 @@ impl ModelConfig {
         match self.slots {
             Slots::Queries => self.transformer.num_queries,
             Slots::Cells { rows, columns } => rows * columns,
+        }
+    }
+
+    /// Harmonics of the shapes that a model tells, `bank` being the prototypes it knows.
+    #[must_use]
+    pub fn harmonics<T: Real>(&self, bank: &PrototypeBank<T>) -> usize {
+        match self.shape {
+            ShapeHead::Prototypes => bank.harmonic_count(),
+            ShapeHead::Direct { harmonics } => harmonics,
         }
     }
 

@@ -11,7 +11,8 @@ use dvp_core::tensor::{Backend, Host, HostDevice, Parameters};
 use dvp_core::{ImageSize, Real};
 use dvp_fit::Bank;
 use dvp_net::error::NetError;
-use dvp_net::model::{Model, ModelConfig, ShapeHead};
+use dvp_net::model::{Model, ModelConfig};
+use dvp_net::propose::TRAINED_SIDE;
 use dvp_net::scene_steps::SceneSteps;
 use dvp_net::train::{Batch, Checkpoint, Judge, Mode, Schedule, Source, Trainer};
 
@@ -24,8 +25,6 @@ use crate::command::options::BankChoice;
 use crate::command::{Console, Outcome, progress};
 use crate::format::{SceneJson, encode_png, write_atomic};
 
-/// Side of generated images: that of MDS-HR.
-const SIDE: usize = 128;
 /// Steps between lines of the curves.
 const LINE_EVERY: u64 = 10;
 /// Validation images that are drawn.
@@ -73,21 +72,17 @@ impl Run {
         }
         let cut = |efd: &Efd<f32>| Efd::new(efd.rows().iter().copied().take(harmonics).collect());
         let known = PrototypeBank::new(bank.prototypes.iter().map(|(_, efd)| cut(efd)).collect());
-        let own = match config.shape {
-            ShapeHead::Prototypes => known.harmonic_count(),
-            ShapeHead::Direct { harmonics } => harmonics,
-        };
         let preliminary = settings.preliminary.as_deref().map(model_of).transpose()?;
         // A preliminary model needs no scenes.
         let source = if preliminary.is_some() { Source::Images } else { mode.source() };
         let data = match &settings.data {
             Some(folder) => Data::folder(folder, source, numbers.validation, numbers.seed)?,
             None => {
-                let size = ImageSize::new(SIDE, SIDE)?;
+                let size = ImageSize::new(TRAINED_SIDE, TRAINED_SIDE)?;
                 Data::generated(bank, size, numbers.seed, settings.scenes.unwrap_or(0))
             }
         };
-        let mut painter = SceneSteps::new(config.objects(), own, EdgeProfile::reference())?;
+        let mut painter = SceneSteps::new(config.objects(), config.harmonics(&known), EdgeProfile::reference())?;
         let weights = painter.weights_mut();
         weights.scale = settings.scale_weight.map_or(weights.scale, f32::of);
         weights.rotation = settings.rotation_weight.map_or(weights.rotation, f32::of);

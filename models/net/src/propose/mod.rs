@@ -1,0 +1,156 @@
+//! A trained model as something to look with: a picture of any size to its scene, on the host, without a framework.
+//!
+//! ```text
+//! picture -> square of the side that models train on -> model -> scene -> units of the picture -> what is there
+//! ```
+//!
+//! | file | holds |
+//! |---|---|
+//! | `mod` | [`Proposer`] |
+//! | `square` | a picture on the square, and poses back to the units of the picture |
+//! | `there` | which slots of a scene are objects |
+//! | `built_in` | [`BUILT_IN`]: weights that come with the program |
+
+mod built_in;
+mod square;
+#[cfg(test)]
+mod tests;
+mod there;
+
+use dvp_core::render::EdgeProfile;
+use dvp_core::shape::PrototypeBank;
+use dvp_core::tensor::{Host, HostDevice, Parameters};
+use dvp_core::{Image, ImageView, Real, Scene};
+
+pub use built_in::BUILT_IN;
+
+use self::square::Square;
+use crate::error::NetError;
+use crate::layers::Phase;
+use crate::model::{Latents, Model, ModelConfig};
+use crate::optimize::{OptZ, Optimum, random_latents};
+use crate::scene_steps::{SceneSteps, image_tensor};
+use crate::train::Checkpoint;
+use crate::weights::Weights;
+
+/// Side in pixels of the squares that models train on: that of MDS-HR.
+pub const TRAINED_SIDE: usize = 128;
+
+/// A model that proposes the scene of a picture.
+///
+/// Models are trained on squares of [`TRAINED_SIDE`] pixels. A picture of another size is put on a square as large as its
+/// longer side, in the middle, on the median color of its border, and resampled (bicubic, averaged where it shrinks):
+/// proportions stay. Objects of a picture twice as wide as high therefore look half as large to the model.
+///
+/// Scenes come back in the units of the picture (shorter side 1), with the reference's edges and overlaps blended,
+/// as models know them. Computed in f32.
+#[derive(Clone, Debug)]
+pub struct Proposer {
+    config: ModelConfig,
+    model: Model<Host>,
+    bank: PrototypeBank<f32>,
+    painter: SceneSteps<f32>,
+}
+
+impl Proposer {
+    /// The model of a checkpoint.
+    ///
+    /// # Errors
+    /// As [`Checkpoint::model`].
+    pub fn new(checkpoint: &Checkpoint) -> Result<Self, NetError> {
+        let (config, bank) = (checkpoint.config().clone(), checkpoint.bank::<f32>()?);
+        let mut weights = Parameters::<Host>::new();
+        for (name, tensor) in checkpoint.weights::<Host>(&HostDevice)?.iter() {
+            weights.insert(name, &tensor.cast(f32::DTYPE)?)?;
+        }
+        let model = Model::load(&config, &bank, &Weights::new(&weights).frozen())?;
+        let painter = SceneSteps::new(config.objects(), config.harmonics(&bank), EdgeProfile::reference())?;
+        Ok(Self { config, model, bank, painter })
+    }
+
+    /// The model of a file of weights, given by its bytes.
+    ///
+    /// # Errors
+    /// As [`Checkpoint::from_bytes`] and [`Self::new`].
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, NetError> {
+        Self::new(&Checkpoint::from_bytes(bytes)?)
+    }
+
+    /// The sizes of the model.
+    #[must_use]
+    pub fn config(&self) -> &ModelConfig {
+        &self.config
+    }
+
+    /// The shapes that it knows.
+    #[must_use]
+    pub fn bank(&self) -> &PrototypeBank<f32> {
+        &self.bank
+    }
+
+    /// The scene of a picture, every slot of the model an object with its confidence; see [`Self::there`].
+    ///
+    /// # Errors
+    /// [`NetError::Image`] for a picture with NaN or infinity.
+    pub fn propose(&self, image: ImageView<'_, f32>) -> Result<Scene<f32>, NetError> {
+        let (square, target) = Square::of(image, TRAINED_SIDE)?;
+        let scenes = self.model.scenes::<f32>(&self.latents(&target)?)?.scenes(self.painter.edge())?;
+        Ok(square.to_picture(one(scenes)?))
+    }
+
+    /// OptZ from what the model sees. Losses are those on the square.
+    ///
+    /// # Errors
+    /// As [`Self::propose`] and [`OptZ::run`].
+    pub fn opt_z(&self, image: ImageView<'_, f32>, settings: &OptZ) -> Result<Optimum<f32>, NetError> {
+        let (square, target) = Square::of(image, TRAINED_SIDE)?;
+        self.descend(&square, &target, settings, &self.latents(&target)?)
+    }
+
+    /// Rand-OptZ: OptZ from latents drawn at random, which asks nothing of the encoder.
+    ///
+    /// # Errors
+    /// As [`Self::opt_z`].
+    pub fn rand_opt_z(&self, image: ImageView<'_, f32>, settings: &OptZ, seed: u64) -> Result<Optimum<f32>, NetError> {
+        let (square, target) = Square::of(image, TRAINED_SIDE)?;
+        let start = random_latents(&self.config, seed, f32::DTYPE, &HostDevice)?;
+        self.descend(&square, &target, settings, &start)
+    }
+
+    /// What is there of a scene that was proposed: the objects of a confidence above 1/2, with confidence 1; of two that
+    /// stand for one thing (nearly the same place, size and color) the more confident; each with the shape of the
+    /// prototype that weighs most in it, if shapes are mixed of prototypes.
+    #[must_use]
+    pub fn there(&self, scene: &Scene<f32>) -> Scene<f32> {
+        let mut scene = scene.clone();
+        there::drop_doubles(&mut scene);
+        scene.keep_visible();
+        for object in &mut scene.objects {
+            if let Some(efd) = object.prototype.and_then(|index| self.bank.prototypes().get(index)) {
+                object.efd = efd.clone();
+            }
+        }
+        scene
+    }
+
+    fn latents(&self, target: &Image<f32>) -> Result<Latents<Host>, NetError> {
+        let images = image_tensor(core::slice::from_ref(target), &HostDevice)?;
+        Ok(self.model.latents(&self.model.features(&images)?, Phase::Inference)?.0)
+    }
+
+    fn descend(
+        &self,
+        square: &Square,
+        target: &Image<f32>,
+        settings: &OptZ,
+        start: &Latents<Host>,
+    ) -> Result<Optimum<f32>, NetError> {
+        let found = settings.run(&self.model, &self.painter, target, start)?;
+        Ok(Optimum { scene: square.to_picture(found.scene), ..found })
+    }
+}
+
+/// The scene of a batch of one.
+fn one(mut scenes: Vec<Scene<f32>>) -> Result<Scene<f32>, NetError> {
+    scenes.pop().ok_or_else(|| NetError::Batch { must: "must hold at least one image".into() })
+}

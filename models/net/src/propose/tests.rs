@@ -1,0 +1,156 @@
+use dvp_core::render::{EdgeProfile, PixelLoss};
+use dvp_core::shape::{Efd, mdshr_bank};
+use dvp_core::tensor::HostDevice;
+use dvp_core::{Image, ImageSize, Object, Pose, Real, Scene};
+
+use super::square::Square;
+use super::*;
+use crate::train::{Judge, Mode, Schedule, Trainer};
+
+/// A tiny model that has learned nothing, trained in `T`.
+fn checkpoint<T: Real>() -> Checkpoint {
+    let (config, bank) = (ModelConfig::tiny(), mdshr_bank::<T>(16));
+    let steps = SceneSteps::new(config.objects(), 16, EdgeProfile::reference()).unwrap();
+    let judge = Judge { mode: Mode::Gp, image_loss: PixelLoss::Mae, image_weight: 1.0, steps, bank: bank.clone() };
+    let schedule = Schedule { learning_rate: 1e-3, warm_up: 0, end: None };
+    let trainer = Trainer::<Host, T>::new(config, bank, judge, schedule, 4, HostDevice).unwrap();
+    Checkpoint::of(&trainer, false, "").unwrap()
+}
+
+fn size(width: usize, height: usize) -> ImageSize {
+    ImageSize::new(width, height).unwrap()
+}
+
+fn object(translation: [f32; 2], scale: f32, color: [f32; 3], confidence: f32) -> Object<f32> {
+    let pose = Pose { translation, scale, rotation: 0.3 };
+    Object { pose, color, confidence, efd: Efd::new(vec![[1.0, 0.0, 0.0, -1.0]]), prototype: None }
+}
+
+fn painted(scene: &Scene<f32>, size: ImageSize) -> Image<f32> {
+    SceneSteps::new(1, 1, EdgeProfile::reference()).unwrap().paint(scene, size).unwrap()
+}
+
+#[test]
+fn squares_of_the_trained_side_are_seen_as_they_are() {
+    let scene = Scene { objects: vec![object([0.4, 0.6], 0.2, [0.9; 3], 1.0)], ..Scene::empty([0.1, 0.2, 0.3]) };
+    let image = painted(&scene, size(128, 128));
+    let (square, target) = Square::of(image.view(), 128).unwrap();
+    assert_eq!(target, image);
+    assert_eq!(square.to_picture(scene.clone()), scene);
+}
+
+#[test]
+fn what_is_found_on_the_square_stands_where_it_is_in_the_picture() {
+    // On a square of 256 x 256 px the picture begins 64 px from above; its unit is 128 px. The disk at (1.5, 0.5), 0.2
+    // lies at (1.5 128, 0.5 128 + 64) / 256 = (0.75, 0.5), its radius is 0.2 128 / 256 = 0.1.
+    let background = [0.1, 0.2, 0.3];
+    let disk = object([1.5, 0.5], 0.2, [0.9, 0.8, 0.7], 1.0);
+    for (size, disk) in [
+        (size(256, 128), disk.clone()),
+        (size(128, 256), object([0.5, 1.5], 0.2, disk.color, 1.0)),
+        (size(64, 32), disk.clone()),
+    ] {
+        let truth = Scene { objects: vec![disk], ..Scene::empty(background) };
+        let (square, target) = Square::of(painted(&truth, size).view(), 128).unwrap();
+        let mut sums = [0.0_f64; 3];
+        for (k, &value) in target.view().channel(0).iter().enumerate() {
+            let there = f64::from((value - 0.1) / 0.8);
+            for (sum, weight) in sums.iter_mut().zip([(k % 128) as f64 + 0.5, (k / 128) as f64 + 0.5, 1.0]) {
+                *sum += weight * there;
+            }
+        }
+        let center = [0, 1].map(|axis| f32::of(sums[axis] / sums[2] / 128.0));
+        let found = Scene { objects: vec![object(center, 0.1, [0.9; 3], 1.0)], ..Scene::empty(background) };
+        let found = square.to_picture(found).objects.remove(0).pose;
+        let truth = truth.objects[0].pose;
+        for axis in 0..2 {
+            let off = found.translation[axis] - truth.translation[axis];
+            assert!(off.abs() < 2e-3, "{size:?}: {:?} for {:?}", found.translation, truth.translation);
+        }
+        assert!((found.scale - truth.scale).abs() < 1e-6);
+        // The area of a disk of 0.1 of 128 px, and the 1.43 px by which it is fattened at 128 px per unit, half as many
+        // px on the square where the unit is 64 px.
+        let radius = (sums[2] / core::f64::consts::PI).sqrt();
+        assert!((radius - 12.8 - 0.715).abs() < 0.25, "{size:?}: {radius}");
+        // The border is that of the picture.
+        assert!((0..3).all(|c| (target.view().channel(c)[0] - background[c]).abs() < 1e-6));
+    }
+}
+
+#[test]
+fn pictures_of_any_size_are_read_and_flat_ones_stay_flat() {
+    let proposer = Proposer::new(&checkpoint::<f32>()).unwrap();
+    for size in [size(1, 1), size(1, 300), size(257, 129), size(500, 3)] {
+        let image = Image::from_planar(size, vec![0.25; 3 * size.pixels()]).unwrap();
+        let target = Square::of(image.view(), 128).unwrap().1;
+        assert!(target.data().iter().all(|value| (value - 0.25).abs() < 1e-6), "{size:?}");
+        let scene = proposer.propose(image.view()).unwrap();
+        assert_eq!(scene.objects.len(), proposer.config().objects());
+        assert!(scene.objects.iter().all(|object| object.pose.translation.iter().all(|place| place.is_finite())));
+    }
+}
+
+#[test]
+fn no_numbers_are_refused() {
+    let proposer = Proposer::new(&checkpoint::<f32>()).unwrap();
+    let mut image = Image::zeros(size(40, 30));
+    image.data_mut()[17] = f32::NAN;
+    assert!(matches!(proposer.propose(image.view()), Err(NetError::Image(_))));
+    assert!(matches!(proposer.opt_z(image.view(), &OptZ::default()), Err(NetError::Image(_))));
+}
+
+#[test]
+fn models_trained_in_f64_look_alike() {
+    let image = Image::from_planar(size(128, 128), vec![0.5; 3 * 128 * 128]).unwrap();
+    let [single, double] = [checkpoint::<f32>(), checkpoint::<f64>()].map(|checkpoint| {
+        Proposer::from_bytes(&checkpoint.to_bytes().unwrap()).unwrap().propose(image.view()).unwrap()
+    });
+    let scales = single.objects.iter().zip(&double.objects).map(|(a, b)| (a.pose.scale - b.pose.scale).abs());
+    assert!(scales.fold(0.0, f32::max) < 1e-6);
+}
+
+#[test]
+fn latents_move_toward_pictures_that_are_no_squares() {
+    let proposer = Proposer::new(&checkpoint::<f32>()).unwrap();
+    let scene = Scene { objects: vec![object([0.9, 0.4], 0.3, [0.9, 0.1, 0.1], 1.0)], ..Scene::empty([0.1, 0.2, 0.9]) };
+    let image = painted(&scene, size(96, 64));
+    let settings = OptZ { steps: 5, ..OptZ::default() };
+    for found in [proposer.opt_z(image.view(), &settings), proposer.rand_opt_z(image.view(), &settings, 3)] {
+        let found = found.unwrap();
+        assert!(found.loss < found.losses[0], "{:?}", found.losses);
+    }
+    let none = OptZ { steps: 0, ..settings };
+    assert_eq!(proposer.opt_z(image.view(), &none).unwrap().scene, proposer.propose(image.view()).unwrap());
+}
+
+#[test]
+fn one_thing_is_one_object() {
+    let proposer = Proposer::new(&checkpoint::<f32>()).unwrap();
+    let red = [0.8, 0.2, 0.1];
+    let mut scene = Scene::empty([0.0; 3]);
+    scene.objects = vec![
+        object([0.50, 0.5], 0.20, red, 0.7),
+        // The same thing: 0.02 beside, a fifth larger, hardly another color; more confident.
+        object([0.52, 0.5], 0.24, [0.8, 0.25, 0.1], 0.9),
+        // Not the same: farther off, of another size, of another color.
+        object([0.60, 0.5], 0.20, red, 0.8),
+        object([0.52, 0.5], 0.10, red, 0.8),
+        object([0.52, 0.5], 0.24, [0.8, 0.5, 0.1], 0.8),
+        // Hardly there.
+        object([0.1, 0.1], 0.2, red, 0.4),
+    ];
+    scene.objects[4].prototype = Some(1);
+    let there = proposer.there(&scene);
+    let expected: Vec<_> = [1, 2, 3, 4].map(|k| scene.objects[k].pose).to_vec();
+    assert_eq!(there.objects.iter().map(|object| object.pose).collect::<Vec<_>>(), expected);
+    assert!(there.objects.iter().all(|object| object.confidence >= 1.0));
+    assert_eq!(there.objects[3].efd, proposer.bank().prototypes()[1]);
+    assert_eq!(there.objects[0].efd, scene.objects[1].efd);
+}
+
+#[test]
+fn built_in_weights_are_a_model() {
+    if let Some(bytes) = BUILT_IN {
+        Proposer::from_bytes(bytes).unwrap();
+    }
+}
