@@ -7,6 +7,7 @@ mod evaluate;
 mod fit;
 mod generate;
 mod gradients;
+mod network;
 mod options;
 mod progress;
 mod prototypes;

@@ -1,5 +1,7 @@
 //! `dvp evaluate`: predictions against a data set, in the paper's columns.
 
+mod finder;
+mod generated;
 mod report;
 mod score;
 
@@ -9,6 +11,7 @@ use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
 use dvp_core::{Image, ImageSize, Scene};
 
+use self::finder::{Finder, NetworkArguments};
 use self::report::{Row, Totals};
 use self::score::{Score, Scratch, Truth, score_images, score_masks};
 use super::options::{BatchArguments, PaintArguments};
@@ -16,7 +19,10 @@ use super::{Console, Outcome};
 use crate::format::{DataSet, Place, Sample, SceneJson, read_labels, read_npy, read_picture, read_scene, write_atomic};
 use crate::paint::Painter;
 
-/// Scores a folder of predictions (STEM.json, as `dvp fit` writes them) against a data set.
+/// Scores a folder of predictions (STEM.json, as `dvp fit` writes them), or a network, against a data set.
+///
+/// A network (--model) predicts from the images that it is compared with; its scenes are painted with the confidences
+/// that it gives, and objects count if theirs is above 1/2.
 ///
 /// MAE, MSE and SSIM compare images; IoU (pooled over all images), ARI and the share of exact object counts need the
 /// true scenes (scenes.jsonl) or, beside a picture STEM.png, a label map STEM.labels.png: gray of 8 or 16 bits, 0 for the
@@ -25,12 +31,18 @@ use crate::paint::Painter;
 /// count that own one. Missing and bad predictions are listed and counted; they are in no mean.
 #[derive(Debug, Args)]
 #[command(before_help = "Example: dvp evaluate out data\n         \
-                         dvp evaluate out data --against float --json")]
+                         dvp evaluate out data --against float --json\n         \
+                         dvp evaluate data --model run/best.safetensors --then refine\n         \
+                         dvp evaluate --generated 500 --model run/best.safetensors --then opt-z")]
 pub(super) struct Arguments {
-    /// Folder of predictions
-    predictions: PathBuf,
+    /// Folder of predictions; left away where a network predicts
+    #[arg(required_unless_present_any = NETWORK)]
+    predictions: Option<PathBuf>,
     /// Folder of a data set: scenes.jsonl and pictures, pictures with label maps, or pictures alone
-    data: PathBuf,
+    #[arg(required_unless_present_any = NETWORK)]
+    data: Option<PathBuf>,
+    #[command(flatten)]
+    network: NetworkArguments,
     /// What reconstructions are compared with
     #[arg(long, value_enum, default_value_t)]
     against: Against,
@@ -56,24 +68,53 @@ enum Against {
     Float,
 }
 
+/// Options that ask for a network.
+const NETWORK: [&str; 3] = ["model", "method", "generated"];
+
 /// What every image is scored with.
 struct Judge<'a> {
     arguments: &'a Arguments,
     data: DataSet<f32>,
     stack: Option<Vec<Image<f32>>>,
     painter: Painter,
+    predictions: Predictions<'a>,
+}
+
+/// Where predicted scenes come from.
+enum Predictions<'a> {
+    Folder(&'a Path),
+    Network(Box<Finder>),
+}
+
+impl Arguments {
+    /// What is scored, against what.
+    fn sides(&self) -> Result<(Predictions<'_>, DataSet<f32>)> {
+        match (self.predictions.as_deref(), self.data.as_deref(), self.network.generated) {
+            (Some(predictions), Some(data), None) if !self.network.are_asked() => {
+                if !predictions.is_dir() {
+                    bail!("{}: no folder of predictions", predictions.display());
+                }
+                Ok((Predictions::Folder(predictions), DataSet::open(data)?))
+            }
+            (Some(data), None, None) => {
+                Ok((Predictions::Network(Box::new(self.network.finder()?)), DataSet::open(data)?))
+            }
+            (None, None, Some(count)) => {
+                let data = generated::mds_hr(count, self.network.seed)?;
+                Ok((Predictions::Network(Box::new(self.network.finder()?)), data))
+            }
+            _ => bail!("a network is scored on one thing: the folder of a data set, or --generated N"),
+        }
+    }
 }
 
 pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Outcome> {
-    if !arguments.predictions.is_dir() {
-        bail!("{}: no folder of predictions", arguments.predictions.display());
-    }
-    let mut data = DataSet::open(&arguments.data)?;
+    let (predictions, mut data) = arguments.sides()?;
     let stack = arguments.npy.as_ref().map(|path| read_npy(path, arguments.batch.max_pixels)).transpose()?;
     if let Some(stack) = &stack {
         data.samples.truncate(stack.len());
     }
-    let judge = Judge { arguments, data, stack, painter: arguments.paint.painter() };
+    let judge = Judge { arguments, data, stack, painter: arguments.paint.painter(), predictions };
     let rows: Vec<Row> = arguments.batch.each(&judge.data.samples, |scratch: &mut Scratch, index, sample| {
         let result = judge.score(index, sample, scratch);
         Row { stem: sample.stem.clone(), result: result.map_err(|error| format!("{error:#}")) }
@@ -97,25 +138,48 @@ pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Ou
 
 impl Judge<'_> {
     fn score(&self, index: usize, sample: &Sample, scratch: &mut Scratch) -> Result<Score> {
-        let (predicted, found) = self.prediction(sample)?;
         let truth = match &sample.scene {
             Some((json, place)) => Some(json.to_scene(Some(&self.data.bank), place)?),
             None => None,
         };
-        let image = self.true_image(index, sample, truth.as_ref(), &predicted)?;
-        let place = Place::file(&self.arguments.predictions.join(&sample.stem));
-        if let Some(size) = predicted.size(&place)?
-            && size != image.size()
-        {
-            let (own, other) = (size, image.size());
-            bail!("predicted {} x {} pixels for {} x {}", own.width(), own.height(), other.width(), other.height());
+        match &self.predictions {
+            Predictions::Folder(folder) => {
+                let path = folder.join(format!("{}.json", sample.stem));
+                let (predicted, found) = self.prediction(&path)?;
+                let size = predicted.size(&Place::file(&path))?;
+                let image = self.true_image(index, sample, truth.as_ref(), size)?;
+                if let Some(own) = size
+                    && own != image.size()
+                {
+                    let [own, other] = [own, image.size()].map(|size| format!("{} x {}", size.width(), size.height()));
+                    bail!("predicted {own} pixels for {other}");
+                }
+                self.compare(sample, truth.as_ref(), &image, [&found; 2], scratch)
+            }
+            Predictions::Network(finder) => {
+                let image = self.true_image(index, sample, truth.as_ref(), None)?;
+                let found = finder.find(image.view(), &sample.stem, truth.as_ref(), &mut scratch.refine)?;
+                let score = self.compare(sample, truth.as_ref(), &image, [&found.scene, &found.there], scratch)?;
+                Ok(Score { cpu_ms: Some(found.cpu_ms), ..score })
+            }
         }
-        let painted = self.painter.paint(&found, image.size())?;
+    }
+
+    /// Scores the scene that is painted, and that of the objects that count.
+    fn compare(
+        &self,
+        sample: &Sample,
+        truth: Option<&Scene<f32>>,
+        image: &Image<f32>,
+        [found, there]: [&Scene<f32>; 2],
+        scratch: &mut Scratch,
+    ) -> Result<Score> {
+        let painted = self.painter.paint(found, image.size())?;
         let mut score = score_images(painted.view(), image.view(), scratch)?;
         let labels = sample.labels.as_ref().map(|path| self.labels(path, image.size())).transpose()?;
-        let known = labels.as_deref().map(Truth::Labels).or_else(|| truth.as_ref().map(Truth::Scene));
+        let known = labels.as_deref().map(Truth::Labels).or_else(|| truth.map(Truth::Scene));
         if let Some(known) = known {
-            score.masks = Some(score_masks(&self.painter, &known, &found, image.size(), scratch)?);
+            score.masks = Some(score_masks(&self.painter, &known, there, image.size(), scratch)?);
         }
         Ok(score)
     }
@@ -129,13 +193,12 @@ impl Judge<'_> {
         Ok(labels)
     }
 
-    fn prediction(&self, sample: &Sample) -> Result<(SceneJson, Scene<f32>)> {
-        let path = self.arguments.predictions.join(format!("{}.json", sample.stem));
+    fn prediction(&self, path: &Path) -> Result<(SceneJson, Scene<f32>)> {
         if !path.exists() {
             bail!("no prediction {}", path.display());
         }
-        let json = read_scene(&path)?;
-        let scene = json.to_scene(Some(&self.data.bank), &Place::file(&path))?;
+        let json = read_scene(path)?;
+        let scene = json.to_scene(Some(&self.data.bank), &Place::file(path))?;
         Ok((json, scene))
     }
 
@@ -145,13 +208,14 @@ impl Judge<'_> {
         index: usize,
         sample: &Sample,
         truth: Option<&Scene<f32>>,
-        predicted: &SceneJson,
+        predicted: Option<ImageSize>,
     ) -> Result<Image<f32>> {
         if let Some(stack) = &self.stack {
             return stack.get(index).cloned().context("the NumPy file holds no such image");
         }
         let picture = || read_picture(&sample.image, self.arguments.batch.max_pixels);
-        if self.arguments.against == Against::Png {
+        let generated = self.arguments.network.generated.is_some();
+        if self.arguments.against == Against::Png && !generated {
             return Ok(picture()?);
         }
         let scene = truth.context("--against float needs the true scenes (scenes.jsonl)")?;
@@ -159,9 +223,7 @@ impl Judge<'_> {
         let size = match own {
             Some(size) => size,
             None if sample.image.exists() => picture()?.size(),
-            None => predicted
-                .size(&Place::file(&sample.image))?
-                .context("neither the true scene nor the prediction says its size")?,
+            None => predicted.context("neither the true scene nor the prediction says its size")?,
         };
         Ok(self.painter.paint(scene, size)?)
     }

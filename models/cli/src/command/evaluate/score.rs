@@ -5,6 +5,7 @@ use dvp_core::loss::{ImagePair, Loss, Ssim, SsimScratch};
 use dvp_core::metric::{MaskOverlap, Ownership, OwnershipRule, RandIndexScratch, adjusted_rand_index};
 use dvp_core::render::{Compositing, ContourRenderer, PixelLoss, Renderer};
 use dvp_core::{ImageSize, ImageView, Scene};
+use dvp_fit::refine::RefineScratch;
 
 use crate::paint::Painter;
 
@@ -16,6 +17,8 @@ pub(super) struct Score {
     pub(super) ssim: f64,
     /// Where the true scene or a label map is known.
     pub(super) masks: Option<MaskScore>,
+    /// Processor time of the prediction, where it was made here.
+    pub(super) cpu_ms: Option<f64>,
 }
 
 /// Scores of which pixels belong to which object.
@@ -36,6 +39,7 @@ pub(super) struct Scratch {
     render: <ContourRenderer<f32> as Renderer<f32>>::Scratch,
     found: Ownership,
     truth: Ownership,
+    pub(super) refine: RefineScratch<f32>,
 }
 
 /// Compares images of one size.
@@ -50,6 +54,7 @@ pub(super) fn score_images(
         mse: f64::from(PixelLoss::Mse.value(pair, &mut ())?),
         ssim: f64::from(Ssim::default().similarity(pair, &mut scratch.ssim)?),
         masks: None,
+        cpu_ms: None,
     })
 }
 

@@ -1,0 +1,26 @@
+//! Scenes to score on that are drawn at random.
+
+use std::path::PathBuf;
+
+use anyhow::{Result, bail};
+use dvp_net::propose::TRAINED_SIDE;
+
+use crate::command::options::square;
+use crate::format::{DataSet, Place, Sample, SceneJson, mdshr_bank};
+use crate::generate::{SceneSettings, sample_scene};
+
+/// `count` scenes of MDS-HR as a data set without pictures.
+pub(super) fn mds_hr(count: u64, seed: u64) -> Result<DataSet<f32>> {
+    if count == 0 {
+        bail!("--generated must be at least 1");
+    }
+    let (settings, bank, size) = (SceneSettings::mds_hr(), mdshr_bank(), square(TRAINED_SIDE)?);
+    let place = Place::file(&PathBuf::from("generated"));
+    let sample = |index| Sample {
+        stem: format!("{index:05}"),
+        image: PathBuf::new(),
+        scene: Some((SceneJson::from_scene(&sample_scene(&settings, &bank, size, seed, index), size), place.clone())),
+        labels: None,
+    };
+    Ok(DataSet { samples: (0..count).map(sample).collect(), bank })
+}
