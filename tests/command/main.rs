@@ -8,6 +8,7 @@ mod fit;
 mod generate;
 mod gradients;
 mod interrupted;
+mod network;
 mod picture_kinds;
 mod pictures;
 mod prototypes;

@@ -15,9 +15,9 @@ use dvp_fit::{Fit, FitOptions};
 
 use self::inputs::Input;
 use self::report::{FoundScene, Report};
-use self::solver::{Method, Scratch, Solver};
+use self::solver::{Method, Scratch, Solver, Start};
 use super::options::{BankChoice, BatchArguments, CompositingName};
-use super::{Console, Outcome};
+use super::{Console, Outcome, network};
 use crate::format::{Place, SceneJson, encode_png, read_npy, read_picture, write_atomic};
 use crate::paint::Painter;
 use crate::svg::to_svg;
@@ -28,7 +28,8 @@ use crate::svg::to_svg;
 /// Writes for every picture STEM.json (the scene), STEM.svg (its outlines) and STEM.png (the reconstruction).
 #[derive(Debug, Args)]
 #[command(before_help = "Example: dvp fit picture.png --out out\n         \
-                         dvp fit photos/ 'more/*.jpg' --out out --json > fits.json")]
+                         dvp fit photos/ 'more/*.jpg' --out out --json > fits.json\n         \
+                         dvp fit noisy.png --start net --model run/best.safetensors --out out")]
 pub(super) struct Arguments {
     /// Pictures, folders of pictures, patterns, NumPy files (.npy) of float pixels
     #[arg(required = true, value_name = "PICTURES")]
@@ -48,9 +49,12 @@ pub(super) struct Arguments {
     /// Objects per picture, for opt-iter and rand-opt-p, which cannot tell
     #[arg(long, default_value_t = 4, value_name = "N")]
     objects: usize,
-    /// Folder of STEM.json to start from, for opt-p
-    #[arg(long, value_name = "DIR")]
-    start: Option<PathBuf>,
+    /// What fits start from: segment, net (what a network sees, with its shapes), or for opt-p a folder of STEM.json
+    #[arg(long, default_value = "segment", value_name = "START")]
+    start: StartChoice,
+    /// Weights of the network for --start net, as `dvp train` writes them [default: built in]
+    #[arg(long, value_name = "FILE")]
+    model: Option<PathBuf>,
     /// Number that random starts are drawn from, for rand-opt-p
     #[arg(long, default_value_t = 1234)]
     seed: u64,
@@ -76,11 +80,40 @@ impl Arguments {
             compositing: self.compositing.map(Compositing::from),
             ..defaults
         };
-        Solver::new(self.method, options, self.start.clone(), self.objects, self.seed)
+        if self.model.is_some() && self.start != StartChoice::Net {
+            bail!("--model goes with --start net only");
+        }
+        let start = match &self.start {
+            StartChoice::Segment => Start::Picture,
+            StartChoice::Folder(folder) => Start::Folder(folder.clone()),
+            StartChoice::Net if self.bank != BankChoice::None => {
+                bail!("--start net takes the shapes that the network knows: leave --bank away")
+            }
+            StartChoice::Net => Start::Network(Box::new(network::load(self.model.as_deref())?)),
+        };
+        Solver::new(self.method, options, start, self.objects, self.seed)
     }
 
     fn target(&self, input: &Input, ending: &str) -> PathBuf {
         self.out.join(format!("{}.{ending}", input.stem))
+    }
+}
+
+/// What fits start from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum StartChoice {
+    Segment,
+    Net,
+    Folder(PathBuf),
+}
+
+impl From<&str> for StartChoice {
+    fn from(text: &str) -> Self {
+        match text {
+            "segment" => Self::Segment,
+            "net" => Self::Net,
+            _ => Self::Folder(PathBuf::from(text)),
+        }
     }
 }
 

@@ -8,21 +8,19 @@ use std::path::PathBuf;
 use anyhow::{Context, Result, bail};
 use clap::ValueEnum;
 use cpu_time::ThreadTime;
-use dvp_core::render::ContourRenderer;
-use dvp_core::shape::REFERENCE_VERTICES;
-use dvp_core::{Efd, ImageView, Scene};
-use dvp_fit::adam::descent::Descent;
+use dvp_core::{ImageView, Scene};
 use dvp_fit::opt_iter::OptIter;
-use dvp_fit::opt_p::OptP;
-use dvp_fit::rand_opt_p::{RandOptP, random_scene};
+use dvp_fit::refine::RefineScratch;
 use dvp_fit::{Bank, Fit, FitOptions, FitScratch, Fitter};
+use dvp_net::propose::Proposer;
 
+use crate::command::network;
 use crate::format::{Place, read_scene};
 
 /// How a scene is found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub(super) enum Method {
-    /// Segmentation, distance samples, Levenberg-Marquardt: no start needed
+    /// Segmentation, distance samples, Levenberg-Marquardt; with --start net Levenberg-Marquardt from what the network sees
     #[default]
     Segment,
     /// The paper's Opt-Iter: objects one by one where the image is worst explained
@@ -33,33 +31,51 @@ pub(super) enum Method {
     RandOptP,
 }
 
+/// What a fit starts from.
+#[derive(Debug)]
+pub(super) enum Start {
+    /// What the method makes of the picture itself.
+    Picture,
+    /// What a network sees.
+    Network(Box<Proposer>),
+    /// A folder of `{stem}.json`.
+    Folder(PathBuf),
+}
+
 /// Everything that a method needs, shared between threads.
 pub(super) struct Solver {
-    pub(super) method: Method,
-    pub(super) fitter: Fitter<f32>,
-    pub(super) bank: Option<Bank<f32>>,
-    /// Folder of `{stem}.json` to start from.
-    pub(super) start: Option<PathBuf>,
-    pub(super) object_count: usize,
-    pub(super) seed: u64,
+    method: Method,
+    options: FitOptions<f32>,
+    fitter: Fitter<f32>,
+    start: Start,
+    object_count: usize,
+    seed: u64,
 }
 
 /// Memory of one thread.
-pub(super) type Scratch = FitScratch<f32>;
+#[derive(Default)]
+pub(super) struct Scratch {
+    fit: FitScratch<f32>,
+    refine: RefineScratch<f32>,
+}
 
 impl Solver {
     pub(super) fn new(
         method: Method,
         options: FitOptions<f32>,
-        start: Option<PathBuf>,
+        start: Start,
         object_count: usize,
         seed: u64,
     ) -> Result<Self> {
-        if (method == Method::OptP) != start.is_some() {
-            bail!("--method opt-p needs --start DIR, and only that method does");
+        match (&start, method) {
+            (Start::Picture, Method::OptP) => bail!("--method opt-p needs --start DIR, or --start net"),
+            (Start::Folder(_), Method::OptP) | (Start::Network(_), Method::OptP | Method::Segment) => (),
+            (Start::Folder(_), _) => bail!("--start DIR goes with --method opt-p only"),
+            (Start::Network(_), _) => bail!("--start net goes with --method segment or opt-p only"),
+            (Start::Picture, _) => (),
         }
-        let bank = options.bank.clone();
-        Ok(Self { method, fitter: Fitter::new(options)?, bank, start, object_count, seed })
+        let fitter = Fitter::new(options.clone())?;
+        Ok(Self { method, options, fitter, start, object_count, seed })
     }
 
     /// The fit, and the processor time that it took on this thread.
@@ -69,10 +85,16 @@ impl Solver {
         stem: &str,
         scratch: &mut Scratch,
     ) -> Result<(Fit<f32>, Duration)> {
-        let start = self.start_scene(stem)?;
+        let read = match &self.start {
+            Start::Folder(folder) => {
+                let path = folder.join(format!("{stem}.json"));
+                Some(read_scene(&path)?.to_scene(self.bank(), &Place::file(&path))?)
+            }
+            _ => None,
+        };
         let clock = ThreadTime::try_now().context("the system has no thread clock")?;
         // A defect in the fit of one picture must not cost the others.
-        let fit = catch_unwind(AssertUnwindSafe(|| self.run(image, &start, scratch)));
+        let fit = catch_unwind(AssertUnwindSafe(|| self.run(image, read, stem, scratch)));
         let time = clock.try_elapsed().context("the system has no thread clock")?;
         match fit {
             Ok(fit) => Ok((fit?, time)),
@@ -83,38 +105,35 @@ impl Solver {
         }
     }
 
-    /// Where a descent starts; the methods that need no start get an empty scene.
-    fn start_scene(&self, stem: &str) -> Result<Scene<f32>> {
-        Ok(match (self.method, &self.start) {
-            (Method::OptP, Some(folder)) => {
-                let path = folder.join(format!("{stem}.json"));
-                read_scene(&path)?.to_scene(self.bank.as_ref(), &Place::file(&path))?
-            }
-            (Method::RandOptP, _) => {
-                let circle = [Efd::new(vec![[1.0, 0.0, 0.0, -1.0]]).resized(OptIter::default().harmonic_count)];
-                let bank: Option<Vec<_>> =
-                    self.bank.as_ref().map(|bank| bank.prototypes.iter().map(|(_, efd)| efd.clone()).collect());
-                let shapes = bank.as_deref().unwrap_or(&circle);
-                // Every picture has its own start, whichever thread takes it.
-                let seed = stem.bytes().fold(self.seed, |seed, byte| seed.wrapping_mul(31).wrapping_add(byte.into()));
-                random_scene(self.object_count, shapes, seed)
-            }
-            _ => Scene::empty([0.0; 3]),
-        })
+    fn bank(&self) -> Option<&Bank<f32>> {
+        self.options.bank.as_ref()
     }
 
-    fn run(&self, image: ImageView<'_, f32>, start: &Scene<f32>, scratch: &mut Scratch) -> Result<Fit<f32>> {
-        if self.method == Method::Segment {
-            return Ok(self.fitter.fit(image, scratch)?);
+    fn run(
+        &self,
+        image: ImageView<'_, f32>,
+        read: Option<Scene<f32>>,
+        stem: &str,
+        scratch: &mut Scratch,
+    ) -> Result<Fit<f32>> {
+        let start = match &self.start {
+            Start::Network(network) => Some(network.there(&network.propose(image)?)),
+            _ => read,
+        };
+        match (self.method, start) {
+            (Method::Segment, Some(start)) => {
+                let FitOptions { compositing, max_objects, .. } = self.options;
+                network::refine(image, &start, compositing.unwrap_or_default(), max_objects, &mut scratch.refine)
+            }
+            (Method::Segment, None) => Ok(self.fitter.fit(image, &mut scratch.fit)?),
+            (Method::RandOptP, _) => {
+                network::rand_opt_p(image, &network::random_start(self.bank(), self.object_count, self.seed, stem))
+            }
+            (Method::OptP, Some(start)) => network::opt_p(image, &start),
+            (Method::OptIter | Method::OptP, _) => {
+                let opt_iter = OptIter { object_count: self.object_count, ..OptIter::default() };
+                network::descend(&Scene::empty([0.0; 3]), |descent| Ok(opt_iter.fit(descent, image)?))
+            }
         }
-        let renderer = ContourRenderer::new(start.edge, start.compositing);
-        let opt_iter = OptIter { object_count: self.object_count, ..OptIter::default() };
-        let harmonics = start.objects.iter().map(|object| object.efd.harmonic_count()).max().unwrap_or(1);
-        let mut descent = Descent::new(&renderer, REFERENCE_VERTICES, harmonics.max(opt_iter.harmonic_count))?;
-        Ok(match self.method {
-            Method::OptP => OptP::default().fit(&mut descent, image, start)?,
-            Method::RandOptP => RandOptP::default().fit(&mut descent, image, start)?,
-            Method::OptIter | Method::Segment => opt_iter.fit(&mut descent, image)?,
-        })
     }
 }
