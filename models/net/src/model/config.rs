@@ -22,6 +22,18 @@ pub enum ShapeHead {
     },
 }
 
+/// How a model says how an object is turned.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RotationHead {
+    /// The sine and cosine of the angle: the paper's. A shape that a turn by 2 pi / k maps on itself has k right answers,
+    /// between which such a head must jump somewhere.
+    #[default]
+    Plain,
+    /// The sine and cosine of k times the angle, for each prototype with its own k: one right answer, no jump.
+    BySymmetry,
+}
+
 /// What an object can be told by.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -56,6 +68,9 @@ pub struct ModelConfig {
     pub head_width: usize,
     /// How shapes are told.
     pub shape: ShapeHead,
+    /// How rotations are told.
+    #[serde(default)]
+    pub rotation: RotationHead,
 }
 
 impl ModelConfig {
@@ -84,6 +99,7 @@ impl ModelConfig {
             slots: Slots::Queries,
             head_width: 256,
             shape: ShapeHead::Prototypes,
+            rotation: RotationHead::Plain,
         }
     }
 
@@ -105,7 +121,14 @@ impl ModelConfig {
     pub fn cells() -> Self {
         let encoder = EncoderConfig::Conv(ConvConfig { patch: 8, channels: vec![48, 96], residual: 1 });
         let transformer = transformer(96, 8, 1, 192);
-        Self { encoder, transformer, slots: Slots::Cells { rows: 8, columns: 8 }, head_width: 96, ..Self::small() }
+        Self {
+            encoder,
+            transformer,
+            slots: Slots::Cells { rows: 8, columns: 8 },
+            head_width: 96,
+            rotation: RotationHead::BySymmetry,
+            ..Self::small()
+        }
     }
 
     fn conv(channels: &[usize], residual: usize, transformer: DetrConfig) -> Self {
@@ -118,6 +141,7 @@ impl ModelConfig {
             slots: Slots::Queries,
             head_width,
             shape: ShapeHead::Prototypes,
+            rotation: RotationHead::Plain,
         }
     }
 

@@ -1,13 +1,13 @@
 //! Latents to the parameters of scenes.
 
-use dvp_core::diff_op::Atan2;
 use dvp_core::real::Real;
 use dvp_core::shape::PrototypeBank;
-use dvp_core::tensor::{Backend, Tensor, TensorError};
+use dvp_core::tensor::{Backend, Tensor};
 
 use super::Latents;
 use super::config::{ModelConfig, Slots};
 use super::prediction::Prediction;
+use super::rotation_head::RotationReader;
 use super::shape_head::ShapeReader;
 use super::slots::centers;
 use crate::error::NetError;
@@ -21,7 +21,7 @@ use crate::weights::Weights;
 pub struct Heads<B: Backend> {
     translation: Mlp<B>,
     scale: Mlp<B>,
-    rotation: Mlp<B>,
+    rotation: RotationReader<B>,
     color: Mlp<B>,
     confidence: Mlp<B>,
     background: Mlp<B>,
@@ -54,7 +54,7 @@ impl<B: Backend> Heads<B> {
             translation,
             anchors,
             scale: head("scale", 1)?,
-            rotation: head("rotation", 2)?,
+            rotation: RotationReader::load(config, bank, &weights.under("rotation"))?,
             color: head("color", 3)?,
             confidence: head("confidence", 1)?,
             background: head("background", 3)?,
@@ -72,8 +72,6 @@ impl<B: Backend> Heads<B> {
             let must = "must be batch x objects x width";
             return Err(NetError::Input { input: "latents", dims: *x.dims(), must });
         };
-        let pairs = self.rotation.forward(x)?.tanh()?;
-        let part = |k| pairs.slice(2, k, 1)?.reshape(&[batch, objects]);
         let (descriptors, prototypes) = self.shape.forward(x)?;
         let mut places = self.translation.forward(x)?;
         if let Some(anchors) = &self.anchors {
@@ -82,10 +80,7 @@ impl<B: Backend> Heads<B> {
         Ok(Prediction {
             translations: places.sigmoid()?,
             scales: self.scale.forward(x)?.sigmoid()?.reshape(&[batch, objects])?,
-            rotations: Tensor::apply::<T, _>(
-                Atan2::new(&[objects]).map_err(TensorError::from)?,
-                &[&part(0)?, &part(1)?],
-            )?,
+            rotations: self.rotation.forward::<T>(x, prototypes.as_ref())?,
             colors: self.color.forward(x)?.sigmoid()?,
             confidences: self.confidence.forward(x)?.sigmoid()?.reshape(&[batch, objects])?,
             background: self.background.forward(&latents.image)?.sigmoid()?,

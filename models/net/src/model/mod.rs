@@ -11,6 +11,7 @@
 //! | `slots` | Conditional DETR, or the places of the grid |
 //! | `heads` | [`Heads`]: latents to the parameters of scenes |
 //! | `shape_head` | attention to the prototypes, or descriptors themselves |
+//! | `rotation_head` | the angle, or one per prototype that knows its symmetry |
 //! | `prediction` | [`Prediction`]: scenes of a batch as tensors, and as scenes |
 //!
 //! *Source*: the paper, section on the architecture; sizes and activations as its implementation has them.
@@ -18,6 +19,7 @@
 mod config;
 mod heads;
 mod prediction;
+mod rotation_head;
 mod shape_head;
 mod slots;
 #[cfg(test)]
@@ -29,7 +31,7 @@ use dvp_core::real::Real;
 use dvp_core::shape::PrototypeBank;
 use dvp_core::tensor::{Backend, Stride, Tensor, TensorError};
 
-pub use config::{ModelConfig, ShapeHead, Slots};
+pub use config::{ModelConfig, RotationHead, ShapeHead, Slots};
 pub use heads::Heads;
 pub use prediction::Prediction;
 use slots::SlotReader;

@@ -104,7 +104,7 @@ impl Run {
             store.newest(console)?.resume(&mut trainer, &device)?;
             curves = Curves::read(&store.path("losses.csv"), trainer.steps())?;
         } else if let Some(file) = &self.settings.start {
-            start_from(&mut trainer, file, &device)?;
+            start_from(&mut trainer, file, &device, console)?;
         }
         let held_out = self.data.held_out(numbers.validation, &self.painter)?;
         let (clock, before) = (Instant::now(), curves.seconds());
@@ -251,15 +251,30 @@ fn model_of(file: &Path) -> Result<Model<Host>> {
     model.with_context(|| file.display().to_string())
 }
 
-/// Takes weights of a file of ours, or of published ones for the encoder.
-fn start_from<B: Backend>(trainer: &mut Trainer<B, f32>, file: &Path, device: &B::Device) -> Result<()> {
+/// Takes weights of a file of ours, or of published ones for the encoder. Weights of other extents than the model's, as in
+/// heads for other shapes, are named and start anew.
+fn start_from<B: Backend>(
+    trainer: &mut Trainer<B, f32>,
+    file: &Path,
+    device: &B::Device,
+    console: &mut Console<'_>,
+) -> Result<()> {
     let bytes = fs::read(file).with_context(|| format!("{} cannot be read", file.display()))?;
     let named = || file.display().to_string();
     let weights = match dvp_core::tensor::safetensors_note(&bytes).with_context(named)? {
         Some(_) => Checkpoint::from_bytes(&bytes).with_context(named)?.weights(device)?,
         None => published(&Parameters::from_safetensors(&bytes, device).with_context(named)?)?,
     };
-    trainer.set_weights(&weights).with_context(named)
+    let mut fitting = Parameters::new();
+    for (name, tensor) in weights.iter() {
+        let own = trainer.parameters().get(name).with_context(named)?.dims();
+        if own == tensor.dims() {
+            fitting.insert(name, tensor)?;
+        } else {
+            writeln!(console.err, "{name} is {} in {}, {own} here: starts anew", tensor.dims(), file.display())?;
+        }
+    }
+    trainer.set_weights(&fitting).with_context(named)
 }
 
 /// Published weights of an encoder, under the path where a model has them.
