@@ -1,19 +1,24 @@
 #!/usr/bin/env bash
-# Trains a model of the size `tiny` in every mode of the paper, gp on two backends. About an hour on one core.
+# Trains a model of the size `tiny` in every mode of the paper, the first steps of gp on two backends.
 # Usage: tests/report/train_modes.sh DVP OUT    (DVP: the command, built with --features burn,candle)
+# A run that is there already goes on.
 set -euo pipefail
 dvp=$1 out=$2
 export RAYON_NUM_THREADS=1
 
 train() { # NAME OPTIONS...
-    "$dvp" train --out "$out/$1" --size tiny --learning-rate 0.002 --warm-up 200 --save-every 250 "${@:2}"
+    if [ -e "$out/$1/run.json" ]; then
+        "$dvp" train --out "$out/$1" --resume
+    else
+        "$dvp" train --out "$out/$1" --size tiny --learning-rate 0.002 --warm-up 200 --save-every 100 "${@:2}"
+    fi
 }
 
 train gp-early --backend candle --mode gp --steps 500 --cosine false
-train gp-candle --backend candle --mode gp --steps 1500
-train ti --backend candle --mode ti --steps 1000
-train ti-plus --backend candle --mode ti+ --steps 1000 --start "$out/gp-early/best.safetensors"
-train ti-tp --backend candle --mode ti-tp --steps 1000 --start "$out/gp-early/best.safetensors"
-train tp --backend candle --mode tp --steps 1000
-train gi --backend candle --mode gi --steps 1000
-train gp-burn --backend burn --mode gp --steps 1500
+train gp --backend candle --mode gp --steps 1500
+train ti --backend candle --mode ti --steps 600
+train ti-plus --backend candle --mode ti+ --steps 600 --start "$out/gp-early/best.safetensors"
+train ti-tp --backend candle --mode ti-tp --steps 600 --start "$out/gp-early/best.safetensors"
+train tp --backend candle --mode tp --steps 600
+train gi --backend candle --mode gi --steps 600
+train gp-early-burn --backend burn --mode gp --steps 500 --cosine false
