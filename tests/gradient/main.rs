@@ -8,4 +8,5 @@ mod optim;
 mod render_contour;
 mod scene;
 mod shape_model;
+mod smooth;
 mod triangles;

@@ -4,7 +4,7 @@ use core::fmt::Write as _;
 
 /// Compares `grad` with central differences of `f` at `x`, lane by lane; all lanes that fail are in one message.
 ///
-/// A lane passes if it agrees to `tolerance` x (1 + the largest of both gradients). The step is 1e-6 x (1 + |x|): an
+/// A lane passes if it agrees to `tolerance` x (1 + the largest of both gradients). The step is that of [`step`]: an
 /// error of about 1e-12 from the third derivative, and 1e-10 x |f| from rounding.
 ///
 /// # Errors
@@ -16,7 +16,7 @@ pub fn compare(x: &[f64], grad: &[f64], tolerance: f64, mut f: impl FnMut(&[f64]
     let mut moved = x.to_vec();
     let mut numeric = Vec::with_capacity(x.len());
     for lane in 0..x.len() {
-        let step = 1e-6 * (1.0 + x[lane].abs());
+        let step = step(x[lane]);
         moved[lane] = x[lane] + step;
         let above = f(&moved);
         moved[lane] = x[lane] - step;
@@ -34,6 +34,12 @@ pub fn compare(x: &[f64], grad: &[f64], tolerance: f64, mut f: impl FnMut(&[f64]
         let _ = write!(message, "lane {lane}: vjp {analytic:e}, differences {numeric:e}; ");
     }
     if message.is_empty() { Ok(()) } else { Err(message) }
+}
+
+/// How far [`compare`] moves `x` to either side.
+#[must_use]
+pub fn step(x: f64) -> f64 {
+    1e-6 * (1.0 + x.abs())
 }
 
 /// The dot product of two slices: the scalar that a cotangent makes of an output.

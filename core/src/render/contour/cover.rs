@@ -174,8 +174,14 @@ impl<T: Real, const BACKWARD: bool> Cover<'_, T, BACKWARD> {
                 if *state == ChunkState::Mixed || (inside != 0 && inside != ALL) {
                     *state = ChunkState::Mixed;
                     record.mixed.push(chunk);
-                } else if inside == ALL {
+                    continue;
+                }
+                if inside == ALL {
                     *state = ChunkState::Full;
+                }
+                if BACKWARD {
+                    // Compositing writes gradients of mixed chunks only, but blocks of an edge may reach into others.
+                    self.tile.grad[chunk] = [T::zero(); LANES];
                 }
             }
         }
