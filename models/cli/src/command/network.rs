@@ -21,10 +21,7 @@ const ROUNDING: f32 = 1.0 / 255.0;
 /// The network of a file, or the one that is built in.
 pub(super) fn load(file: Option<&Path>) -> Result<Proposer> {
     let Some(file) = file else {
-        let bytes = BUILT_IN.context(
-            "no network is built in: name one with --model FILE; `dvp train --out run` makes run/best.safetensors",
-        )?;
-        return Proposer::from_bytes(bytes).context("the network that is built in");
+        return Proposer::from_bytes(BUILT_IN).context("the network that is built in");
     };
     let named = || file.display().to_string();
     let bytes = fs::read(file).with_context(|| format!("{} cannot be read", file.display()))?;

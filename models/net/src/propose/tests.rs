@@ -150,7 +150,9 @@ fn one_thing_is_one_object() {
 
 #[test]
 fn built_in_weights_are_a_model() {
-    if let Some(bytes) = BUILT_IN {
-        Proposer::from_bytes(bytes).unwrap();
-    }
+    let proposer = Proposer::from_bytes(BUILT_IN).unwrap();
+    assert_eq!(
+        *proposer.config(),
+        ModelConfig { transformer: proposer.config().transformer.clone(), ..ModelConfig::cells() }
+    );
 }
