@@ -26,7 +26,7 @@ impl Backend for Burn {
     const NAME: &'static str = "burn";
 
     fn upload(values: Values, dims: &Dims, device: &Device) -> Result<BurnArray, BackendError> {
-        BurnArray::new(values::upload(values, dims, &device.as_dispatch().clone().inner())?)
+        Ok(BurnArray::new(values::upload(values, dims, &device.as_dispatch().clone().inner())?)?.of_rank(dims))
     }
 
     fn download(array: &BurnArray) -> Result<Values, BackendError> {
@@ -47,7 +47,7 @@ impl Backend for Burn {
 
     fn cast(array: &BurnArray, dtype: DType) -> Result<BurnArray, BackendError> {
         values::check_dtype(dtype, array.device().as_dispatch())?;
-        BurnArray::new(Dispatch::float_cast(array.constant(), burn_dtype(dtype).into()))
+        like(Dispatch::float_cast(array.constant(), burn_dtype(dtype).into()), array)
     }
 
     fn unary(function: Unary, array: &BurnArray) -> Result<BurnArray, BackendError> {
@@ -62,7 +62,7 @@ impl Backend for Burn {
             Unary::Sqrt => Dispatch::float_sqrt,
             Unary::Tanh => Dispatch::float_tanh,
         };
-        BurnArray::new(run(array.tensor()))
+        like(run(array.tensor()), array)
     }
 
     #[expect(clippy::float_cmp, reason = "steps that change nothing are left out")]
@@ -74,7 +74,7 @@ impl Backend for Burn {
         if offset != 0.0 {
             tensor = Dispatch::float_add_scalar(tensor, offset.into());
         }
-        BurnArray::new(tensor)
+        like(tensor, array)
     }
 
     fn binary(function: Binary, a: &BurnArray, b: &BurnArray) -> Result<BurnArray, BackendError> {
@@ -85,25 +85,28 @@ impl Backend for Burn {
             Binary::Mul => Dispatch::float_mul,
             Binary::Sub => Dispatch::float_sub,
         };
-        BurnArray::new(run(a.tensor(), b.tensor()))
+        like(run(a.tensor(), b.tensor()), a)
     }
 
     fn greater(a: &BurnArray, b: &BurnArray) -> Result<BurnArray, BackendError> {
         let settings = get_or_init_device_settings::<Dispatch>(a.device().as_dispatch());
         let mask = Dispatch::float_greater(a.constant(), b.constant(), settings.bool_dtype);
-        BurnArray::new(Dispatch::bool_into_float(mask, burn_dtype(a.dtype()).into()))
+        like(Dispatch::bool_into_float(mask, burn_dtype(a.dtype()).into()), a)
     }
 
     fn reshape(array: &BurnArray, dims: &Dims) -> Result<BurnArray, BackendError> {
-        BurnArray::new(Dispatch::float_reshape(array.tensor(), shape(dims)))
+        Ok(BurnArray::new(Dispatch::float_reshape(array.tensor(), shape(dims)))?.of_rank(dims))
     }
 
     fn permute(array: &BurnArray, axes: &[usize]) -> Result<BurnArray, BackendError> {
+        if axes.is_empty() {
+            return Ok(array.clone());
+        }
         BurnArray::new(Dispatch::float_permute(array.tensor(), axes))
     }
 
     fn expand(array: &BurnArray, dims: &Dims) -> Result<BurnArray, BackendError> {
-        BurnArray::new(Dispatch::float_expand(array.tensor(), shape(dims)))
+        like(Dispatch::float_expand(array.tensor(), shape(dims)), array)
     }
 
     fn slice(array: &BurnArray, axis: usize, start: usize, len: usize) -> Result<BurnArray, BackendError> {
@@ -153,7 +156,7 @@ impl Backend for Burn {
     }
 
     fn detach(array: &BurnArray) -> Result<BurnArray, BackendError> {
-        BurnArray::new(array.constant())
+        like(array.constant(), array)
     }
 
     fn is_tracked(array: &BurnArray) -> bool {
@@ -167,6 +170,11 @@ impl Backend for Burn {
     fn gradient(gradients: &BurnGradients, parameter: &BurnArray) -> Option<BurnArray> {
         gradients.of(parameter)
     }
+}
+
+/// Of the rank of `array`, which only rank 0 does not show in burn's tensors.
+fn like(tensor: DispatchTensor, array: &BurnArray) -> Result<BurnArray, BackendError> {
+    Ok(BurnArray::new(tensor)?.of_rank(&array.dims()))
 }
 
 /// Burn panics if tapes with and without checkpointing meet.

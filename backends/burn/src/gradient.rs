@@ -17,7 +17,7 @@ impl BurnGradients {
     /// The gradient of a parameter, as a constant; none if the number did not depend on it.
     pub(crate) fn of(&self, parameter: &BurnArray) -> Option<BurnArray> {
         let gradient = parameter.is_tracked().then(|| Dispatch::grad(&parameter.tensor(), &self.0))?;
-        gradient.and_then(|gradient| BurnArray::new(gradient).ok())
+        Some(BurnArray::new(gradient?).ok()?.of_rank(&parameter.dims()))
     }
 }
 
@@ -29,7 +29,8 @@ impl fmt::Debug for BurnGradients {
 
 /// The same numbers as a leaf of the tape.
 pub(crate) fn parameter(array: &BurnArray) -> Result<BurnArray, BackendError> {
-    BurnArray::new(Dispatch::float_set_require_grad(Dispatch::from_inner(array.constant()), true))
+    let leaf = Dispatch::float_set_require_grad(Dispatch::from_inner(array.constant()), true);
+    Ok(BurnArray::new(leaf)?.of_rank(&array.dims()))
 }
 
 /// Gradients of a tracked number. Burn panics if the tape, or a part of it, was used up by a former call; that is an error

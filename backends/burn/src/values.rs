@@ -14,7 +14,8 @@ use dvp_core::real::{DType, Values, ValuesRef};
 use dvp_core::tensor::BackendError;
 
 /// An array of burn, of any rank up to [`dvp_core::dims::MAX_RANK`], in f32 or f64. Constants are without autodiff,
-/// whatever device they were made on.
+/// whatever device they were made on. A single number, of rank 0, has an axis of one in burn: on graphics cards burn
+/// takes no tensors of rank 0.
 #[derive(Clone)]
 pub struct BurnArray {
     tensor: DispatchTensor,
@@ -36,6 +37,11 @@ impl BurnArray {
         };
         let tensor = if Dispatch::is_tracked(&tensor) { tensor } else { without_autodiff(tensor) };
         Ok(Self { tensor, dims, dtype })
+    }
+
+    /// The same, of rank 0 if `dims` is.
+    pub(crate) fn of_rank(self, dims: &Dims) -> Self {
+        if dims.rank() == 0 { Self { dims: Dims::SCALAR, ..self } } else { self }
     }
 
     /// Burn's tensor; cheap.
@@ -154,7 +160,7 @@ pub(crate) fn burn_dtype(dtype: DType) -> BurnDType {
 }
 
 pub(crate) fn shape(dims: &Dims) -> Shape {
-    Shape::from(dims.extents().to_vec())
+    if dims.rank() == 0 { Shape::from([1]) } else { Shape::from(dims.extents().to_vec()) }
 }
 
 /// The tensor off the tape and off the autodiff device.

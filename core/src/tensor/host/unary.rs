@@ -10,7 +10,9 @@ pub(super) fn value<T: Real>(function: Unary, x: T) -> T {
         Unary::Erf => T::of(libm::erf(x.as_f64())),
         Unary::Exp => x.exp(),
         Unary::Log => x.ln(),
-        Unary::Relu => x.max(T::zero()),
+        // `max` would make a number of NaN.
+        Unary::Relu if x < T::zero() => T::zero(),
+        Unary::Relu => x,
         Unary::Sin => x.sin(),
         Unary::Sqrt => x.sqrt(),
         Unary::Tanh => x.tanh(),
@@ -32,5 +34,15 @@ pub(super) fn derivative<T: Real>(function: Unary, x: T) -> T {
         Unary::Sin => x.cos(),
         Unary::Sqrt => (x.sqrt() + x.sqrt()).recip(),
         Unary::Tanh => one - x.tanh() * x.tanh(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nan_stays_nan() {
+        assert!(Unary::ALL.into_iter().all(|function| value(function, f64::NAN).is_nan()));
     }
 }
