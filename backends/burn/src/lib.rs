@@ -32,7 +32,8 @@
 //! `Device::flex()`, burn's CPU backend, is always there. The feature `wgpu` adds graphics cards by Vulkan, Metal or DirectX
 //! and builds anywhere; `cuda` needs CUDA's libraries, and the network while it is built. Graphics cards mostly have no
 //! f64: [`Backend::upload`](dvp_core::tensor::Backend::upload) says so. Steps of the core run on the CPU: their inputs are
-//! copied there and their outputs back, 0.8 MB per image of 256 x 256 pixels and direction.
+//! copied there and their outputs back, 0.8 MB per image of 256 x 256 pixels and direction. The tests here pass on Vulkan
+//! played by the CPU (llvmpipe, Debian's `mesa-vulkan-drivers`): `cargo test -p dvp-burn --features wgpu --lib`.
 //!
 //! # Speed
 //!
@@ -42,6 +43,7 @@
 //!
 //! - Burn's tape is used up by its first walk back; a second is an error, as is mixing tensors made with and without
 //!   burn's gradient checkpointing.
+//! - On graphics cards the way back of arrays without numbers is a panic of burn's, returned as an error.
 //! - A step that refuses an item on the way back cannot stop burn: the gradient of its whole input is NaN.
 //! - Tensors that share a parameter share a tape, which one thread at a time walks: a parameter per thread.
 //! - Derivatives of a quotient square the divisor, which is 0 in f32 below 1e-23.

@@ -121,6 +121,7 @@ impl Chart {
             .y_desc(self.y)
             .x_labels(steps)
             .x_label_formatter(&|x| format!("{x:.digits$}"))
+            .y_label_formatter(&|y| if *y < 0.1 && self.log { format!("{y:.0e}") } else { format!("{y:.1}") })
             .light_line_style(TRANSPARENT)
             .draw()?;
         for (line, color) in self.lines.iter().zip(COLORS.iter().cycle()) {
