@@ -3,8 +3,8 @@
 use alloc::boxed::Box;
 use alloc::vec;
 use core::fmt;
-use core::marker::PhantomData;
 
+use super::memory::Memory;
 use super::{DiffOp, OpError, Signature};
 use crate::real::{DType, Real, Values, ValuesRef};
 
@@ -38,17 +38,24 @@ pub trait HostOp: fmt::Debug + Send + Sync {
 }
 
 /// A [`DiffOp`] as a [`HostOp`]. Items run in parallel with the feature `parallel`; results do not depend on it.
-#[derive(Debug)]
-pub struct Batched<T, O> {
+///
+/// *Memory*: with the feature `std` a scratch per thread is kept from batch to batch, as long as this lives.
+pub struct Batched<T: Real, O: DiffOp<T>> {
     op: O,
-    number: PhantomData<T>,
+    memory: Memory<O::Scratch>,
+}
+
+impl<T: Real, O: DiffOp<T>> fmt::Debug for Batched<T, O> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Batched").field("op", &self.op).finish_non_exhaustive()
+    }
 }
 
 impl<T: Real, O: DiffOp<T>> Batched<T, O> {
     /// Wraps `op`.
     #[must_use]
     pub fn new(op: O) -> Self {
-        Self { op, number: PhantomData }
+        Self { op, memory: Memory::default() }
     }
 
     fn name(&self) -> &'static str {
@@ -96,10 +103,15 @@ impl<T: Real, O: DiffOp<T>> HostOp for Batched<T, O> {
         let input = self.borrow("input", input, batch * width)?;
         let mut output = vec![T::zero(); batch * height];
         let mut saved = vec![T::zero(); batch * depth];
-        for_each_item(batch, [(&mut output, height), (&mut saved, depth)], |item, [output, saved], scratch| {
-            let input = &input[item * width..][..width];
-            self.op.forward(item, input, output, saved, scratch).map_err(|cause| self.refused(item, cause))
-        })?;
+        for_each_item(
+            batch,
+            &self.memory,
+            [(&mut output, height), (&mut saved, depth)],
+            |item, [output, saved], scratch| {
+                let input = &input[item * width..][..width];
+                self.op.forward(item, input, output, saved, scratch).map_err(|cause| self.refused(item, cause))
+            },
+        )?;
         Ok((T::into_values(output), T::into_values(saved)))
     }
 
@@ -116,7 +128,7 @@ impl<T: Real, O: DiffOp<T>> HostOp for Batched<T, O> {
         let saved = self.borrow("what forward saved", saved, batch * depth)?;
         let grad_output = self.borrow("gradient of the output", grad_output, batch * height)?;
         let mut grad = vec![T::zero(); batch * width];
-        for_each_item(batch, [(&mut grad, width), (&mut [], 0)], |item, [grad, _], scratch| {
+        for_each_item(batch, &self.memory, [(&mut grad, width), (&mut [], 0)], |item, [grad, _], scratch| {
             let of_item = |values: &'_ [T], len: usize| item * len..(item * len + len).min(values.len());
             let (input, saved) = (&input[of_item(input, width)], &saved[of_item(saved, depth)]);
             let grad_output = &grad_output[of_item(grad_output, height)];
@@ -130,10 +142,11 @@ impl<T: Real, O: DiffOp<T>> HostOp for Batched<T, O> {
 #[cfg(not(feature = "parallel"))]
 fn for_each_item<T: Real, S: Default>(
     batch: usize,
+    memory: &Memory<S>,
     [(first, first_len), (second, second_len)]: [(&mut [T], usize); 2],
     run: impl Fn(usize, [&mut [T]; 2], &mut S) -> Result<(), OpError>,
 ) -> Result<(), OpError> {
-    let mut scratch = S::default();
+    let mut scratch = memory.take();
     let (mut first, mut second) = (first, second);
     for item in 0..batch {
         let (head, tail) = core::mem::take(&mut first).split_at_mut(first_len);
@@ -146,8 +159,9 @@ fn for_each_item<T: Real, S: Default>(
 
 /// As without the feature `parallel`, items side by side: a scratch per thread's run of items.
 #[cfg(feature = "parallel")]
-fn for_each_item<T: Real, S: Default>(
+fn for_each_item<T: Real, S: Default + Send>(
     batch: usize,
+    memory: &Memory<S>,
     [(first, first_len), (second, second_len)]: [(&mut [T], usize); 2],
     run: impl Fn(usize, [&mut [T]; 2], &mut S) -> Result<(), OpError> + Sync,
 ) -> Result<(), OpError> {
@@ -163,6 +177,6 @@ fn for_each_item<T: Real, S: Default>(
         items.push((item, [head, second_head]));
     }
     let done: Vec<Result<(), OpError>> =
-        items.into_par_iter().map_init(S::default, |scratch, (item, parts)| run(item, parts, scratch)).collect();
+        items.into_par_iter().map_init(|| memory.take(), |scratch, (item, parts)| run(item, parts, scratch)).collect();
     done.into_iter().collect()
 }

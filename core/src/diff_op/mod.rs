@@ -9,6 +9,7 @@
 //! | `mod` | the contract, [`DiffOp`], and its errors |
 //! | `signature` | [`Signature`]: names and extents of what a step takes and gives |
 //! | `batch` | [`HostOp`], [`Batched`]: a batch of items, either number type |
+//! | `memory` | memory of a step, kept from batch to batch |
 //! | `atan2` | [`Atan2`]: a (y, x) pair to an angle |
 //!
 //! The other ops stand beside the maths that they wrap: outlines and prototypes in [`shape`](crate::shape), poses in
@@ -17,6 +18,7 @@
 
 mod atan2;
 mod batch;
+mod memory;
 mod signature;
 #[cfg(test)]
 mod tests;
@@ -37,7 +39,7 @@ use crate::real::{DType, Real};
 /// taken instead.
 pub trait DiffOp<T: Real>: fmt::Debug + Send + Sync {
     /// Memory kept between items.
-    type Scratch: Default;
+    type Scratch: Default + Send;
     /// Why an item is refused.
     type Error: core::error::Error + Send + Sync + 'static;
 

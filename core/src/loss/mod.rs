@@ -64,7 +64,7 @@ pub trait Loss<T: Real> {
     /// Holds the gradient with respect to the judged part of the input.
     type Grad: ?Sized;
     /// Memory kept between calls.
-    type Scratch: Default;
+    type Scratch: Default + Send;
 
     /// The loss.
     ///

@@ -52,7 +52,7 @@ pub enum PixelLoss {
 /// Paints drawings.
 pub trait Renderer<T: Real> {
     /// Memory kept between calls; after the first call of a size nothing is allocated.
-    type Scratch: Default;
+    type Scratch: Default + Send;
 
     /// Paints `drawing` into planar `image` (3 x height x width).
     ///

@@ -15,7 +15,7 @@ use crate::render::RenderError;
 /// [`TileRenderer`]: super::TileRenderer
 pub trait CoverageModel<T: Real> {
     /// What [`Self::cover`] leaves for [`Self::cover_vjp`], and memory kept between calls; one per object.
-    type Record: Default + core::fmt::Debug;
+    type Record: Default + core::fmt::Debug + Send;
 
     /// Checks the model's settings.
     ///
