@@ -145,8 +145,13 @@ impl Backend for Host {
     }
 
     fn slice(array: &HostArray, axis: usize, start: usize, len: usize) -> Result<HostArray, BackendError> {
-        let indices: Vec<usize> = (start..start + len).collect();
-        Self::select(array, axis, &indices)
+        let own = array.dims();
+        let values = by_type!(array.values(), x => strided::cut(x, &own, axis, [start, len]));
+        Ok(HostArray::tracked(values, own.with(axis, len), &[array], move |grad| {
+            let mut whole = Values::zeros(grad.dtype(), own.len());
+            strided::paste(&mut whole, &own, axis, start, grad);
+            Ok(vec![whole])
+        }))
     }
 
     fn concat(arrays: &[&HostArray], axis: usize) -> Result<HostArray, BackendError> {
@@ -154,16 +159,15 @@ impl Backend for Host {
         let extents: Vec<usize> = arrays.iter().map(|array| array.dims().extents()[axis]).collect();
         let dims = first.dims().with(axis, extents.iter().sum());
         let mut values = Values::zeros(first.values().dtype(), dims.len());
-        let mut starts = Vec::with_capacity(arrays.len());
+        let mut parts = Vec::with_capacity(arrays.len());
         let mut start = 0;
         for (array, &extent) in arrays.iter().zip(&extents) {
-            let indices: Vec<usize> = (start..start + extent).collect();
-            scatter(&mut values, &dims, axis, &indices, array.values());
-            starts.push(indices);
+            strided::paste(&mut values, &dims, axis, start, array.values());
+            parts.push([start, extent]);
             start += extent;
         }
         Ok(HostArray::tracked(values, dims, arrays, move |grad| {
-            Ok(starts.iter().map(|indices| selected(grad, &dims, axis, indices)).collect())
+            Ok(parts.iter().map(|&part| by_type!(grad, g => strided::cut(g, &dims, axis, part))).collect())
         }))
     }
 

@@ -100,6 +100,36 @@ pub(super) fn select<T: Real>(x: &[T], dims: &Dims, axis: usize, indices: &[usiz
     chosen
 }
 
+/// `len` indices of an axis from `start` on.
+pub(super) fn cut<T: Real>(x: &[T], dims: &Dims, axis: usize, [start, len]: [usize; 2]) -> Vec<T> {
+    let [outer, extent, inner] = around(dims, axis);
+    let mut part = Vec::with_capacity(outer * len * inner);
+    for block in x.chunks_exact((extent * inner).max(1)) {
+        part.extend_from_slice(&block[start * inner..][..len * inner]);
+    }
+    part
+}
+
+/// Writes `part` to the indices of an axis of `whole`, of extents `dims`, from `start` on.
+pub(super) fn paste(whole: &mut Values, dims: &Dims, axis: usize, start: usize, part: &Values) {
+    match (whole, part) {
+        (Values::F32(whole), Values::F32(part)) => paste_real(whole, dims, axis, start, part),
+        (Values::F64(whole), Values::F64(part)) => paste_real(whole, dims, axis, start, part),
+        _ => {}
+    }
+}
+
+fn paste_real<T: Real>(whole: &mut [T], dims: &Dims, axis: usize, start: usize, part: &[T]) {
+    let [outer, extent, inner] = around(dims, axis);
+    let row = part.len() / outer.max(1);
+    if row == 0 {
+        return;
+    }
+    for (block, part) in whole.chunks_exact_mut(extent * inner).zip(part.chunks_exact(row)) {
+        block[start * inner..][..row].copy_from_slice(part);
+    }
+}
+
 /// Adds `part` to the given indices of an axis of `whole`, of extents `dims`.
 pub(super) fn scatter(whole: &mut Values, dims: &Dims, axis: usize, indices: &[usize], part: &Values) {
     match (whole, part) {
