@@ -37,7 +37,7 @@
 //!
 //! # Speed
 //!
-//! Under *Backends* in the README of the repository, beside the other backends; `cargo bench -p dvp-tests --bench backends`.
+#![doc = include_str!("../../speed.md")]
 //!
 //! # Limits
 //!

@@ -75,7 +75,7 @@ pub struct ModelConfig {
 
 impl ModelConfig {
     /// The paper's: a frozen DINOv2 ViT-B/14 with registers, a transformer of 6 + 6 layers of width 256, 8 queries.
-    /// 86.6 M numbers in the encoder, 18 M that train.
+    /// 86.6 M numbers in the encoder, 20 M that train.
     #[must_use]
     pub fn paper() -> Self {
         let model = Dinov2Config {
