@@ -16,9 +16,9 @@ train() { # NAME OPTIONS...
 
 train gp-early --backend candle --mode gp --steps 500 --cosine false
 train gp --backend candle --mode gp --steps 1500
-train ti --backend candle --mode ti --steps 600
-train ti-plus --backend candle --mode ti+ --steps 600 --start "$out/gp-early/best.safetensors"
-train ti-tp --backend candle --mode ti-tp --steps 600 --start "$out/gp-early/best.safetensors"
-train tp --backend candle --mode tp --steps 600
-train gi --backend candle --mode gi --steps 600
+train ti --backend candle --mode ti --steps 400
+train ti-plus --backend candle --mode ti+ --steps 400 --start "$out/gp-early/best.safetensors"
+train ti-tp --backend candle --mode ti-tp --steps 400 --start "$out/gp-early/best.safetensors"
+train tp --backend candle --mode tp --steps 400
+train gi --backend candle --mode gi --steps 400
 train gp-early-burn --backend burn --mode gp --steps 500 --cosine false
