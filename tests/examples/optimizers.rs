@@ -11,6 +11,7 @@ use std::path::Path;
 
 use cpu_time::ThreadTime;
 use dvp::format::DataSet;
+use dvp::method::perturbed;
 use dvp_core::loss::ImagePair;
 use dvp_core::metric::{Ownership, Tally};
 use dvp_core::render::contour::ContourRenderer;
@@ -24,7 +25,6 @@ use dvp_fit::opt_iter::OptIter;
 use dvp_fit::opt_p::OptP;
 use dvp_fit::rand_opt_p::{RandOptP, random_scene};
 use dvp_fit::refine::{Refine, RefineScratch};
-use dvp_tests::perturb::perturbed;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 

@@ -2,13 +2,13 @@
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test with a line number")]
 
+use dvp::method::perturbed;
 use dvp::paint::Painter;
 use dvp_core::render::Compositing;
 use dvp_core::shape::mdshr_bank;
 use dvp_core::{Efd, Image, ImageSize, Object, Pose, Scene};
 use dvp_fit::refine::{Refine, RefineScratch};
 use dvp_fit::{Ambiguity, FitError};
-use dvp_tests::perturb::perturbed;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 

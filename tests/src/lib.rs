@@ -6,7 +6,6 @@ pub mod finite_difference;
 pub mod fixture;
 pub mod golden;
 pub mod hard_geometry;
-pub mod perturb;
 pub mod picture_set;
 pub mod strategy;
 

@@ -7,9 +7,10 @@
 //! | [`svg`] | scenes as vector graphics |
 //! | [`paint`] | scenes to images with a renderer chosen by name |
 //! | [`generate`] | random scenes |
+//! | [`method`] | the methods that find scenes, by name |
 //! | [`command`] | the sub-commands: arguments, threads, tables |
 //!
-//! Everything but [`command`] and [`chart`] has its own error enum; those two use anyhow.
+//! Everything but [`command`], [`method`] and [`chart`] has its own error enum; those three use anyhow.
 
 extern crate alloc;
 
@@ -17,5 +18,6 @@ pub mod chart;
 pub mod command;
 pub mod format;
 pub mod generate;
+pub mod method;
 pub mod paint;
 pub mod svg;

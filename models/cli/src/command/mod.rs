@@ -7,7 +7,6 @@ mod evaluate;
 mod fit;
 mod generate;
 mod gradients;
-mod network;
 mod options;
 mod progress;
 mod prototypes;

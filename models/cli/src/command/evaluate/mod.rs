@@ -11,12 +11,13 @@ use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
 use dvp_core::{Image, ImageSize, Scene};
 
-use self::finder::{Finder, NetworkArguments};
+use self::finder::NetworkArguments;
 use self::report::{Row, Totals};
 use self::score::{Score, Scratch, Truth, score_images, score_masks};
 use super::options::{BatchArguments, PaintArguments};
 use super::{Console, Outcome};
 use crate::format::{DataSet, Place, Sample, SceneJson, read_labels, read_npy, read_picture, read_scene, write_atomic};
+use crate::method::{Runner, Task, seed_of};
 use crate::paint::Painter;
 
 /// Scores a folder of predictions (STEM.json, as `dvp fit` writes them), or a network, against a data set.
@@ -83,7 +84,7 @@ struct Judge<'a> {
 /// Where predicted scenes come from.
 enum Predictions<'a> {
     Folder(&'a Path),
-    Network(Box<Finder>),
+    Network(Box<Runner>),
 }
 
 impl Arguments {
@@ -97,11 +98,11 @@ impl Arguments {
                 Ok((Predictions::Folder(predictions), DataSet::open(data)?))
             }
             (Some(data), None, None) => {
-                Ok((Predictions::Network(Box::new(self.network.finder()?)), DataSet::open(data)?))
+                Ok((Predictions::Network(Box::new(self.network.runner()?)), DataSet::open(data)?))
             }
             (None, None, Some(count)) => {
                 let data = generated::mds_hr(count, self.network.seed)?;
-                Ok((Predictions::Network(Box::new(self.network.finder()?)), data))
+                Ok((Predictions::Network(Box::new(self.network.runner()?)), data))
             }
             _ => bail!("a network is scored on one thing: the folder of a data set, or --generated N"),
         }
@@ -156,11 +157,13 @@ impl Judge<'_> {
                 }
                 self.compare(sample, truth.as_ref(), &image, [&found; 2], scratch)
             }
-            Predictions::Network(finder) => {
+            Predictions::Network(runner) => {
                 let image = self.true_image(index, sample, truth.as_ref(), None)?;
-                let found = finder.find(image.view(), &sample.stem, truth.as_ref(), &mut scratch.refine)?;
-                let score = self.compare(sample, truth.as_ref(), &image, [&found.scene, &found.there], scratch)?;
-                Ok(Score { cpu_ms: Some(found.cpu_ms), ..score })
+                let seed = seed_of(&sample.stem, self.arguments.network.seed);
+                let task = Task { image: image.view(), start: None, truth: truth.as_ref(), seed };
+                let found = runner.run(&task, &mut scratch.method)?;
+                let score = self.compare(sample, truth.as_ref(), &image, [&found.fit.scene, &found.there], scratch)?;
+                Ok(Score { cpu_ms: Some(found.cpu.as_secs_f64() * 1e3), ..score })
             }
         }
     }

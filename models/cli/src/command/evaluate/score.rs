@@ -5,8 +5,8 @@ use dvp_core::loss::{ImagePair, Loss, Ssim, SsimScratch};
 use dvp_core::metric::{MaskOverlap, Ownership, OwnershipRule, RandIndexScratch, adjusted_rand_index};
 use dvp_core::render::{Compositing, ContourRenderer, PixelLoss, Renderer};
 use dvp_core::{ImageSize, ImageView, Scene};
-use dvp_fit::refine::RefineScratch;
 
+use crate::method::Memory;
 use crate::paint::Painter;
 
 /// The scores of one image.
@@ -39,7 +39,7 @@ pub(super) struct Scratch {
     render: <ContourRenderer<f32> as Renderer<f32>>::Scratch,
     found: Ownership,
     truth: Ownership,
-    pub(super) refine: RefineScratch<f32>,
+    pub(super) method: Memory,
 }
 
 /// Compares images of one size.

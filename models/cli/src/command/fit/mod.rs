@@ -17,8 +17,9 @@ use self::inputs::Input;
 use self::report::{FoundScene, Report};
 use self::solver::{Method, Scratch, Solver, Start};
 use super::options::{BankChoice, BatchArguments, CompositingName};
-use super::{Console, Outcome, network};
+use super::{Console, Outcome};
 use crate::format::{Place, SceneJson, encode_png, read_npy, read_picture, write_atomic};
+use crate::method::load_network;
 use crate::paint::Painter;
 use crate::svg::to_svg;
 
@@ -89,7 +90,7 @@ impl Arguments {
             StartChoice::Net if self.bank != BankChoice::None => {
                 bail!("--start net takes the shapes that the network knows: leave --bank away")
             }
-            StartChoice::Net => Start::Network(Box::new(network::load(self.model.as_deref())?)),
+            StartChoice::Net => Start::Network(Box::new(load_network(self.model.as_deref())?)),
         };
         Solver::new(self.method, options, start, self.objects, self.seed)
     }

@@ -5,17 +5,16 @@ use core::time::Duration;
 use std::panic::catch_unwind;
 use std::path::PathBuf;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Result, bail};
 use clap::ValueEnum;
-use cpu_time::ThreadTime;
 use dvp_core::{ImageView, Scene};
 use dvp_fit::opt_iter::OptIter;
-use dvp_fit::refine::RefineScratch;
+use dvp_fit::refine::{Refine, RefineScratch};
 use dvp_fit::{Bank, Fit, FitOptions, FitScratch, Fitter};
 use dvp_net::propose::Proposer;
 
-use crate::command::network;
 use crate::format::{Place, read_scene};
+use crate::method;
 
 /// How a scene is found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -92,10 +91,9 @@ impl Solver {
             }
             _ => None,
         };
-        let clock = ThreadTime::try_now().context("the system has no thread clock")?;
         // A defect in the fit of one picture must not cost the others.
-        let fit = catch_unwind(AssertUnwindSafe(|| self.run(image, read, stem, scratch)));
-        let time = clock.try_elapsed().context("the system has no thread clock")?;
+        let run = || Ok(catch_unwind(AssertUnwindSafe(|| self.run(image, read, stem, scratch))));
+        let (fit, time) = method::timed(run)?;
         match fit {
             Ok(fit) => Ok((fit?, time)),
             Err(_) => {
@@ -123,16 +121,18 @@ impl Solver {
         match (self.method, start) {
             (Method::Segment, Some(start)) => {
                 let FitOptions { compositing, max_objects, .. } = self.options;
-                network::refine(image, &start, compositing.unwrap_or_default(), max_objects, &mut scratch.refine)
+                let (compositing, settings) = (compositing.unwrap_or_default(), Refine::default());
+                method::refine(&settings, image, &start, compositing, max_objects, &mut scratch.refine)
             }
             (Method::Segment, None) => Ok(self.fitter.fit(image, &mut scratch.fit)?),
             (Method::RandOptP, _) => {
-                network::rand_opt_p(image, &network::random_start(self.bank(), self.object_count, self.seed, stem))
+                let seed = method::seed_of(stem, self.seed);
+                method::rand_opt_p(image, &method::random_start(self.bank(), self.object_count, seed))
             }
-            (Method::OptP, Some(start)) => network::opt_p(image, &start),
+            (Method::OptP, Some(start)) => method::opt_p(image, &start),
             (Method::OptIter | Method::OptP, _) => {
                 let opt_iter = OptIter { object_count: self.object_count, ..OptIter::default() };
-                network::descend(&Scene::empty([0.0; 3]), |descent| Ok(opt_iter.fit(descent, image)?))
+                method::descend(&Scene::empty([0.0; 3]), |descent| Ok(opt_iter.fit(descent, image)?))
             }
         }
     }

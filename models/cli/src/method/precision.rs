@@ -1,0 +1,63 @@
+//! Scenes and fits in another precision than they came in.
+
+use clap::ValueEnum;
+use dvp_core::render::EdgeProfile;
+use dvp_core::{Efd, Object, Pose, Real, Scene};
+use dvp_fit::{Bank, Fit};
+
+/// Numbers to compute with.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, ValueEnum)]
+pub enum Precision {
+    /// 32 bits
+    #[default]
+    F32,
+    /// 64 bits
+    F64,
+}
+
+fn number<A: Real, B: Real>(value: A) -> B {
+    B::of(value.as_f64())
+}
+
+fn efd<A: Real, B: Real>(efd: &Efd<A>) -> Efd<B> {
+    Efd::new(efd.rows().iter().map(|row| row.map(number)).collect())
+}
+
+pub(super) fn bank<A: Real, B: Real>(bank: &Bank<A>) -> Bank<B> {
+    Bank { prototypes: bank.prototypes.iter().map(|(name, shape)| (name.clone(), efd(shape))).collect() }
+}
+
+pub(super) fn scene<A: Real, B: Real>(scene: &Scene<A>) -> Scene<B> {
+    let object = |object: &Object<A>| {
+        let Pose { translation, scale, rotation } = object.pose;
+        Object {
+            pose: Pose { translation: translation.map(number), scale: number(scale), rotation: number(rotation) },
+            color: object.color.map(number),
+            confidence: number(object.confidence),
+            efd: efd(&object.efd),
+            prototype: object.prototype,
+        }
+    };
+    let EdgeProfile { law, offset, sigma, cut } = scene.edge;
+    Scene {
+        background: scene.background.map(number),
+        objects: scene.objects.iter().map(object).collect(),
+        edge: EdgeProfile { law, offset: number(offset), sigma: number(sigma), cut: number(cut) },
+        compositing: scene.compositing,
+    }
+}
+
+pub(super) fn fit<A: Real, B: Real>(fit: &Fit<A>) -> Fit<B> {
+    Fit {
+        scene: scene(&fit.scene),
+        loss: number(fit.loss),
+        steps: fit.steps,
+        stop: fit.stop,
+        covariance: fit.covariance.iter().map(|block| block.map(number)).collect(),
+        ambiguity: fit.ambiguity.clone(),
+        unexplained: fit.unexplained,
+        buys: fit.buys.clone(),
+        noise: number(fit.noise),
+        bits: fit.bits,
+    }
+}
