@@ -136,7 +136,7 @@ pub enum Completion {
 pub struct Fit<T> {
     /// The scene found.
     pub scene: Scene<T>,
-    /// Mean absolute error of its rendering against the image.
+    /// Mean absolute error of its rendering against the image, over the pixels looked at (see [`Fitter::fit`]).
     pub loss: T,
     /// Optimiser steps (LM or Adam) in all.
     pub steps: usize,

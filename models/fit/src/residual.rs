@@ -83,6 +83,11 @@ impl<T: Real> Residual<T> {
         simd::dispatch(Bits { largest: &self.largest, width: self.width.max(1), scale, rows: &self.bits })
     }
 
+    /// Pixels with a larger difference in some channel.
+    pub(crate) fn count_all_above(&self, threshold: T) -> usize {
+        self.largest.iter().filter(|&&largest| largest > threshold).count()
+    }
+
     /// Share of the variance of `image` that neither `rendered` nor noise of standard deviation `noise` explains, [0, 1], and
     /// that variance, noise excepted, as a sum of squares over all values.
     pub(crate) fn unexplained(image: &ImageView<'_, T>, rendered: &[T], noise: T) -> (f64, f64) {

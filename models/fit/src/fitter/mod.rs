@@ -4,7 +4,7 @@
 //! how their outlines meet), `known` poses the
 //! prototypes of a bank, `unknown` fits free outlines, `twins` splits what is several objects of one color; `run` is what
 //! they share: rendering (`shown`: only where something changed), colors, pruning, and the doubt that goes with the result
-//! (`ambiguity`: what it leaves open).
+//! (`ambiguity`: what it leaves open). `subsample` takes large pictures with wide edges down to the size that they need.
 
 mod ambiguity;
 mod junction;
@@ -14,6 +14,7 @@ mod pieces;
 mod readings;
 mod run;
 mod shown;
+pub(crate) mod subsample;
 #[cfg(test)]
 mod tests;
 mod twins;
@@ -41,6 +42,7 @@ use crate::split::twins::TwinScratch;
 use crate::{Fit, FitError, FitOptions};
 use run::{Care, Run};
 use shown::Shown;
+use subsample::Subsampling;
 
 /// Fits images; prepared once from the options, shared between threads.
 #[derive(Clone, Debug)]
@@ -72,12 +74,26 @@ pub struct FitScratch<T: Real> {
     /// The coder that wrote the image, if one is known.
     code: Option<BlockCode<T>>,
     code_bits: CodeScratch<T>,
+    /// Which pixels of the image were looked at, if not all.
+    subsampling: Option<Subsampling>,
 }
 
 impl<T: Real> FitScratch<T> {
-    /// The segments of the last fit.
+    /// Forgets the last image.
+    fn forget(&mut self) {
+        self.shown.forget();
+        self.code = None;
+        self.code_bits.forget();
+    }
+
+    /// The segments of the last fit; their samples are of the pixels looked at.
     pub(crate) fn segments(&self) -> &[crate::segment::Segment<T>] {
         self.segmentation.segments()
+    }
+
+    /// A sample of a segment of the last fit, as one of the image.
+    pub(crate) fn restore_sample(&self, sample: &EdgeSample<T>) -> EdgeSample<T> {
+        self.subsampling.map_or(*sample, |subsampling| subsampling.restore_sample(sample))
     }
 }
 
@@ -117,15 +133,22 @@ impl<T: Real> Fitter<T> {
         Ok(Self { options, prototypes, outlines, basis })
     }
 
-    /// From pixels to a scene.
+    /// From pixels to a scene. In pictures of 512 x 512 pixels and more whose edges are many pixels wide, every k-th pixel
+    /// is looked at: they tell those between.
     ///
     /// # Errors
     /// [`FitError::NotFinite`] for an image with NaN or infinity.
     pub fn fit(&self, image: ImageView<'_, T>, scratch: &mut FitScratch<T>) -> Result<Fit<T>, FitError> {
         check_finite(&image)?;
-        scratch.shown.forget();
-        scratch.code = None;
-        scratch.code_bits.forget();
+        scratch.forget();
+        scratch.subsampling = Subsampling::of(&image);
+        if let Some(subsampling) = scratch.subsampling {
+            if let Some(fit) = self.fit_subsampled(image, subsampling, scratch)? {
+                return Ok(fit);
+            }
+            scratch.subsampling = None;
+            scratch.forget();
+        }
         self.best_reading(image, scratch)
     }
 

@@ -1,9 +1,13 @@
 use alloc::vec::Vec;
 
-use dvp_core::render::{Compositing, EdgeProfile};
+use dvp_core::render::contour::ContourRenderer;
+use dvp_core::render::{Compositing, EdgeProfile, Renderer};
 use dvp_core::{Drawing, Image, ImageSize};
 
 use super::shown::Shown;
+use super::subsample::Subsampling;
+use super::{FitScratch, Fitter};
+use crate::FitOptions;
 use crate::residual::Residual;
 
 /// A disk of 24 vertices, scene units.
@@ -56,4 +60,55 @@ fn what_is_shown_is_what_a_whole_rendering_shows() {
             assert!((bits - expected).abs() < 1e-5 * expected, "step {step}: {bits} bits instead of {expected}");
         }
     }
+}
+
+/// Not square, of odd sides.
+const LARGE: (usize, usize) = (1203, 1131);
+const DISKS: [([f64; 2], f64); 3] = [([0.3, 0.35], 0.12), ([0.7, 0.6], 0.1), ([0.25, 0.75], 0.07)];
+
+/// Three disks with edges of so many pixels.
+fn large(width_px: f64) -> Image<f64> {
+    let size = ImageSize::new(LARGE.0, LARGE.1).unwrap();
+    let edge = EdgeProfile::distance(2.0 * width_px / f64::from(u32::try_from(size.unit_px()).unwrap()));
+    let mut image = Image::zeros(size);
+    let renderer = ContourRenderer::new(edge, Compositing::Over);
+    renderer.render(&drawing(&DISKS), size, &mut Default::default(), image.data_mut()).unwrap();
+    image
+}
+
+#[test]
+fn every_kth_pixel_tells_where_objects_with_wide_edges_are() {
+    let image = large(5.0);
+    let taken = Subsampling::of(&image.view()).unwrap();
+    assert!(taken.image(&image.view()).size().unit_px() < 600, "{taken:?}");
+    let fit = Fitter::new(FitOptions::default()).unwrap().fit(image.view(), &mut FitScratch::default()).unwrap();
+    assert_eq!(fit.scene.objects.len(), DISKS.len());
+    for (center, radius) in DISKS {
+        let off = |at: [f64; 2]| (at[0] - center[0]).abs().max((at[1] - center[1]).abs());
+        let nearest = fit.scene.objects.iter().map(|object| &object.pose);
+        let pose = nearest.min_by(|a, b| off(a.translation).total_cmp(&off(b.translation))).unwrap();
+        // Half a pixel of the image, a tenth of an edge.
+        assert!(off(pose.translation) < 4e-4, "{pose:?} instead of {center:?}");
+        assert!((pose.scale / radius - 1.0).abs() < 0.02, "{pose:?} instead of {radius}");
+    }
+    // As if every pixel had been taken: 1.5e-4.
+    assert!(fit.loss < 2e-4, "{}", fit.loss);
+}
+
+#[test]
+fn of_sharp_pictures_every_pixel_is_taken() {
+    assert_eq!(Subsampling::of(&large(0.3).view()), None);
+}
+
+#[test]
+fn a_sharp_dot_among_wide_edges_is_found() {
+    let mut image = large(5.0);
+    let pixels = image.size().pixels();
+    for (row, column) in (300..306).flat_map(|row| (1003..1008).map(move |column| (row, column))) {
+        (0..3).for_each(|channel| image.data_mut()[channel * pixels + row * LARGE.0 + column] = 0.9);
+    }
+    assert!(Subsampling::of(&image.view()).is_some());
+    let fit = Fitter::new(FitOptions::default()).unwrap().fit(image.view(), &mut FitScratch::default()).unwrap();
+    let found = fit.scene.objects.iter().map(|object| object.pose.translation);
+    assert!(found.into_iter().any(|[x, y]| (x - 1005.5 / 1131.0).abs() < 2e-3 && (y - 303.0 / 1131.0).abs() < 2e-3));
 }

@@ -77,24 +77,32 @@ impl<T: Real> Pool<T> {
             let mut best: (f64, Option<&Segment<T>>) = (limit * limit, None);
             self.lanes.set(&self.outlines[k]);
             for segment in scratch.segments().iter().filter(|segment| same_color(segment.color, object.color)) {
-                let squared = self.mean_squared(k, segment, object, unit);
+                let squared = self.mean_squared(k, segment, object, unit, scratch);
                 if squared < best.0 {
                     best = (squared, Some(segment));
                 }
             }
             if let Some(segment) = best.1 {
                 let stride = segment.samples.len().div_ceil(SAMPLES_PER_OBJECT).max(1);
-                let taken = segment.samples.iter().step_by(stride).map(|sample| to_frame(sample, object, unit));
+                let taken = segment.samples.iter().step_by(stride).map(|sample| scratch.restore_sample(sample));
+                let taken = taken.map(|sample| to_frame(&sample, object, unit));
                 self.samples[k].extend(taken);
             }
         }
     }
 
-    fn mean_squared(&mut self, k: usize, segment: &Segment<T>, object: &Object<T>, unit: f64) -> f64 {
+    fn mean_squared(
+        &mut self,
+        k: usize,
+        segment: &Segment<T>,
+        object: &Object<T>,
+        unit: f64,
+        scratch: &FitScratch<T>,
+    ) -> f64 {
         let stride = segment.samples.len().div_ceil(PROBES).max(1);
         let (mut sum, mut count) = (0.0, 0.0);
         for sample in segment.samples.iter().step_by(stride) {
-            let sample = to_frame(sample, object, unit);
+            let sample = to_frame(&scratch.restore_sample(sample), object, unit);
             let off = foot(&self.outlines[k], &mut self.lanes, sample.point).distance - sample.distance;
             sum += off * off;
             count += 1.0;

@@ -1,0 +1,212 @@
+//! Large pictures with wide edges: every k-th pixel tells all.
+//!
+//! A fit needs an edge of a few pixels; one of twenty costs time, and its shallow slopes look flat. Pixels are taken, not
+//! averaged: edges keep their profile. What is found is then held against the whole picture; if that shows more misses, all
+//! of it is fitted.
+
+use dvp_core::render::{EdgeLaw, EdgeProfile};
+use dvp_core::{Image, ImageSize, ImageView, Real};
+
+use super::run::visible_error;
+use super::{FitScratch, Fitter};
+use crate::segment::EdgeSample;
+use crate::{Fit, FitError, StopReason};
+
+/// The shorter side of what is left has at least so many pixels.
+const MIN_UNIT_PX: usize = 256;
+/// What rounding to 8 bits may add to a difference of two pixels.
+const ROUNDING: f64 = 1.1 / 255.0;
+/// A pixel is sharp if it is off the middle between its neighbors by this share of the contrast around it. Of the pixels on
+/// the reference's edges that are 2.6 pixels wide 1 % are, 1.3 pixels wide 20 %.
+const BEND: f64 = 0.15;
+/// Neighbors to each side over which contrast is taken.
+const AROUND: usize = 3;
+/// Edges are wide if of their pixels at most one in so many is sharp.
+const FEW: usize = 10;
+/// Rows and columns that are looked at to judge edges: one in so many.
+const LINES: usize = 4;
+/// Pixels that may be missed in the whole picture although none was among those looked at, and what may be missed per
+/// pixel that was.
+const MISSES: f64 = 4.0;
+const MISSES_EACH: f64 = 1.5;
+
+/// Which pixels of an image are looked at: those at `first` + k `stride` in both directions.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Subsampling {
+    stride: usize,
+    size: ImageSize,
+    /// Size of what is left.
+    small: ImageSize,
+}
+
+impl Subsampling {
+    /// The widest stride, a power of 2, whose pixels tell those between; none if that is every pixel.
+    pub(super) fn of<T: Real>(image: &ImageView<'_, T>) -> Option<Self> {
+        let size = image.size();
+        let mut stride = 1;
+        while size.unit_px() / (2 * stride) >= MIN_UNIT_PX && has_wide_edges(image, stride) {
+            stride *= 2;
+        }
+        Self::every(stride, size)
+    }
+
+    /// Twice as many pixels in both directions; none if that is every pixel.
+    fn finer(&self) -> Option<Self> {
+        Self::every(self.stride / 2, self.size)
+    }
+
+    fn every(stride: usize, size: ImageSize) -> Option<Self> {
+        let left = |side: usize| (side - stride / 2).div_ceil(stride);
+        let small = (stride > 1).then(|| ImageSize::new(left(size.width()), left(size.height())).ok())??;
+        Some(Self { stride, size, small })
+    }
+
+    /// The pixels looked at.
+    pub(super) fn image<T: Real>(&self, image: &ImageView<'_, T>) -> Image<T> {
+        let mut out = Image::zeros(self.small);
+        let (width, first) = (self.size.width(), self.stride / 2);
+        for (channel, plane) in out.data_mut().chunks_exact_mut(self.small.pixels()).enumerate() {
+            let rows = image.channel(channel).chunks_exact(width).skip(first).step_by(self.stride);
+            for (small, row) in plane.chunks_exact_mut(self.small.width()).zip(rows) {
+                let taken = row.iter().skip(first).step_by(self.stride);
+                small.iter_mut().zip(taken).for_each(|(small, &value)| *small = value);
+            }
+        }
+        out
+    }
+
+    /// Pixels of the image per pixel looked at, and where in the image the origin of those lies.
+    fn similarity<T: Real>(&self) -> (T, T) {
+        // The center of a pixel, 1/2, is that of the one at `first`.
+        let half = T::of(0.5);
+        let stride = T::of_usize(self.stride);
+        (stride, T::of_usize(self.stride / 2) + half - stride * half)
+    }
+
+    /// A fit of the pixels looked at, as one of the image.
+    pub(super) fn restore<T: Real>(&self, mut fit: Fit<T>) -> Fit<T> {
+        let (stride, origin) = self.similarity::<T>();
+        let [unit, small] = [self.size, self.small].map(|size| T::of_usize(size.unit_px()));
+        let units = stride * small / unit;
+        let scene = &mut fit.scene;
+        for object in &mut scene.objects {
+            object.pose.translation = object.pose.translation.map(|x| x * units + origin / unit);
+            object.pose.scale *= units;
+        }
+        if scene.edge.law == EdgeLaw::Area {
+            // Edges of a pixel here are edges of a stride there.
+            scene.edge = EdgeProfile::distance(scene.edge.sigma * T::of(2.0) / small);
+        }
+        scene.edge = scene.edge.magnified(units);
+        for covariance in &mut fit.covariance {
+            for (k, value) in covariance.iter_mut().enumerate() {
+                let positions = usize::from(k / 4 < 2) + usize::from(k % 4 < 2);
+                (0..positions).for_each(|_| *value *= units);
+            }
+        }
+        fit
+    }
+
+    /// A sample of the pixels looked at, as one of the image.
+    pub(crate) fn restore_sample<T: Real>(&self, sample: &EdgeSample<T>) -> EdgeSample<T> {
+        let (stride, origin) = self.similarity::<T>();
+        EdgeSample {
+            point: sample.point.map(|x| x * stride + origin),
+            distance: sample.distance * stride,
+            weight: sample.weight / stride,
+        }
+    }
+}
+
+impl<T: Real> Fitter<T> {
+    /// A fit of the pixels that `subsampling` takes, of more of them while those do not show flat objects; none if it does
+    /// not hold for the whole image.
+    pub(super) fn fit_subsampled(
+        &self,
+        image: ImageView<'_, T>,
+        subsampling: Subsampling,
+        scratch: &mut FitScratch<T>,
+    ) -> Result<Option<Fit<T>>, FitError> {
+        let (mut best, mut seen) = self.fit_every(image, subsampling, scratch)?;
+        let mut taken = subsampling;
+        while best.stop == StopReason::NotFlat
+            && let Some(finer) = taken.finer()
+        {
+            let (fit, missed) = self.fit_every(image, finer, scratch)?;
+            if fit.unexplained >= best.unexplained {
+                break;
+            }
+            (best, seen, taken) = (fit, missed, finer);
+        }
+        scratch.subsampling = Some(taken);
+        let (loss, missed) = self.misses(&best, &image, scratch)?;
+        best.loss = loss;
+        let each = (taken.stride * taken.stride) as f64;
+        let holds = missed as f64 <= MISSES + MISSES_EACH * each * seen as f64;
+        Ok(holds.then_some(best))
+    }
+
+    /// A fit of the pixels taken, as one of the image, and how many of them it visibly misses.
+    fn fit_every(
+        &self,
+        image: ImageView<'_, T>,
+        subsampling: Subsampling,
+        scratch: &mut FitScratch<T>,
+    ) -> Result<(Fit<T>, usize), FitError> {
+        scratch.forget();
+        let small = subsampling.image(&image);
+        let fit = self.best_reading(small.view(), scratch)?;
+        let (_, missed) = self.misses(&fit, &small.view(), scratch)?;
+        Ok((subsampling.restore(fit), missed))
+    }
+
+    /// Mean absolute error of a fit's rendering, and how many pixels it visibly misses.
+    fn misses(
+        &self,
+        fit: &Fit<T>,
+        image: &ImageView<'_, T>,
+        scratch: &mut FitScratch<T>,
+    ) -> Result<(T, usize), FitError> {
+        let FitScratch { drawing, shown, residual, .. } = scratch;
+        fit.scene.draw(&self.outlines, drawing)?;
+        shown.forget();
+        let loss = shown.compare(drawing, image, (fit.scene.edge, fit.scene.compositing), residual)?;
+        shown.forget();
+        Ok((loss, residual.count_all_above(visible_error(fit.noise))))
+    }
+}
+
+/// Whether the pixels at every `stride` go over edges in several steps: hardly one of those on a slope is sharp.
+fn has_wide_edges<T: Real>(image: &ImageView<'_, T>, stride: usize) -> bool {
+    let (width, height) = (image.size().width(), image.size().height());
+    let (mut sharp, mut sloped) = (0, 0);
+    for channel in 0..3 {
+        let plane = image.channel(channel);
+        for row in plane.chunks_exact(width).step_by(LINES * stride) {
+            count_sharp(|at| row[at * stride], width / stride, &mut sharp, &mut sloped);
+        }
+        for x in (0..width).step_by(LINES * stride) {
+            count_sharp(|at| plane[at * stride * width + x], height / stride, &mut sharp, &mut sloped);
+        }
+    }
+    sharp * FEW <= sloped
+}
+
+/// Counts the values of a line that are on a slope, and those of them that are sharp.
+fn count_sharp<T: Real>(value: impl Fn(usize) -> T, len: usize, sharp: &mut usize, sloped: &mut usize) {
+    let rounding = T::of(ROUNDING);
+    for at in AROUND..len.saturating_sub(AROUND) {
+        let [before, own, after] = [value(at - 1), value(at), value(at + 1)];
+        if (after - before).abs() <= rounding && (own - before).abs() <= rounding {
+            continue;
+        }
+        *sloped += 1;
+        let off = (own - T::of(0.5) * (before + after)).abs();
+        if off > rounding {
+            let ends = (T::infinity(), T::neg_infinity());
+            let window = (at - AROUND..=at + AROUND).map(&value);
+            let (low, high) = window.fold(ends, |(low, high), value| (low.min(value), high.max(value)));
+            *sharp += usize::from(off > T::of(BEND) * (high - low));
+        }
+    }
+}
