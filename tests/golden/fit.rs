@@ -136,6 +136,16 @@ fn own_scenes_from_eight_bits() {
     assert!(scores.mae <= 1e-3 && scores.ssim >= 0.9998 && scores.iou >= 0.9995 && scores.ari >= 0.999, "{scores:?}");
 }
 
+/// Two objects of like colors overlap widely: the mean of their colors, which shows there, is no third object's.
+#[test]
+fn an_overlap_is_no_object() {
+    let truth = sample_scene(&SceneSettings::mds_hr(), &mdshr_bank(), ImageSize::new(SIDE, SIDE).unwrap(), 77, 391);
+    assert_eq!(visible_object_count(&truth), 4);
+    let image = paint(&truth);
+    let (scores, exact) = score(known(), &[(rounded(&image), image, truth)]);
+    assert!(exact == 1 && scores.mae <= 1e-3, "{scores:?}");
+}
+
 #[test]
 fn own_scenes_without_a_bank() {
     let (scores, exact) = score(FitOptions::default(), &own_scenes(24));

@@ -69,6 +69,9 @@ const SURE_CONTRAST: f64 = 0.03;
 /// many.
 const ROUGH_NOISE: f64 = 0.015;
 
+/// A color closer than this to the mean of two others, in every channel, may be their mixture.
+const MIXED_COLOR: f64 = 0.02;
+
 /// Harmonics of a plain shape.
 const PLAIN_HARMONICS: usize = 3;
 
@@ -126,7 +129,7 @@ impl<T: Real> Run<'_, T> {
         let mut bits = None;
         let mut drawn = true;
         for at in (0..scene.objects.len()).rev() {
-            if self.is_doubtful(&scene, &found.objects[at]) {
+            if self.is_doubtful(&scene, &found.objects[at]) || self.is_mixed(&scene, at) {
                 let before = match bits {
                     Some(bits) => bits,
                     None => self.bits(&scene, rough),
@@ -250,6 +253,18 @@ impl<T: Real> Run<'_, T> {
         let pixels = self.scratch.segmentation.segments()[part.segment].pixels;
         let contrast = distance(part.object.color, scene.background);
         pixels < SURE_PIXELS || contrast < T::of(SURE_CONTRAST)
+    }
+
+    /// Whether the object has the mean color of two others: where they overlap, objects that blend show it.
+    fn is_mixed(&self, scene: &Scene<T>, at: usize) -> bool {
+        let own = scene.objects[at].color;
+        let others = || scene.objects.iter().enumerate().filter(move |(k, _)| *k != at).map(|(_, object)| object.color);
+        let mean = |a: [T; 3], b: [T; 3]| core::array::from_fn(|c| T::of(0.5) * (a[c] + b[c]));
+        self.compositing == Compositing::Blend
+            && self.care == Care::Full
+            && others()
+                .enumerate()
+                .any(|(k, a)| others().skip(k + 1).any(|b| distance(own, mean(a, b)) < T::of(MIXED_COLOR)))
     }
 
     fn covariances(&mut self, scene: &Scene<T>, found: &Found<T>) -> Result<Vec<[T; 16]>, FitError> {
