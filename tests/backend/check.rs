@@ -156,6 +156,24 @@ pub(crate) fn close(tally: &Tally, what: &str, found: &[f64], reference: &[f64],
     })
 }
 
+/// Gradients by name.
+pub(crate) type Gradients = Vec<(String, Vec<f64>)>;
+
+/// Holds gradients of weights against those of the host: relative to the largest number of each, or to a thousandth of the
+/// largest of all where that is more.
+pub(crate) fn close_gradients(tally: &Tally, what: &str, own: &Gradients, host: &Gradients, tolerance: f64) -> Outcome {
+    let names = |gradients: &Gradients| gradients.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>();
+    tally.check(names(own) == names(host), || format!("{what}: {:?} instead of {:?}", names(own), names(host)))?;
+    let largest = |values: &[f64], least: f64| values.iter().fold(least, |largest, g| largest.max(g.abs()));
+    let least = 1e-3 * host.iter().fold(0.0, |least, (_, values)| largest(values, least));
+    for ((name, own), (_, host)) in own.iter().zip(host) {
+        let largest = largest(host, least);
+        let [own, host] = [own, host].map(|values| values.iter().map(|g| g / largest).collect::<Vec<_>>());
+        close(tally, &format!("{what} of {name}"), &own, &host, tolerance)?;
+    }
+    Ok(())
+}
+
 /// Gradients of the backend against central differences of its own outputs, lane by lane, without tracking.
 fn against_differences<B: Tested>(
     computation: &impl Computation,

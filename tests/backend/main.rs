@@ -16,6 +16,7 @@
 //! | `refusal` | what is refused, in the same words everywhere |
 //! | `scene` | parameters to activations, prototypes, outlines, images and losses: one graph, and a fit |
 //! | `network`, `training` | 50 steps of Adam from the same weights; replicas on threads |
+//! | `modes` | a step of training in every mode |
 //! | `published` | DINOv2 and Conditional DETR against their public implementations; their gradients |
 //! | `weights` | files written on one backend and read on another |
 #![expect(clippy::unwrap_used, clippy::panic, reason = "a failed test with a line number")]
@@ -31,6 +32,7 @@ mod elementwise;
 mod input;
 mod kinks;
 mod layout;
+mod modes;
 mod network;
 mod product;
 mod published;

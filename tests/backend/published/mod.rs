@@ -12,7 +12,7 @@ use dvp_net::error::NetError;
 use dvp_tests::finite_difference::dot;
 use serde::de::DeserializeOwned;
 
-use crate::check::close;
+use crate::check::{Gradients, close, close_gradients};
 use crate::network::numbers;
 use crate::registry::{Outcome, Tally, Tested};
 
@@ -74,9 +74,6 @@ fn published<B: Tested>(tally: &Tally, what: &str, found: &Tensor<B>, io: &Param
     tally.check(worst <= TOLERANCE, || format!("{what} differs by {worst:e}"))
 }
 
-/// Gradients by name, in the order of names.
-type Gradients = Vec<(String, Vec<f64>)>;
-
 /// The mean square of the output, and its gradients.
 fn step<P: Published, B: Tested>(parameters: &Parameters<B>, input: &Tensor<B>) -> Result<(f64, Gradients), NetError> {
     let output = P::output(parameters, input)?;
@@ -107,13 +104,7 @@ fn gradients<P: Published, B: Tested>(tally: &Tally) -> Outcome {
         close(tally, "loss", &[loss], &[loss_host], tolerance(dtype))?;
         let used = parameters.iter().map(|(name, _)| name).filter(|name| !P::UNUSED.contains(name));
         tally.check(used.eq(own.iter().map(|(name, _)| name)), || "weights without a gradient".into())?;
-        let largest = |values: &[f64], least: f64| values.iter().fold(least, |largest, g| largest.max(g.abs()));
-        let least = 1e-3 * host.iter().fold(0.0, |least, (_, values)| largest(values, least));
-        for ((name, own), (_, host)) in own.iter().zip(&host) {
-            let largest = largest(host, least);
-            let [own, host] = [own, host].map(|values| values.iter().map(|g| g / largest).collect::<Vec<_>>());
-            close(tally, &format!("{dtype} gradient of {name}"), &own, &host, tolerance(dtype))?;
-        }
+        close_gradients(tally, &format!("{dtype} gradient"), &own, &host, tolerance(dtype))?;
         if dtype == DType::F64 {
             along_a_direction::<P, B>(tally, &parameters, &input, &own)?;
         }
