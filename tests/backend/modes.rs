@@ -32,7 +32,7 @@ fn batch<T: Real>(judge: &Judge<T>) -> Batch<T> {
     let scene = |objects| Scene { objects, ..Scene::empty([0.2, 0.5, 0.8].map(T::of)) };
     let scenes = vec![scene(vec![object(0.3, 0)]), scene(vec![object(0.6, 1), object(0.25, 2)])];
     let size = ImageSize::new(32, 32).unwrap();
-    Batch { images: scenes.iter().map(|scene| judge.steps.paint(scene, size).unwrap()).collect(), scenes }
+    Batch::new(scenes.iter().map(|scene| judge.steps.paint(scene, size).unwrap()).collect(), scenes)
 }
 
 /// The loss of a mode and the gradient of every weight that it depends on.

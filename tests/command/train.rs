@@ -5,6 +5,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use dvp_net::encoder::EncoderConfig;
+use dvp_net::model::ModelConfig;
+
 use crate::interrupted::spawned;
 use crate::runner::{dvp, dvp_done, names, text};
 
@@ -116,6 +119,41 @@ fn a_killed_run_goes_on_to_the_same_numbers() {
     dvp_done(["train", "--out", text(&killed), "--resume"]);
     assert_eq!(losses(&killed), losses(&whole));
     assert_eq!(fs::read(newest(&killed)).unwrap(), fs::read(newest(&whole)).unwrap());
+}
+
+/// Sizes of a model whose encoder, a transformer of vision, keeps its weights.
+fn with_frozen_encoder() -> ModelConfig {
+    let paper = ModelConfig::paper();
+    let EncoderConfig::Vit(mut encoder) = paper.encoder else { panic!("{:?}", paper.encoder) };
+    encoder.side = 28;
+    (encoder.model.hidden_size, encoder.model.num_hidden_layers, encoder.model.num_attention_heads) = (16, 1, 2);
+    ModelConfig { encoder: EncoderConfig::Vit(encoder), batch_norm: true, ..ModelConfig::tiny() }
+}
+
+#[test]
+fn features_of_a_frozen_encoder_are_kept_and_change_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let [kept, again] = ["kept", "again"].map(|name| folder.path().join(name));
+    let sizes = folder.path().join("sizes.json");
+    fs::write(&sizes, serde_json::to_string(&with_frozen_encoder()).unwrap()).unwrap();
+    let run = ["--size", text(&sizes), "--scenes", "4", "--mode", "gp-gi"];
+    // Three batches of two see two images again.
+    dvp_done(quick(&kept, &run));
+    assert_eq!(names(&kept.join("features")).len(), 4);
+    // The same run with features that are damaged or gone when it goes on.
+    dvp_done(quick(&again, &[&run[..], &["--steps", "2"]].concat()));
+    let features = names(&again.join("features"));
+    assert_eq!(features.len(), 4);
+    fs::write(again.join("features").join(&features[0]), b"damaged").unwrap();
+    fs::remove_file(again.join("features").join(&features[1])).unwrap();
+    let settings = fs::read_to_string(again.join("run.json")).unwrap();
+    fs::write(again.join("run.json"), settings.replace("\"steps\": 2", "\"steps\": 6")).unwrap();
+    dvp_done(["train", "--out", text(&again), "--resume"]);
+    let values = |run: &Path| {
+        let folder = run.join("features");
+        names(&folder).iter().map(|name| fs::read(folder.join(name)).unwrap()).collect::<Vec<_>>()
+    };
+    assert_eq!(values(&again), values(&kept));
 }
 
 #[test]

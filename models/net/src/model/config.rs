@@ -145,6 +145,12 @@ impl ModelConfig {
         }
     }
 
+    /// Whether the encoder keeps its weights, so that what it makes of an image need be computed only once.
+    #[must_use]
+    pub fn has_frozen_encoder(&self) -> bool {
+        matches!(&self.encoder, EncoderConfig::Vit(vit) if vit.frozen)
+    }
+
     /// Slots for objects.
     #[must_use]
     pub fn objects(&self) -> usize {

@@ -2,36 +2,19 @@
 
 use core::f64::consts::TAU;
 
+use dvp_core::Real;
 use dvp_core::render::PixelLoss;
 use dvp_core::shape::PrototypeBank;
 use dvp_core::tensor::{Backend, Tensor};
-use dvp_core::{Image, Real, Scene};
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 
+use super::batch::{Batch, Features};
 use super::mode::{Mode, Source};
 use crate::error::NetError;
 use crate::layers::Phase;
 use crate::model::{Model, Prediction, Running};
 use crate::scene_steps::{SceneSteps, image_tensor};
-
-/// Images of one size and, if they are known, their scenes.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Batch<T> {
-    /// At least one.
-    pub images: Vec<Image<T>>,
-    /// One per image, or none at all.
-    pub scenes: Vec<Scene<T>>,
-}
-
-impl<T: Clone> Batch<T> {
-    /// Items `start..start + len`, as far as there are.
-    #[must_use]
-    pub fn part(&self, start: usize, len: usize) -> Self {
-        let images = self.images.iter().skip(start).take(len).cloned().collect();
-        Self { images, scenes: self.scenes.iter().skip(start).take(len).cloned().collect() }
-    }
-}
 
 /// How a model is judged.
 #[derive(Clone, Debug)]
@@ -80,7 +63,12 @@ impl<T: Real> Judge<T> {
         if self.mode.source() == Source::Scenes && batch.scenes.len() != batch.images.len() {
             return Err(NetError::Batch { must: format!("must hold a scene for each image in mode {}", self.mode) });
         }
-        let (first, running) = look::<B, T>(model, &image_tensor(&batch.images, device)?, phase)?;
+        let features = if batch.features.is_empty() {
+            model.features(&image_tensor(&batch.images, device)?)?
+        } else {
+            Features::stack(&batch.features, device)?
+        };
+        let (first, running) = see::<B, T>(model, &features, phase)?;
         let image_loss = |scenes: &Prediction<B>| self.steps.image_loss(scenes, batch.images.clone(), self.image_loss);
         let (image, parameters) = match self.mode {
             Mode::Ti | Mode::Gi | Mode::TiPlus => (Some(image_loss(&first)?), None),
@@ -151,6 +139,15 @@ fn look<B: Backend, T: Real>(
     images: &Tensor<B>,
     phase: Phase,
 ) -> Result<(Prediction<B>, Running<B>), NetError> {
-    let (latents, running) = model.latents(&model.features(images)?, phase)?;
+    see::<B, T>(model, &model.features(images)?, phase)
+}
+
+/// The same, from features.
+fn see<B: Backend, T: Real>(
+    model: &Model<B>,
+    features: &Tensor<B>,
+    phase: Phase,
+) -> Result<(Prediction<B>, Running<B>), NetError> {
+    let (latents, running) = model.latents(features, phase)?;
     Ok((model.scenes::<T>(&latents)?, running))
 }

@@ -3,11 +3,13 @@
 //! | file | holds |
 //! |---|---|
 //! | `mode` | [`Mode`]: the paper's regimes |
-//! | `judge` | [`Judge`]: the loss of a [`Batch`] in each mode |
+//! | `batch` | [`Batch`]: images, scenes, [`Features`] |
+//! | `judge` | [`Judge`]: the loss of a batch in each mode |
 //! | `schedule` | [`Schedule`]: the learning rate |
 //! | `checkpoint` | [`Checkpoint`]: a model in a file |
 //! | `trainer` | [`Trainer`]: steps of Adam, over threads |
 
+mod batch;
 mod checkpoint;
 mod judge;
 mod mode;
@@ -16,8 +18,9 @@ mod schedule;
 mod tests;
 mod trainer;
 
+pub use batch::{Batch, Features};
 pub use checkpoint::Checkpoint;
-pub use judge::{Batch, Judge, Judged};
+pub use judge::{Judge, Judged};
 pub use mode::{Mode, Source};
 pub use schedule::Schedule;
 pub use trainer::{Step, Trainer};

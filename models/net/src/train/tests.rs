@@ -50,7 +50,7 @@ fn batch<T: Real>(count: usize) -> Batch<T> {
     };
     let scenes: Vec<Scene<T>> = (0..count).map(scene).collect();
     let size = ImageSize::new(32, 32).unwrap();
-    Batch { images: scenes.iter().map(|scene| steps.paint(scene, size).unwrap()).collect(), scenes }
+    Batch::new(scenes.iter().map(|scene| steps.paint(scene, size).unwrap()).collect(), scenes)
 }
 
 fn values<T: Real>(trainer: &Trainer<Host, T>) -> Vec<f64> {
@@ -66,6 +66,32 @@ fn a_few_scenes_are_learned_by_heart() {
     }
     let last = trainer.step(&batch).unwrap();
     assert!(last.loss < first / 4.0 && last.number == 82, "{first} -> {last:?}");
+}
+
+#[test]
+fn features_given_change_no_step() {
+    let mut batch = batch(3);
+    let (mut own, mut given) = (trainer::<f64>(Mode::GpGi), trainer::<f64>(Mode::GpGi));
+    given.threads = 2;
+    own.threads = 2;
+    let expected = own.validate(Mode::GpGi, &batch).unwrap();
+    batch.features = given.features(&batch.images).unwrap();
+    assert_eq!(batch.features.len(), 3);
+    assert_eq!(given.validate(Mode::GpGi, &batch).unwrap(), expected);
+    // Of an encoder that learns they are constants: the rest learns the same.
+    given.step(&batch).unwrap();
+    let encoder = |name: &str| name.starts_with("encoder.");
+    for (name, tensor) in given.parameters().iter().filter(|(name, _)| encoder(name)) {
+        let start = trainer::<f64>(Mode::GpGi).parameters().get(name).unwrap().to_f64().unwrap();
+        assert_eq!(tensor.to_f64().unwrap(), start, "{name}");
+    }
+    batch.features.clear();
+    own.step(&batch).unwrap();
+    for (name, tensor) in given.parameters().iter().filter(|(name, _)| !encoder(name)) {
+        let own = own.parameters().get(name).unwrap().to_f64().unwrap();
+        let apart = tensor.to_f64().unwrap().iter().zip(own).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(apart < 1e-9, "{name} is {apart} apart");
+    }
 }
 
 #[test]
@@ -139,13 +165,13 @@ fn a_loss_that_is_no_number_changes_nothing() {
 #[test]
 fn scenes_that_are_missing_are_named() {
     let Batch { images, .. } = batch::<f32>(2);
-    let pictures = Batch { images, scenes: Vec::new() };
+    let pictures = Batch::new(images, Vec::new());
     for mode in Mode::ALL {
         let result = trainer::<f32>(mode).step(&pictures);
         let refused = matches!(&result, Err(NetError::Batch { .. }));
         assert_eq!(refused, matches!(mode, Mode::Gp | Mode::Gi | Mode::GpGi), "{mode}: {result:?}");
     }
-    let none = Batch::<f32> { images: Vec::<Image<f32>>::new(), scenes: Vec::new() };
+    let none = Batch::<f32>::new(Vec::<Image<f32>>::new(), Vec::new());
     assert!(matches!(trainer(Mode::Ti).step(&none), Err(NetError::Batch { .. })));
 }
 

@@ -8,7 +8,8 @@ use dvp_core::shape::PrototypeBank;
 use dvp_core::tensor::{Adam, Backend, Parameters, ParametersError, Tensor};
 use dvp_core::{Image, Real, Scene};
 
-use super::judge::{Batch, Judge};
+use super::batch::{Batch, Features};
+use super::judge::Judge;
 use super::mode::Mode;
 use super::schedule::Schedule;
 use crate::error::NetError;
@@ -202,6 +203,19 @@ impl<B: Backend, T: Real> Trainer<B, T> {
             self.judge.steps.paint(&scene, image.size())
         };
         scenes.scenes(self.judge.steps.edge())?.into_iter().zip(images).map(paint).collect()
+    }
+
+    /// What the encoder makes of images: where it is frozen, once and for all.
+    ///
+    /// # Errors
+    /// As [`Model::features`].
+    pub fn features(&self, images: &[Image<T>]) -> Result<Vec<Features<T>>, NetError> {
+        let model = self.frozen()?;
+        let mut all = Vec::with_capacity(images.len());
+        for images in images.chunks(AT_ONCE) {
+            all.extend(Features::of_batch(&model.features(&image_tensor(images, &self.device)?)?)?);
+        }
+        Ok(all)
     }
 
     /// The model as it is, of constants.

@@ -38,7 +38,7 @@ impl Data {
     /// The pictures of a folder; all must have one size.
     pub(super) fn folder(folder: &Path, source: Source, held_out: usize, seed: u64) -> Result<Self> {
         let data = DataSet::<f32>::open(folder)?;
-        let mut all = Batch { images: Vec::new(), scenes: Vec::new() };
+        let mut all = Batch::new(Vec::new(), Vec::new());
         for sample in &data.samples {
             let image: Image<f32> = read_picture(&sample.image, DEFAULT_MAX_PIXELS)?;
             let first = all.images.first().map_or(image.size(), Image::size);
@@ -63,23 +63,32 @@ impl Data {
         Ok(Self::Folder { all, held_out, seed })
     }
 
-    /// Batch `index`, of `len` images.
-    pub(super) fn batch(&self, index: u64, len: usize, painter: &SceneSteps<f32>) -> Result<Batch<f32>> {
+    /// Whether images come again.
+    pub(super) fn is_finite(&self) -> bool {
+        matches!(self, Self::Folder { .. } | Self::Generated { count: Some(_), .. })
+    }
+
+    /// The numbers of the images of batch `index`, of `len`.
+    pub(super) fn numbers(&self, index: u64, len: usize) -> Vec<u64> {
         let places = index * len as u64..(index + 1) * len as u64;
         match self {
-            Self::Generated { settings, bank, size, seed, count } => {
-                let numbers = match count {
-                    Some(count) => shuffled(places, *count, *seed),
-                    None => places.collect(),
-                };
+            Self::Generated { count: None, .. } => places.collect(),
+            Self::Generated { count: Some(count), seed, .. } => shuffled(places, *count, *seed),
+            Self::Folder { all, held_out, seed } => shuffled(places, (all.images.len() - held_out) as u64, *seed),
+        }
+    }
+
+    /// Batch `index`, of `len` images.
+    pub(super) fn batch(&self, index: u64, len: usize, painter: &SceneSteps<f32>) -> Result<Batch<f32>> {
+        let numbers = self.numbers(index, len);
+        match self {
+            Self::Generated { settings, bank, size, seed, .. } => {
                 let scene = |number| sample_scene(settings, bank, *size, *seed, number);
                 paint(numbers.into_iter().map(scene).collect(), *size, painter)
             }
-            Self::Folder { all, held_out, seed } => {
-                let count = (all.images.len() - held_out) as u64;
-                let items = shuffled(places, count, *seed).into_iter().filter_map(|item| usize::try_from(item).ok());
-                let mut batch = Batch { images: Vec::with_capacity(len), scenes: Vec::new() };
-                for item in items {
+            Self::Folder { all, .. } => {
+                let mut batch = Batch::new(Vec::with_capacity(len), Vec::new());
+                for item in numbers.into_iter().filter_map(|item| usize::try_from(item).ok()) {
                     batch.images.push(all.images[item].clone());
                     batch.scenes.extend(all.scenes.get(item).cloned());
                 }
@@ -113,7 +122,7 @@ pub(super) fn reread(model: &Model<Host>, images: &[Image<f32>], painter: &Scene
 
 fn paint(scenes: Vec<Scene<f32>>, size: ImageSize, painter: &SceneSteps<f32>) -> Result<Batch<f32>> {
     let images = scenes.iter().map(|scene| Ok(painter.paint(scene, size)?)).collect::<Result<_>>()?;
-    Ok(Batch { images, scenes })
+    Ok(Batch::new(images, scenes))
 }
 
 /// Which of `count` items come at `places`: every item once before any comes again, in another order each time.

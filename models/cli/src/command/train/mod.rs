@@ -9,6 +9,7 @@
 
 mod curves;
 mod data;
+mod features;
 mod run;
 mod samples;
 mod settings;

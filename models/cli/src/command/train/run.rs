@@ -18,6 +18,7 @@ use dvp_net::train::{Batch, Checkpoint, Judge, Mode, Schedule, Source, Trainer};
 
 use super::curves::Curves;
 use super::data::{Data, reread};
+use super::features::FeatureCache;
 use super::samples;
 use super::settings::Settings;
 use super::store::Store;
@@ -106,7 +107,11 @@ impl Run {
         } else if let Some(file) = &self.settings.start {
             start_from(&mut trainer, file, &device, console)?;
         }
-        let held_out = self.data.held_out(numbers.validation, &self.painter)?;
+        let mut held_out = self.data.held_out(numbers.validation, &self.painter)?;
+        let cache = self.feature_cache(&trainer, store)?;
+        if self.config.has_frozen_encoder() {
+            held_out.features = trainer.features(&held_out.images)?;
+        }
         let (clock, before) = (Instant::now(), curves.seconds());
         let bar = progress::steps(numbers.steps, trainer.steps());
         let mut recent = Recent::default();
@@ -114,6 +119,10 @@ impl Run {
             let mut batch = self.data.batch(trainer.steps(), numbers.batch, &self.painter)?;
             if let Some(model) = &self.preliminary {
                 batch = reread(model, &batch.images, &self.painter)?;
+            }
+            if let Some(cache) = &cache {
+                let items = self.data.numbers(trainer.steps(), numbers.batch);
+                batch.features = cache.features(&trainer, &batch.images, &items)?;
             }
             let step = trainer.step(&batch).map_err(|error| self.study(store, &batch, &trainer, error))?;
             recent.add(step.loss);
@@ -138,6 +147,17 @@ impl Run {
         writeln!(console.out, "image loss on {} validation images: {best:.5}", held_out.images.len())?;
         writeln!(console.out, "{}", store.path("best.safetensors").display())?;
         Ok(Outcome::Done)
+    }
+
+    /// Where features are kept, if the encoder is frozen and images come again.
+    fn feature_cache<B: Backend>(&self, trainer: &Trainer<B, f32>, store: &Store) -> Result<Option<FeatureCache>> {
+        if !self.config.has_frozen_encoder() || !self.data.is_finite() {
+            return Ok(None);
+        }
+        // What decides which image has which number, and how it is painted again.
+        let Settings { data, scenes, seed, validation, bank, preliminary, harmonics, .. } = &self.settings;
+        let images = serde_json::to_string(&(data, scenes, seed, validation, bank, preliminary, harmonics))?;
+        Ok(Some(FeatureCache::new(store.path("features"), trainer, &images)?))
     }
 
     fn trainer<B: Backend>(&self, device: &B::Device, steps: u64) -> Result<Trainer<B, f32>> {

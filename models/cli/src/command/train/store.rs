@@ -6,6 +6,7 @@
 //! | `checkpoint-00000500.safetensors` | all that `--resume` needs; the two newest are kept |
 //! | `best.safetensors` | the weights with the smallest L_x on the validation images |
 //! | `losses.csv`, `losses.svg` | the curves |
+//! | `features/` | what a frozen encoder makes of images that come again; may be deleted at any time |
 //! | `samples/00000500.png` | validation images over their reconstructions |
 
 use std::fs;
