@@ -18,7 +18,8 @@ const ASTRAY_PX: f64 = 1.5;
 /// Covariance of (x, y in scene units, log scale, rotation), row-major, from the normal equations of the samples.
 ///
 /// `outline_px` is the closed posed outline, `center_px` the point it turns and grows about; `pixel_noise` the standard
-/// deviation of a channel. Samples are taken as independent.
+/// deviation of a channel. Samples are taken as independent. Where they miss the outline by more than noise explains, they
+/// tell so much less of it: chi squared per sample, if above 1, is a factor of the covariance.
 pub(crate) fn covariance<T: Real>(
     outline_px: &[[T; 2]],
     center_px: [T; 2],
@@ -30,6 +31,7 @@ pub(crate) fn covariance<T: Real>(
     lanes.set(outline_px);
     let mut information = [[T::zero(); 4]; 4];
     let noise = T::one() / (pixel_noise * pixel_noise);
+    let (mut misfit, mut count) = (T::zero(), 0);
     for sample in samples {
         let at = lanes.closest(sample.point);
         let (a, b) = (outline_px[at], outline_px[at + 1]);
@@ -41,7 +43,8 @@ pub(crate) fn covariance<T: Real>(
         let n = [y / length, -x / length];
         // Where the outline is hidden by another of its color, the samples nearest to it are that one's.
         let across = (n[0] * (sample.point[0] - a[0]) + n[1] * (sample.point[1] - a[1])).abs();
-        if (across - sample.distance.abs()).abs() > T::of(ASTRAY_PX) {
+        let off = across - sample.distance.abs();
+        if off.abs() > T::of(ASTRAY_PX) {
             continue;
         }
         let arm = [sample.point[0] - center_px[0], sample.point[1] - center_px[1]];
@@ -49,12 +52,16 @@ pub(crate) fn covariance<T: Real>(
         // n x arm for a turn.
         let row = [n[0] * unit_px, n[1] * unit_px, n[0] * arm[0] + n[1] * arm[1], n[1] * arm[0] - n[0] * arm[1]];
         let weight = sample.weight * sample.weight * noise;
+        misfit += weight * off * off;
+        count += 1;
         for i in 0..4 {
             for j in 0..4 {
                 information[i][j] += weight * row[i] * row[j];
             }
         }
     }
+    let factor = (misfit / T::of_usize(count.max(1))).max(T::one());
+    information.iter_mut().flatten().for_each(|value| *value /= factor);
     for (i, &variance) in PRIOR_VARIANCE.iter().enumerate() {
         information[i][i] += T::of(1.0 / variance);
     }

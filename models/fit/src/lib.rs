@@ -42,6 +42,7 @@ mod segment;
 mod split;
 #[cfg(test)]
 mod tests;
+mod verdict;
 
 use alloc::vec::Vec;
 
@@ -49,6 +50,8 @@ use dvp_core::Scene;
 
 pub use fitter::{FitScratch, Fitter, fit_image};
 pub use options::{Bank, FitError, FitOptions};
+pub use residual::Unexplained;
+pub use verdict::Doubts;
 
 /// Why a fit stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

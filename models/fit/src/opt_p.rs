@@ -7,7 +7,7 @@ use dvp_core::{ImageView, Real, Scene};
 
 use crate::adam::descent::{Descent, DescentError, Outcome, Stage};
 use crate::parameters::Free;
-use crate::{Fit, StopReason};
+use crate::{Fit, StopReason, Unexplained};
 
 /// Settings of OptP; the defaults are the paper's.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,7 +31,7 @@ impl OptP {
     /// shapes and confidences stay.
     ///
     /// The fit's loss is [`Self::loss`]. Its covariance and ambiguity are empty: a first-order descent learns neither; its
-    /// description length is not computed (NaN).
+    /// description length is not computed (NaN). Whether it is any good, what it leaves unexplained tells.
     ///
     /// # Errors
     /// [`DescentError`] as [`Descent::run`].
@@ -52,22 +52,29 @@ impl OptP {
             contour_length: 0.0,
         };
         let outcome = descent.run(image, &mut scene, &stage)?;
-        Ok(fit_of(scene, outcome, self.steps))
+        fit_of(descent, image, scene, outcome, self.steps)
     }
 }
 
-/// A fit that knows neither covariance nor ambiguity nor description length.
-pub(crate) fn fit_of<T: Real>(scene: Scene<T>, outcome: Outcome<T>, steps: usize) -> Fit<T> {
-    Fit {
+/// A fit that knows neither covariance nor ambiguity nor description length, but what it leaves unexplained.
+pub(crate) fn fit_of<T: Real, R: Renderer<T>>(
+    descent: &mut Descent<'_, T, R>,
+    image: ImageView<'_, T>,
+    scene: Scene<T>,
+    outcome: Outcome<T>,
+    steps: usize,
+) -> Result<Fit<T>, DescentError> {
+    let Unexplained { share, noise } = descent.unexplained(&scene, image)?;
+    Ok(Fit {
         scene,
         loss: outcome.loss,
         steps,
         stop: StopReason::StepLimit,
         covariance: Vec::new(),
         ambiguity: Vec::new(),
-        unexplained: f64::NAN,
+        unexplained: share,
         buys: Vec::new(),
-        noise: T::nan(),
+        noise,
         bits: f64::NAN,
-    }
+    })
 }

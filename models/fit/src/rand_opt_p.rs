@@ -54,7 +54,7 @@ impl RandOptP {
         };
         descent.run(image, &mut scene, &stage(self.pose, Free::PoseAndColor))?;
         let outcome = descent.run(image, &mut scene, &stage(self.shape, Free::PoseColorAndShape))?;
-        Ok(fit_of(scene, outcome, self.pose.0 + self.shape.0))
+        fit_of(descent, image, scene, outcome, self.pose.0 + self.shape.0)
     }
 }
 

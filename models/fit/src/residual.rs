@@ -6,6 +6,8 @@ use core::ops::Range;
 
 use dvp_core::{ImageSize, ImageView, Real, simd};
 
+use crate::segment::{PIXEL_NOISE, noise_level};
+
 /// A rectangle of pixels inside an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct PixelBox {
@@ -127,6 +129,24 @@ impl<T: Real> Residual<T> {
             line[columns.clone()].iter().filter(|&&off| off > threshold).count()
         })
         .sum()
+    }
+}
+
+/// What a rendering of any origin leaves of a picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Unexplained<T> {
+    /// Share of the picture's variance that neither the rendering nor noise explains, [0, 1].
+    pub share: f64,
+    /// Standard deviation of a channel that was taken for noise: at least the rounding of 8 bits.
+    pub noise: T,
+}
+
+impl<T: Real> Unexplained<T> {
+    /// Compares `painted` (planar, as long as the image's data) with the image, whose noise is estimated.
+    #[must_use]
+    pub fn of(image: &ImageView<'_, T>, painted: &[T]) -> Self {
+        let noise = noise_level(image, &mut Vec::new()).max(T::of(PIXEL_NOISE));
+        Self { share: Residual::unexplained(image, painted, noise).0, noise }
     }
 }
 

@@ -3,7 +3,9 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use dvp_core::{Efd, Image, ImageSize, Object, Pose, Scene};
+use dvp_core::render::{ContourRenderer, Renderer};
+use dvp_core::shape::OutlineBasis;
+use dvp_core::{Drawing, Efd, Image, ImageSize, Object, Pose, Scene};
 
 use crate::cholesky::{factor, packed, solve};
 use crate::colors::{ColorScratch, is_rounded, refine_colors};
@@ -12,6 +14,7 @@ use crate::free::foot::EdgeLanes;
 use crate::price::scene_bits;
 use crate::residual::Residual;
 use crate::segment::EdgeSample;
+use crate::{Ambiguity, Doubts, Fit, FitOptions, StopReason, fit_image};
 
 #[test]
 fn cholesky_of_two_equations() {
@@ -97,6 +100,10 @@ fn covariance_of_a_disk() {
             assert!(found[4 * i + j].abs() < 1e-6 * (found[5 * i] * found[5 * j]).sqrt(), "{i}, {j}");
         }
     }
+    // Samples that are off by 0.03 px, five times what noise explains: 25 times the covariance.
+    let off: Vec<EdgeSample<f64>> = samples.iter().map(|sample| EdgeSample { distance: 0.03, ..*sample }).collect();
+    let wide = covariance(&outline, [20.0, 20.0], &off, 40.0, 0.003, &mut EdgeLanes::default());
+    assert!((0..3).all(|i| (wide[5 * i] / found[5 * i] - 25.0).abs() < 0.01), "{wide:?}");
     // Without samples nothing is known.
     let found = covariance(&outline, [20.0, 20.0], &[], 40.0, 0.003, &mut EdgeLanes::default());
     assert!((found[0] - 1.0).abs() < 1e-12 && (found[15] - 3.29).abs() < 1e-12);
@@ -130,4 +137,57 @@ fn soft_pixels_tell_fractions_of_a_step() {
     refine_colors(&image.view(), 0..200, &mut colors, &mut scratch);
     // Rounding 0.29 steps each, 67 pixels' worth for either color: 0.04 steps.
     assert!(before > 0.3 / 255.0 && worst(&colors) < 0.12 / 255.0, "{before} to {}", worst(&colors));
+}
+
+/// Two disks of radius 10 px, `steps` of 8 bits off the background in one channel and half as much in another.
+fn faint_disks(steps: f64) -> Image<f64> {
+    let size = ImageSize::new(64, 64).unwrap();
+    let color = [100.0 + steps, 100.0 - (0.5 * steps).floor(), 100.0].map(|value| value / 255.0);
+    let mut scene = Scene::empty([100.0 / 255.0; 3]);
+    for center in [[0.25, 0.3], [0.7, 0.65]] {
+        let pose = Pose { translation: center, scale: 10.0 / 64.0, rotation: 0.0 };
+        let efd = Efd::new(vec![[1.0, 0.0, 0.0, -1.0]]);
+        scene.objects.push(Object { pose, color, confidence: 1.0, efd, prototype: None });
+    }
+    let mut drawing = Drawing::default();
+    scene.draw(&OutlineBasis::new(64, 1).unwrap(), &mut drawing).unwrap();
+    let mut image = Image::zeros(size);
+    let renderer = ContourRenderer::new(scene.edge, scene.compositing);
+    renderer.render(&drawing, size, &mut Default::default(), image.data_mut()).unwrap();
+    image.data_mut().iter_mut().for_each(|value| *value = (*value * 255.0).round() / 255.0);
+    image
+}
+
+#[test]
+fn faint_objects_are_objects() {
+    for steps in [1.0, 2.0, 4.0, 8.0] {
+        let fit = fit_image(faint_disks(steps).view(), &FitOptions::default()).unwrap();
+        assert_eq!(fit.scene.objects.len(), 2, "{steps} steps");
+        // Off by the rounding of a step at most.
+        assert!((fit.scene.objects[0].color[0] * 255.0 - 100.0 - steps).abs() < 1.0, "{:?}", fit.scene);
+        assert!(fit.loss < 1e-3, "{}", fit.loss);
+    }
+    let fit = fit_image(faint_disks(0.0).view(), &FitOptions::default()).unwrap();
+    assert_eq!((fit.scene.objects.len(), fit.stop, fit.doubts()), (0, StopReason::Empty, Doubts::default()));
+}
+
+#[test]
+fn doubts_by_hand() {
+    let fit = fit_image(faint_disks(100.0).view(), &FitOptions::default()).unwrap();
+    assert_eq!((fit.scene.objects.len(), fit.doubts()), (2, Doubts::default()));
+    // A deviation of a tenth of the radius, 10 px of 64.
+    let mut wide = fit.clone();
+    wide.covariance[1][5] = (0.1_f64 * 10.0 / 64.0).powi(2);
+    assert_eq!(wide.doubts(), Doubts { pose: true, ..Doubts::default() });
+    wide.covariance[1][5] /= 4.0;
+    wide.covariance[1][10] = 0.06_f64.powi(2);
+    assert_eq!(wide.doubts(), Doubts { pose: true, ..Doubts::default() });
+    let open = |ambiguity| Fit { ambiguity: vec![ambiguity], ..fit.clone() }.doubts().ambiguity;
+    assert!(open(Ambiguity::Cropped { object: 0, visible: 0.9 }) && !open(Ambiguity::Symmetry { object: 0, order: 0 }));
+    // Adam, which states no covariance, takes all its steps.
+    let limit = Fit { stop: StopReason::StepLimit, ..fit.clone() };
+    assert!(limit.doubts().stop && !Fit { covariance: Vec::new(), ..limit }.doubts().stop);
+    assert!(
+        Fit { unexplained: 0.02, ..fit.clone() }.doubts().any() && !Fit { unexplained: f64::NAN, ..fit }.doubts().any()
+    );
 }

@@ -11,13 +11,14 @@ use dvp_fit::opt_iter::OptIter;
 use dvp_fit::opt_p::OptP;
 use dvp_fit::rand_opt_p::RandOptP;
 use dvp_fit::refine::{Refine, RefineScratch};
-use dvp_fit::{Bank, Fit, FitOptions, FitScratch, Fitter, StopReason};
+use dvp_fit::{Bank, Fit, FitOptions, FitScratch, Fitter, StopReason, Unexplained};
 use dvp_net::optimize::{OptZ, Optimum};
 use dvp_net::propose::Proposer;
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
 
 use super::{Method, Precision, Setting, adam, perturbed, precision, refine};
+use crate::paint::Painter;
 
 /// What methods share.
 #[derive(Clone, Debug, Default)]
@@ -213,8 +214,8 @@ impl Runner {
         let (image, steps) = (task.image, self.setting.steps);
         let opt_z = OptZ { steps, ..OptZ::default() };
         match self.method {
-            Method::RandOptZ => timed(|| Ok(fit_of(network.rand_opt_z(image, &opt_z, task.seed)?))),
-            Method::OptZ => timed(|| Ok(fit_of(network.opt_z(image, &opt_z)?))),
+            Method::RandOptZ => fit_of(image, timed(|| Ok(network.rand_opt_z(image, &opt_z, task.seed)?))?),
+            Method::OptZ => fit_of(image, timed(|| Ok(network.opt_z(image, &opt_z)?))?),
             Method::NetOptP => {
                 let settings = OptP { steps, ..OptP::default() };
                 timed(|| {
@@ -229,10 +230,10 @@ impl Runner {
                     refine(&settings, image, &start, Compositing::default(), usize::MAX, &mut scratch.refine)
                 })
             }
-            _ => timed(|| {
-                let scene = network.propose(image)?;
-                Ok(fit_of(Optimum { scene, loss: f64::NAN, losses: vec![f64::NAN] }))
-            }),
+            _ => {
+                let (scene, cpu) = timed(|| Ok(network.propose(image)?))?;
+                fit_of(image, (Optimum { scene, loss: f64::NAN, losses: vec![f64::NAN] }, cpu))
+            }
         }
     }
 }
@@ -248,18 +249,21 @@ pub fn timed<R>(work: impl FnOnce() -> Result<R>) -> Result<(R, Duration)> {
     Ok((result, clock.try_elapsed().context(NO_CLOCK)?))
 }
 
-/// A descent of latents, or a network alone, as a fit that doubts nothing.
-fn fit_of(found: Optimum<f32>) -> Fit<f32> {
-    Fit {
+/// A descent of latents, or a network alone, as a fit that doubts what it leaves unexplained; with the time it took.
+fn fit_of(image: ImageView<'_, f32>, (found, cpu): (Optimum<f32>, Duration)) -> Result<(Fit<f32>, Duration)> {
+    let painted = Painter::default().paint(&found.scene, image.size())?;
+    let Unexplained { share, noise } = Unexplained::of(&image, painted.data());
+    let fit = Fit {
         scene: found.scene,
         loss: f32::of(found.loss),
         steps: found.losses.len().saturating_sub(1),
         stop: StopReason::StepLimit,
         covariance: Vec::new(),
         ambiguity: Vec::new(),
-        unexplained: f64::NAN,
+        unexplained: share,
         buys: Vec::new(),
-        noise: f32::NAN,
+        noise,
         bits: f64::NAN,
-    }
+    };
+    Ok((fit, cpu))
 }

@@ -3,6 +3,7 @@
 //! In: a target image and a start. Out: the best scene met and its loss. One step is: draw, render with gradient, pull
 //! back, Adam, make admissible; nothing is allocated in it.
 
+use alloc::vec;
 use alloc::vec::Vec;
 
 use dvp_core::render::{PixelLoss, RenderError, Renderer};
@@ -12,6 +13,7 @@ use dvp_core::{Drawing, DrawingGrad, ImageView, Real, Scene, SceneGrad};
 use super::contour_length::mean_length_and_grad;
 use super::fixed_shapes::FixedShapes;
 use super::{Adam, AdamSettings};
+use crate::Unexplained;
 use crate::parameters::{Free, Parameters};
 use dvp_core::optim::{Plateau, PlateauSettings};
 
@@ -118,6 +120,17 @@ impl<'a, T: Real, R: Renderer<T>> Descent<'a, T, R> {
     pub fn paint(&mut self, scene: &Scene<T>, target: ImageView<'_, T>, image: &mut [T]) -> Result<(), DescentError> {
         scene.draw(&self.basis, &mut self.drawing)?;
         Ok(self.renderer.render(&self.drawing, target.size(), &mut self.scratch, image)?)
+    }
+
+    /// What `scene` leaves of `target`.
+    pub(crate) fn unexplained(
+        &mut self,
+        scene: &Scene<T>,
+        target: ImageView<'_, T>,
+    ) -> Result<Unexplained<T>, DescentError> {
+        let mut painted = vec![T::zero(); target.data().len()];
+        self.paint(scene, target, &mut painted)?;
+        Ok(Unexplained::of(&target, &painted))
     }
 
     fn keep(&mut self) {

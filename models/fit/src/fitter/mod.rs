@@ -4,9 +4,11 @@
 //! how their outlines meet), `known` poses the
 //! prototypes of a bank, `unknown` fits free outlines, `twins` splits what is several objects of one color; `run` is what
 //! they share: rendering (`shown`: only where something changed), colors, pruning, and the doubt that goes with the result
-//! (`ambiguity`: what it leaves open). `subsample` takes large pictures with wide edges down to the size that they need.
+//! (`ambiguity`: what it leaves open). `readings` chooses between clean, noisy and faint pictures (`faint`); `subsample` takes
+//! large pictures with wide edges down to the size that they need.
 
 mod ambiguity;
+mod faint;
 mod junction;
 mod known;
 mod order;

@@ -61,6 +61,9 @@ impl<T: Real> Fitter<T> {
                 self.or_compressed(image, sharpened, most_regions, scratch)?
             }
         };
+        if fit.scene.objects.is_empty() && noise < T::of(QUIET) {
+            return self.or_faint(image, fit, scratch);
+        }
         if fit.unexplained > NOT_FLAT && fit.stop != StopReason::NotFlat {
             return self.or_not_flat(image, fit, clean, most_regions, scratch);
         }
@@ -151,7 +154,7 @@ impl<T: Real> Fitter<T> {
     }
 
     /// Fits the regions last read; the edges and the way objects overlap that describe them best.
-    fn fit_reading(
+    pub(super) fn fit_reading(
         &self,
         image: ImageView<'_, T>,
         readable: bool,
@@ -227,7 +230,7 @@ impl<T: Real> Fitter<T> {
     }
 
     /// Description length of a fit, at another noise level than its own.
-    fn bits_at(
+    pub(super) fn bits_at(
         &self,
         image: ImageView<'_, T>,
         fit: &Fit<T>,

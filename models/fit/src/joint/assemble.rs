@@ -20,6 +20,8 @@ const SATURATION: f64 = 1e-4;
 pub(crate) struct JointScratch<T> {
     pub(crate) hessian: Vec<T>,
     pub(crate) gradient: Vec<T>,
+    /// Pixels near outlines in the equations.
+    pub(crate) near: usize,
     pub(super) damped: Vec<T>,
     pub(super) step: Vec<T>,
     pub(super) tried: JointScene<T>,
@@ -46,6 +48,7 @@ impl<T: Real> JointScratch<T> {
         self.hessian.resize(packed(n, 0), T::zero());
         self.gradient.clear();
         self.gradient.resize(n, T::zero());
+        self.near = 0;
         let band = Band::new(problem);
         self.place(problem, scene, &band);
         let size = problem.image.size();
@@ -71,6 +74,7 @@ impl<T: Real> JointScratch<T> {
                         continue;
                     }
                     let weight = if near { near_weight } else { T::of_usize(INTERIOR_STRIDE * INTERIOR_STRIDE) };
+                    self.near += usize::from(near);
                     let index = row * size.width() + column;
                     cost += self.add_pixel(problem, scene, &band, [column, row], index, weight);
                 }

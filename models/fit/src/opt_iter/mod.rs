@@ -111,7 +111,7 @@ impl OptIter {
             self.run(descent, image, &mut scene, self.shape, Free::PoseColorAndShape, &mut steps)?;
         }
         let outcome = self.run(descent, image, &mut scene, self.finish, Free::PoseColorAndShape, &mut steps)?;
-        Ok(Fit { stop, ..fit_of(scene, outcome, steps) })
+        Ok(Fit { stop, ..fit_of(descent, image, scene, outcome, steps)? })
     }
 
     fn run<T: Real, R: Renderer<T>>(

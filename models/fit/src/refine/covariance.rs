@@ -1,4 +1,7 @@
 //! Covariance of poses from the normal equations of the joint refinement, colors integrated out.
+//!
+//! Where the pixels near outlines are missed by more than noise explains, they tell so much less: the mean squared residual
+//! there stands for the variance of the noise if it is above it.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -11,11 +14,11 @@ use crate::joint::{JointScratch, PER_OBJECT};
 use crate::segment::PIXEL_NOISE;
 
 /// Per object, row-major 4 x 4 in (x, y in scene units, log scale, rotation); empty if the equations are singular.
-/// Expects the equations of `objects` objects in `joint`, and leaves it without them.
-pub(super) fn covariances<T: Real>(joint: &mut JointScratch<T>, objects: usize, unit_px: T) -> Vec<[T; 16]> {
+/// Expects the equations of `objects` objects in `joint`, with their cost, and leaves it without them.
+pub(super) fn covariances<T: Real>(joint: &mut JointScratch<T>, cost: T, objects: usize, unit_px: T) -> Vec<[T; 16]> {
     let n = objects * PER_OBJECT + 3;
     // Noise as unit: entries of the inverse are far below the rounding of f32 otherwise.
-    let noise = T::of(PIXEL_NOISE * PIXEL_NOISE);
+    let noise = T::of(PIXEL_NOISE * PIXEL_NOISE).max(cost / T::of_usize(3 * joint.near.max(1)));
     let units = [unit_px, unit_px, T::one(), T::one()];
     for i in 0..n {
         // A color in [0, 1] has a variance of 1 at most.

@@ -16,7 +16,7 @@ use crate::options::check_finite;
 use crate::pose::search::Prototype;
 use crate::price::scene_bits;
 use crate::residual::Residual;
-use crate::segment::PIXEL_NOISE;
+use crate::segment::{PIXEL_NOISE, noise_level};
 use crate::{Fit, FitError};
 use covariance::covariances;
 pub use scratch::RefineScratch;
@@ -72,11 +72,11 @@ impl Refine {
             loss = scratch.compare(&scene, image)?;
         }
         let problem = self.problem(image, start, &scratch.shapes);
-        scratch.joint.assemble(&problem, &posed);
-        let covariance = covariances(&mut scratch.joint, posed.objects.len(), unit);
+        let cost = scratch.joint.assemble(&problem, &posed);
+        let covariance = covariances(&mut scratch.joint, cost, posed.objects.len(), unit);
         let bits = scene_bits(&scene, scratch.shapes.len()) + scratch.residual.bits(T::of(PIXEL_NOISE));
         let ambiguity = scratch.ambiguities(&posed, image, unit);
-        let noise = T::of(PIXEL_NOISE);
+        let noise = noise_level(&image, &mut scratch.differences).max(T::of(PIXEL_NOISE));
         let (unexplained, total) = Residual::unexplained(&image, &scratch.pixels, noise);
         let buys = buys(&scratch.drawing, &image, scene.compositing, total);
         let (steps, stop) = (result.steps, result.stop);

@@ -30,6 +30,7 @@ pub struct RefineScratch<T: Real> {
     render: <ContourRenderer<T> as Renderer<T>>::Scratch,
     pub(super) pixels: Vec<T>,
     pub(super) residual: Residual<T>,
+    pub(super) differences: Vec<T>,
 }
 
 impl<T: Real> RefineScratch<T> {

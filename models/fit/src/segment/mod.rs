@@ -87,12 +87,14 @@ pub(crate) struct SegmentOptions<T> {
     pub(crate) line_tolerance: T,
     /// Smaller regions are ignored.
     pub(crate) min_pixels: u32,
+    /// Standard deviation of a channel that no outline explains.
+    pub(crate) noise: T,
 }
 
 impl<T: Real> Default for SegmentOptions<T> {
     fn default() -> Self {
         // 0.0085: just above the seams of the reference renderer (0.0067 at full contrast) and two steps of 8 bits.
-        Self { flat_tolerance: T::of(0.0085), line_tolerance: T::of(0.012), min_pixels: 4 }
+        Self { flat_tolerance: T::of(0.0085), line_tolerance: T::of(0.012), min_pixels: 4, noise: T::of(PIXEL_NOISE) }
     }
 }
 
@@ -128,7 +130,7 @@ impl<T: Real> Segmentation<T> {
             }
             transition::find(image, &self.map, &self.regions, tolerance, &mut self.soft, &mut self.transitions);
         }
-        self.noise = T::of(PIXEL_NOISE);
+        self.noise = options.noise;
         self.compressed = false;
         self.reading.prepare(&self.regions, &self.transitions)
     }

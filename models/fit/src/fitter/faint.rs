@@ -1,0 +1,92 @@
+//! Pictures whose objects are so faint that they passed for flat: stretched to full contrast, in which rounding to 8 bits
+//! is as coarse as it is, and fitted again.
+
+use alloc::vec::Vec;
+
+use dvp_core::{Image, ImageView, Real, Scene};
+
+use super::{FitScratch, Fitter};
+use crate::colors::is_rounded;
+use crate::segment::{PIXEL_NOISE, SegmentOptions};
+use crate::{Fit, FitError};
+
+/// Half a step of 8 bits. Pictures of less contrast are one color, whatever their numbers.
+const HALF_STEP: f64 = 0.5 / 255.0;
+/// Of a step, the standard deviation of rounding.
+const ROUNDING: f64 = 0.2887;
+
+/// A picture at full contrast, and the way back.
+struct Stretched<T> {
+    image: Image<T>,
+    lowest: [T; 3],
+    gain: T,
+    /// Most that rounding moves a value.
+    rounding: T,
+}
+
+impl<T: Real> Stretched<T> {
+    /// None of a picture of one color.
+    fn of(image: &ImageView<'_, T>) -> Option<Self> {
+        let ends = |channel: &[T]| {
+            channel.iter().fold((T::infinity(), T::neg_infinity()), |(low, high), &v| (low.min(v), high.max(v)))
+        };
+        let ends = [0, 1, 2].map(|c| ends(image.channel(c)));
+        let range = ends.iter().map(|(low, high)| *high - *low).fold(T::zero(), T::max);
+        if range <= T::of(HALF_STEP) {
+            return None;
+        }
+        let (lowest, gain) = (ends.map(|(low, _)| low), T::one() / range);
+        let mut stretched = Image::zeros(image.size());
+        let planes = stretched.data_mut().chunks_exact_mut(image.size().pixels());
+        for (c, plane) in planes.enumerate() {
+            let values = plane.iter_mut().zip(image.channel(c));
+            values.for_each(|(out, &value)| *out = (value - lowest[c]) * gain);
+        }
+        let rounding = if is_rounded(image.data().iter().copied()) { T::of(HALF_STEP) * gain } else { T::zero() };
+        Some(Self { image: stretched, lowest, gain, rounding })
+    }
+
+    fn options(&self) -> SegmentOptions<T> {
+        let default = SegmentOptions::<T>::default();
+        SegmentOptions {
+            line_tolerance: default.line_tolerance.max(self.rounding),
+            noise: T::of(PIXEL_NOISE).max(T::of(2.0 * ROUNDING) * self.rounding),
+            ..default
+        }
+    }
+
+    /// The fit of the picture as it was.
+    fn undo(&self, mut fit: Fit<T>) -> Fit<T> {
+        let colors = fit.scene.objects.iter_mut().map(|object| &mut object.color);
+        for color in colors.chain([&mut fit.scene.background]) {
+            *color = core::array::from_fn(|c| self.lowest[c] + color[c] / self.gain);
+        }
+        fit.loss /= self.gain;
+        fit.noise /= self.gain;
+        fit
+    }
+}
+
+impl<T: Real> Fitter<T> {
+    /// `empty`, the fit of a picture without objects, or one of faint objects if that is the shorter description.
+    pub(super) fn or_faint(
+        &self,
+        image: ImageView<'_, T>,
+        empty: Fit<T>,
+        scratch: &mut FitScratch<T>,
+    ) -> Result<Fit<T>, FitError> {
+        let Some(stretched) = Stretched::of(&image) else { return Ok(empty) };
+        let view = stretched.image.view();
+        scratch.shown.forget();
+        scratch.code = None;
+        if !scratch.segmentation.read(&view, &stretched.options()) {
+            return Ok(empty);
+        }
+        let faint = self.fit_reading(view, true, scratch)?;
+        let scene = Scene { objects: Vec::new(), ..faint.scene.clone() };
+        let flat = Fit { scene, ..faint.clone() };
+        let is_shorter = faint.bits < self.bits_at(view, &flat, faint.noise, scratch)?;
+        scratch.shown.forget();
+        Ok(if is_shorter { stretched.undo(faint) } else { empty })
+    }
+}
