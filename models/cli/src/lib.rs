@@ -8,12 +8,14 @@
 //! | [`paint`] | scenes to images with a renderer chosen by name |
 //! | [`generate`] | random scenes |
 //! | [`method`] | the methods that find scenes, by name |
+//! | [`agreement`] | whether a scene found is the true one |
 //! | [`command`] | the sub-commands: arguments, threads, tables |
 //!
 //! Everything but [`command`], [`method`] and [`chart`] has its own error enum; those three use anyhow.
 
 extern crate alloc;
 
+pub mod agreement;
 pub mod chart;
 pub mod command;
 pub mod format;

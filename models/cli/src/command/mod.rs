@@ -11,6 +11,7 @@ mod options;
 mod progress;
 mod prototypes;
 mod render;
+mod stability;
 mod train;
 
 use std::ffi::OsString;
@@ -51,6 +52,7 @@ enum Command {
     Train(train::Arguments),
     Evaluate(evaluate::Arguments),
     Gradients(gradients::Arguments),
+    Stability(stability::Arguments),
 }
 
 /// Runs the command with the arguments `args` (the program's name first) and returns its exit code.
@@ -85,5 +87,6 @@ fn dispatch(command: Command, console: &mut Console<'_>) -> Result<Outcome> {
         Command::Train(arguments) => train::run(&arguments, console),
         Command::Evaluate(arguments) => evaluate::run(&arguments, console),
         Command::Gradients(arguments) => gradients::run(&arguments, console),
+        Command::Stability(arguments) => stability::run(&arguments, console),
     }
 }

@@ -30,7 +30,7 @@ pub use data_set::{DataSet, SCENES_FILE, Sample, bank_near, pictures_of, read_sc
 pub use error::{FormatError, Place};
 pub use labels::{labels_beside, read_labels};
 pub use npy::read_npy;
-pub use picture::{DEFAULT_MAX_PIXELS, encode_png, read_picture};
+pub use picture::{DEFAULT_MAX_PIXELS, encode_png, from_rgb8, read_picture, to_rgb8};
 pub use scene_checks::edge_cut;
 pub(crate) use scene_json::read_text;
 pub use scene_json::{CompositingJson, EdgeJson, EdgeLawJson, ObjectJson, SceneJson, read_scene};

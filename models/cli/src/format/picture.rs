@@ -7,8 +7,10 @@
 use std::io::Cursor;
 use std::path::Path;
 
+use dvp_core::dims::SizeError;
 use dvp_core::{Image, ImageSize, ImageView, Real};
-use image::{DynamicImage, ImageDecoder, ImageEncoder, ImageReader, Limits};
+use image::error::{LimitError, LimitErrorKind};
+use image::{DynamicImage, ImageDecoder, ImageError, ImageReader, Limits, RgbImage};
 
 use super::error::FormatError;
 
@@ -70,17 +72,36 @@ fn interleaved<T: Real>(picture: &DynamicImage) -> Vec<T> {
 /// The bytes of an 8-bit RGB PNG; values are clamped to [0, 1] and rounded to the nearest step.
 ///
 /// # Errors
-/// [`FormatError::Encode`] if the encoder refuses (a side above 2^31).
+/// As [`to_rgb8`].
 pub fn encode_png<T: Real>(image: ImageView<'_, T>) -> Result<Vec<u8>, FormatError> {
-    let refused = |source| FormatError::Encode { source };
-    let side = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
-    let (width, height) = (side(image.size().width()), side(image.size().height()));
-    let bytes: Vec<u8> = (0..image.size().pixels()).flat_map(|i| image.pixel(i).map(byte)).collect();
     let mut png = Cursor::new(Vec::new());
-    image::codecs::png::PngEncoder::new(&mut png)
-        .write_image(&bytes, width, height, image::ExtendedColorType::Rgb8)
-        .map_err(refused)?;
+    let encoder = image::codecs::png::PngEncoder::new(&mut png);
+    to_rgb8(image)?.write_with_encoder(encoder).map_err(|source| FormatError::Encode { source })?;
     Ok(png.into_inner())
+}
+
+/// A picture of 8 bits; values are clamped to [0, 1] and rounded to the nearest step.
+///
+/// # Errors
+/// [`FormatError::Encode`] if a side is above 2^32.
+pub fn to_rgb8<T: Real>(image: ImageView<'_, T>) -> Result<RgbImage, FormatError> {
+    let [width, height] = [image.size().width(), image.size().height()].map(u32::try_from);
+    let bytes = (0..image.size().pixels()).flat_map(|i| image.pixel(i).map(byte)).collect();
+    let picture = width.ok().zip(height.ok()).and_then(|(width, height)| RgbImage::from_raw(width, height, bytes));
+    let too_large = || ImageError::Limits(LimitError::from_kind(LimitErrorKind::DimensionError));
+    picture.ok_or_else(|| FormatError::Encode { source: too_large() })
+}
+
+/// The values of a picture of 8 bits, [0, 1].
+///
+/// # Errors
+/// [`SizeError`] if it has no pixel.
+pub fn from_rgb8<T: Real>(picture: &RgbImage) -> Result<Image<T>, SizeError> {
+    let size = ImageSize::new(picture.width() as usize, picture.height() as usize)?;
+    let mut image = Image::zeros(size);
+    let bytes = picture.as_raw().iter().enumerate();
+    bytes.for_each(|(i, &byte)| image.data_mut()[i % 3 * size.pixels() + i / 3] = T::of(f64::from(byte) / 255.0));
+    Ok(image)
 }
 
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to [0, 255] before")]
