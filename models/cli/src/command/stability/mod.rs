@@ -19,8 +19,6 @@ mod page;
 mod summary;
 mod sweep;
 mod table;
-#[cfg(test)]
-mod tests;
 mod trial;
 mod watch;
 

@@ -23,8 +23,6 @@ mod extent;
 mod overlap;
 mod spoil;
 mod start;
-#[cfg(test)]
-mod tests;
 
 use anyhow::Result;
 use dvp_core::{Image, Scene};
