@@ -42,7 +42,8 @@ impl<T: Real> Fit<T> {
     pub fn doubts(&self) -> Doubts {
         let is_wide = |(block, object): (&[T; 16], &Object<T>)| {
             let [x, y, size] = [0, 5, 10].map(|k| block[k].as_f64().max(0.0));
-            let squared_radius = object.pose.scale.as_f64().powi(2) * object.efd.signed_area().as_f64().abs() / PI;
+            let (scale, area) = (object.pose.scale.as_f64(), object.efd.signed_area().as_f64());
+            let squared_radius = scale * scale * area.abs() / PI;
             x.max(y) > WIDE_POSITION * WIDE_POSITION * squared_radius || size > WIDE_SIZE * WIDE_SIZE
         };
         let is_open = |ambiguity: &Ambiguity| !matches!(ambiguity, Ambiguity::Symmetry { .. });
