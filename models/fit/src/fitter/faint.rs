@@ -10,6 +10,8 @@ use crate::colors::is_rounded;
 use crate::segment::{PIXEL_NOISE, SegmentOptions};
 use crate::{Fit, FitError};
 
+/// Pictures of more contrast are not faint: what is not found in them is not flat.
+const FAINT: f64 = 0.05;
 /// Half a step of 8 bits. Pictures of less contrast are one color, whatever their numbers.
 const HALF_STEP: f64 = 0.5 / 255.0;
 /// Of a step, the standard deviation of rounding.
@@ -25,14 +27,14 @@ struct Stretched<T> {
 }
 
 impl<T: Real> Stretched<T> {
-    /// None of a picture of one color.
+    /// None of a picture of one color, or of one that is not faint.
     fn of(image: &ImageView<'_, T>) -> Option<Self> {
         let ends = |channel: &[T]| {
             channel.iter().fold((T::infinity(), T::neg_infinity()), |(low, high), &v| (low.min(v), high.max(v)))
         };
         let ends = [0, 1, 2].map(|c| ends(image.channel(c)));
         let range = ends.iter().map(|(low, high)| *high - *low).fold(T::zero(), T::max);
-        if range <= T::of(HALF_STEP) {
+        if range <= T::of(HALF_STEP) || range > T::of(FAINT) {
             return None;
         }
         let (lowest, gain) = (ends.map(|(low, _)| low), T::one() / range);
@@ -68,25 +70,26 @@ impl<T: Real> Stretched<T> {
 }
 
 impl<T: Real> Fitter<T> {
-    /// `empty`, the fit of a picture without objects, or one of faint objects if that is the shorter description.
+    /// `empty`, the fit of a picture without objects, or one of faint objects if that is the shorter description; none if
+    /// the picture is not faint.
     pub(super) fn or_faint(
         &self,
         image: ImageView<'_, T>,
-        empty: Fit<T>,
+        empty: &Fit<T>,
         scratch: &mut FitScratch<T>,
-    ) -> Result<Fit<T>, FitError> {
-        let Some(stretched) = Stretched::of(&image) else { return Ok(empty) };
+    ) -> Result<Option<Fit<T>>, FitError> {
+        let Some(stretched) = Stretched::of(&image) else { return Ok(None) };
         let view = stretched.image.view();
         scratch.shown.forget();
         scratch.code = None;
         if !scratch.segmentation.read(&view, &stretched.options()) {
-            return Ok(empty);
+            return Ok(Some(empty.clone()));
         }
         let faint = self.fit_reading(view, true, scratch)?;
         let scene = Scene { objects: Vec::new(), ..faint.scene.clone() };
         let flat = Fit { scene, ..faint.clone() };
         let is_shorter = faint.bits < self.bits_at(view, &flat, faint.noise, scratch)?;
         scratch.shown.forget();
-        Ok(if is_shorter { stretched.undo(faint) } else { empty })
+        Ok(Some(if is_shorter { stretched.undo(faint) } else { empty.clone() }))
     }
 }

@@ -61,8 +61,11 @@ impl<T: Real> Fitter<T> {
                 self.or_compressed(image, sharpened, most_regions, scratch)?
             }
         };
-        if fit.scene.objects.is_empty() && noise < T::of(QUIET) {
-            return self.or_faint(image, fit, scratch);
+        if fit.scene.objects.is_empty()
+            && noise < T::of(QUIET)
+            && let Some(fit) = self.or_faint(image, &fit, scratch)?
+        {
+            return Ok(fit);
         }
         if fit.unexplained > NOT_FLAT && fit.stop != StopReason::NotFlat {
             return self.or_not_flat(image, fit, clean, most_regions, scratch);
