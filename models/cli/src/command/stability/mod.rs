@@ -19,6 +19,8 @@ mod page;
 mod summary;
 mod sweep;
 mod table;
+#[cfg(test)]
+mod tests;
 mod trial;
 mod watch;
 

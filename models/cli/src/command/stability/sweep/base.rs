@@ -21,9 +21,10 @@ pub(super) const SCALES: Range = Range::new(0.08, 0.13);
 /// No outline of MDS-HR reaches farther from its center, in units of its scale.
 pub(super) const REACH: f32 = 1.45;
 
-/// Objects that are apart leave so much between their reaches, and to the border: the reference's edges, and four pixels
-/// of 128.
-const GAP: f32 = 0.05;
+/// Objects that are apart leave so much between their reaches, and half of it to the border, in pictures of 128 px and of
+/// 256: the reference's edges, and some pixels.
+pub(super) const GAP: f32 = 0.05;
+pub(super) const CROWD_GAP: f32 = 0.02;
 
 /// Places that are tried for an object.
 const PLACES: usize = 10_000;
@@ -42,7 +43,7 @@ pub(super) fn mds_hr(seed: u64) -> Result<Scene<f32>> {
 }
 
 /// Up to `count` objects of the bank's shapes that neither touch one another nor the border; fewer if there is no room.
-pub(super) fn apart(rng: &mut ChaCha8Rng, count: usize, scales: Range) -> Scene<f32> {
+pub(super) fn apart(rng: &mut ChaCha8Rng, count: usize, scales: Range, gap: f32) -> Scene<f32> {
     let bank = mdshr_bank();
     let mut scene = Scene::empty(rng.random());
     for _ in 0..count {
@@ -50,11 +51,11 @@ pub(super) fn apart(rng: &mut ChaCha8Rng, count: usize, scales: Range) -> Scene<
         let rotation = rng.random_range(0.0..core::f32::consts::TAU);
         let color = contrasting(rng, scene.background);
         let prototype = rng.random_range(0..bank.prototypes.len());
-        let border = scale * REACH + GAP / 2.0;
+        let border = scale * REACH + gap / 2.0;
         let place = (0..PLACES).map(|_| [0, 1].map(|_| rng.random_range(border..1.0 - border))).find(|place| {
             scene.objects.iter().all(|Object { pose, .. }| {
                 let distance = (place[0] - pose.translation[0]).hypot(place[1] - pose.translation[1]);
-                distance > (scale + pose.scale) * REACH + GAP
+                distance > (scale + pose.scale) * REACH + gap
             })
         });
         scene.objects.extend(place.map(|translation| Object {

@@ -5,7 +5,7 @@ use dvp_core::Scene;
 use rand::RngExt;
 
 use super::Case;
-use super::base::{SCALES, SIDE, apart, case, narrow, random};
+use super::base::{GAP, SCALES, SIDE, apart, case, narrow, random};
 use crate::command::options::square;
 use crate::paint::Painter;
 
@@ -25,7 +25,7 @@ pub(super) fn faint_floats(level: f64, seed: u64) -> Result<Case> {
 /// The same scene in every contrast: objects lie on one side of the background, whose colors are whole steps.
 fn scene(contrast: f32, seed: u64) -> Scene<f32> {
     let mut rng = random(seed);
-    let mut scene = apart(&mut rng, OBJECTS, SCALES);
+    let mut scene = apart(&mut rng, OBJECTS, SCALES, GAP);
     let side: [f32; 3] = core::array::from_fn(|_| if rng.random() { 1.0 } else { -1.0 });
     let room = scene.background.map(|value| (value * (1.0 - contrast) * 255.0).floor() / 255.0);
     scene.background = core::array::from_fn(|c| if side[c] > 0.0 { room[c] } else { 1.0 - room[c] });

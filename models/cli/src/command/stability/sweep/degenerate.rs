@@ -4,7 +4,7 @@ use anyhow::Result;
 use dvp_core::Efd;
 
 use super::Case;
-use super::base::{SCALES, SIDE, apart, case, narrow, random, whole};
+use super::base::{GAP, SCALES, SIDE, apart, case, narrow, random, whole};
 
 const OBJECTS: usize = 2;
 
@@ -26,7 +26,7 @@ pub(super) fn coincident(level: f64, seed: u64) -> Result<Case> {
 }
 
 fn with_shape(efd: &Efd<f32>, seed: u64) -> Result<Case> {
-    let mut scene = apart(&mut random(seed), OBJECTS, SCALES);
+    let mut scene = apart(&mut random(seed), OBJECTS, SCALES, GAP);
     for object in &mut scene.objects {
         (object.efd, object.prototype) = (efd.clone(), None);
     }

@@ -4,7 +4,7 @@ use anyhow::Result;
 use dvp_core::render::EdgeProfile;
 
 use super::Case;
-use super::base::{SCALES, SIDE, apart, case, narrow, random};
+use super::base::{GAP, SCALES, SIDE, apart, case, narrow, random};
 
 const OBJECTS: usize = 3;
 
@@ -23,7 +23,7 @@ pub(super) fn offset(level: f64, seed: u64) -> Result<Case> {
 
 fn with_edge(mut edge: EdgeProfile<f32>, seed: u64) -> Result<Case> {
     edge.cut = edge.offset + CUT * edge.sigma;
-    let mut scene = apart(&mut random(seed), OBJECTS, SCALES);
+    let mut scene = apart(&mut random(seed), OBJECTS, SCALES, GAP);
     scene.edge = edge;
     case(scene, SIDE)
 }

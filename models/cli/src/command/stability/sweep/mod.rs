@@ -23,6 +23,8 @@ mod extent;
 mod overlap;
 mod spoil;
 mod start;
+#[cfg(test)]
+mod tests;
 
 use anyhow::Result;
 use dvp_core::{Image, Scene};
@@ -180,7 +182,7 @@ pub(super) const SWEEPS: &[Sweep] = &[
         &[0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0],
         spoil::blurred,
     ),
-    sweep("edge-hard", "Hard edges", "sigma of the edge profile", &[1e-4, 3e-5, 1e-5, 3e-6, 1e-6, 1e-8], edge::sigma),
+    sweep("edge-hard", "Hard edges", "sigma of the edge profile", &[1e-4, 3e-5, 1e-5, 3e-6, 1e-6], edge::sigma),
     sweep("edge-soft", "Soft edges", "sigma of the edge profile", &[1e-4, 3e-4, 1e-3, 3e-3, 1e-2], edge::sigma),
     sweep(
         "edge-thin",
