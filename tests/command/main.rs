@@ -1,7 +1,10 @@
 //! The command tests: `dvp` from its arguments to its files, streams and exit code; a module per concern.
 #![expect(clippy::unwrap_used, clippy::panic, reason = "what fails here is a failed test, in helpers too")]
 
+extern crate alloc;
+
 mod bad_input;
+mod chart;
 mod edges;
 mod evaluate;
 mod fit;

@@ -58,7 +58,7 @@ fn sharp() -> EdgeProfile<f64> {
 #[test]
 fn one_scene_against_all_renderers() {
     let contour = render(ContourDistance::default());
-    let contour_sharp = render(ContourDistance { edge: sharp() });
+    let contour_sharp = render(ContourDistance::new(sharp()));
     let triangles = render(SoftTriangles::default());
     let triangles_sharp = render(SoftTriangles { edge: sharp(), ..SoftTriangles::default() });
     let exact = render(ExactArea);
@@ -86,11 +86,11 @@ fn one_scene_against_all_renderers() {
 
 /// Every renderer on one outline in pixels.
 fn each(outline: &[[f64; 2]], size: ImageSize) -> [(&'static str, Result<Vec<f64>, RenderError>); 6] {
-    let blurred = ContourDistance { edge: EdgeProfile::distance(0.1) };
+    let blurred = ContourDistance::new(EdgeProfile::distance(0.1));
     [
         ("contour", coverage(ContourDistance::default(), outline, size)),
         ("blurred contour", coverage(blurred, outline, size)),
-        ("area contour", coverage(ContourDistance { edge: EdgeProfile::area() }, outline, size)),
+        ("area contour", coverage(ContourDistance::new(EdgeProfile::area()), outline, size)),
         ("triangles", coverage(SoftTriangles::default(), outline, size)),
         ("exact", coverage(ExactArea, outline, size)),
         ("hard", coverage(HardMask, outline, size)),
@@ -150,7 +150,7 @@ proptest! {
             EdgeProfile::distance(1e-5)
         };
         let hard = coverage(HardMask, &star, size).unwrap();
-        let contour = coverage(ContourDistance { edge }, &star, size).unwrap();
+        let contour = coverage(ContourDistance::new(edge), &star, size).unwrap();
         let triangles = coverage(SoftTriangles { edge, ..SoftTriangles::default() }, &star, size).unwrap();
         for (i, &inside) in hard.iter().enumerate() {
             // On an edge all is open; on a seam coverage is above 1/2.
@@ -163,7 +163,7 @@ proptest! {
 
     #[test]
     fn area_profiles_are_painted_exactly(star in strategy::star_px(), cotangent in prop::collection::vec(-1.0..1.0, 576)) {
-        let (size, by_profile) = (ImageSize::new(24, 24).unwrap(), ContourDistance { edge: EdgeProfile::area() });
+        let (size, by_profile) = (ImageSize::new(24, 24).unwrap(), ContourDistance::new(EdgeProfile::area()));
         prop_assert_eq!(coverage(by_profile, &star, size).unwrap(), coverage(ExactArea, &star, size).unwrap());
         let gradients = (
             coverage_vjp(by_profile, &star, size, &cotangent).unwrap(),

@@ -6,7 +6,7 @@
 //! outlines have holes. Area coverage is left to [`exact`](super::exact).
 //!
 //! Distances are worked out only in a narrow band along the outline: outside up to the cut, inside up to where coverage
-//! is within 1e-6 of 1, which then counts as 1, without gradient.
+//! is within [`ContourDistance::saturation`] of 1, which then counts as 1, without gradient.
 //!
 //! | file | holds |
 //! |---|---|
@@ -34,7 +34,7 @@ use crate::real::Real;
 use crate::scene::PixelProfile;
 use crate::simd::dispatch;
 
-/// Inside, coverage this close to 1 counts as 1.
+/// Inside, coverage this close to 1 counts as 1 unless said otherwise.
 const SATURATION: f64 = 1e-6;
 
 /// Smallest sigma: its reciprocal in pixels stays finite in f32.
@@ -47,7 +47,7 @@ impl<T: Real> ContourRenderer<T> {
     /// A renderer with the given profile and mixing.
     #[must_use]
     pub fn new(edge: EdgeProfile<T>, compositing: Compositing) -> Self {
-        Self { coverage: ContourDistance { edge }, compositing }
+        Self { coverage: ContourDistance::new(edge), compositing }
     }
 }
 
@@ -60,11 +60,21 @@ impl<T: Real> ContourRenderer<T> {
 pub struct ContourDistance<T> {
     /// How coverage falls off.
     pub edge: EdgeProfile<T>,
+    /// Inside, coverage this close to 1 counts as 1: there the band ends that distances are worked out in. In (0, 1/2].
+    pub saturation: T,
+}
+
+impl<T: Real> ContourDistance<T> {
+    /// Coverage by a profile; inside, what is within 1e-6 of 1 counts as 1.
+    #[must_use]
+    pub fn new(edge: EdgeProfile<T>) -> Self {
+        Self { edge, saturation: T::of(SATURATION) }
+    }
 }
 
 impl<T: Real> Default for ContourDistance<T> {
     fn default() -> Self {
-        Self { edge: EdgeProfile::reference() }
+        Self::new(EdgeProfile::reference())
     }
 }
 
@@ -81,7 +91,7 @@ struct Band<T> {
 impl<T: Real> ContourDistance<T> {
     fn band(&self, unit_px: T) -> Band<T> {
         let profile = self.edge.in_pixels(unit_px);
-        let full = profile.full(SATURATION);
+        let full = profile.full(self.saturation.as_f64());
         Band { profile, full, reach: profile.px(profile.cut.abs().max(-full)) }
     }
 }
@@ -98,6 +108,8 @@ impl<T: Real> CoverageModel<T> for ContourDistance<T> {
             refuse("edge.offset", offset, "finite")
         } else if !cut.is_finite() {
             refuse("edge.cut", cut, "finite")
+        } else if !(self.saturation > T::zero() && self.saturation <= T::of(0.5)) {
+            refuse("saturation", self.saturation, "above 0 and at most 1/2")
         } else {
             Ok(())
         }

@@ -1,9 +1,10 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::ContourRenderer;
+use super::{ContourDistance, ContourRenderer};
 use crate::dims::ImageSize;
-use crate::render::{Compositing, EdgeLaw, EdgeProfile};
+use crate::render::tile::TileRenderer;
+use crate::render::{Compositing, EdgeLaw, EdgeProfile, RenderError};
 use crate::scene::Drawing;
 
 /// Coverage pixel by pixel and edge by edge, from the definition.
@@ -99,4 +100,27 @@ fn repeated_vertices_are_no_edges() {
     let difference = covered(&once).iter().zip(covered(&twice)).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     assert!(difference < 1e-12, "{difference}");
     assert!(covered(&[once[0]; 4]).iter().all(|&p| p <= 0.0), "a point has no edge");
+}
+
+#[test]
+fn a_narrower_band_leaves_out_no_more_than_it_says() {
+    let size = ImageSize::new(150, 101).unwrap();
+    let mut drawing = Drawing::default();
+    drawing.push(&pentagram([0.7, 0.5], 0.45), [1.0; 3], 1.0);
+    let covered = |saturation| {
+        let coverage = ContourDistance { saturation, ..ContourDistance::default() };
+        let renderer = TileRenderer { coverage, compositing: Compositing::Blend };
+        let mut coverage = vec![0.0_f64; size.pixels()];
+        renderer.object_coverage(&drawing, size, &mut Default::default(), &mut coverage).map(|()| coverage)
+    };
+    let exact = covered(1e-12).unwrap();
+    for saturation in [1e-6, 1e-4, 1e-2, 0.5] {
+        let found = covered(saturation).unwrap();
+        let most = exact.iter().zip(&found).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(most <= saturation, "{saturation}: {most}");
+        assert!(most > 0.0 && found.iter().zip(&exact).all(|(found, exact)| found >= exact), "{saturation}");
+    }
+    for refused in [0.0, -1.0, 0.6, f64::NAN] {
+        assert!(matches!(covered(refused), Err(RenderError::Setting { what: "saturation", .. })), "{refused}");
+    }
 }

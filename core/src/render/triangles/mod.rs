@@ -69,15 +69,15 @@ impl<T: Real, F: Triangulate> CoverageModel<T> for SoftTriangles<T, F> {
     type Record = TriangleRecord<T>;
 
     fn check(&self) -> Result<(), RenderError> {
-        ContourDistance { edge: self.edge }.check()
+        ContourDistance::new(self.edge).check()
     }
 
     fn reach_px(&self, unit_px: T) -> T {
-        ContourDistance { edge: self.edge }.reach_px(unit_px)
+        ContourDistance::new(self.edge).reach_px(unit_px)
     }
 
     fn smallest_coverage(&self) -> T {
-        ContourDistance { edge: self.edge }.smallest_coverage()
+        ContourDistance::new(self.edge).smallest_coverage()
     }
 
     fn cover(

@@ -3,15 +3,21 @@
 //! Results go to the first stream (standard output), complaints and progress to the second (standard error). Exit codes:
 //! 0 if all was done, 1 if something failed (everything else was done all the same), 2 for wrong usage.
 
+mod chart;
 mod evaluate;
 mod fit;
 mod generate;
+mod generated;
 mod gradients;
+mod html;
 mod options;
 mod progress;
 mod prototypes;
 mod render;
+mod score;
 mod stability;
+mod statistics;
+mod totals;
 mod train;
 
 use std::ffi::OsString;
@@ -53,6 +59,7 @@ enum Command {
     Evaluate(evaluate::Arguments),
     Gradients(gradients::Arguments),
     Stability(stability::Arguments),
+    Chart(chart::Arguments),
 }
 
 /// Runs the command with the arguments `args` (the program's name first) and returns its exit code.
@@ -88,5 +95,6 @@ fn dispatch(command: Command, console: &mut Console<'_>) -> Result<Outcome> {
         Command::Evaluate(arguments) => evaluate::run(&arguments, console),
         Command::Gradients(arguments) => gradients::run(&arguments, console),
         Command::Stability(arguments) => stability::run(&arguments, console),
+        Command::Chart(arguments) => chart::run(&arguments, console),
     }
 }

@@ -26,7 +26,7 @@ use clap::ValueEnum;
 pub use adam::{descend, opt_p, rand_opt_p, random_start, seed_of};
 pub use network::load as load_network;
 pub use perturb::perturbed;
-pub use precision::Precision;
+pub use precision::{Precision, scene as cast_scene};
 pub use refine::refine;
 pub use runner::{Found, Memory, Runner, Task, Tools, timed};
 
@@ -77,13 +77,19 @@ pub enum Start {
 /// How a method is run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Setting {
-    /// Most steps, of what [`Method::steps_are`] says.
+    /// At most so many of what [`Method::steps_are`] says.
     pub steps: usize,
     /// Numbers that it computes with.
     pub precision: Precision,
 }
 
 impl Method {
+    /// All of them.
+    #[must_use]
+    pub fn all() -> &'static [Self] {
+        Self::value_variants()
+    }
+
     /// The name, as options, tables and files have it.
     #[must_use]
     pub fn name(self) -> String {
@@ -113,11 +119,12 @@ impl Method {
         precision == Precision::F32 || !self.needs_network()
     }
 
-    /// What its steps are.
+    /// What its steps are; where they do not change the result, what does.
     #[must_use]
     pub fn steps_are(self) -> &'static str {
         match self {
-            Self::SegmentBank | Self::SegmentFree => "joint LM steps",
+            Self::SegmentBank => "joint LM steps",
+            Self::SegmentFree => "harmonics",
             Self::Lm => "LM steps",
             Self::LmContinuation | Self::NetLm => "LM steps per sigma",
             Self::OptIter | Self::OptIterPublished => "Adam steps per object",
@@ -130,7 +137,8 @@ impl Method {
     #[must_use]
     pub fn default_setting(self) -> Setting {
         let steps = match self {
-            Self::SegmentBank | Self::SegmentFree => 10,
+            Self::SegmentBank => 10,
+            Self::SegmentFree => 31,
             Self::Lm => 20,
             Self::LmContinuation | Self::NetLm => 12,
             Self::OptP | Self::RandOptZ | Self::NetOptP | Self::OptZ => 100,

@@ -27,7 +27,9 @@ pub(super) fn bank<A: Real, B: Real>(bank: &Bank<A>) -> Bank<B> {
     Bank { prototypes: bank.prototypes.iter().map(|(name, shape)| (name.clone(), efd(shape))).collect() }
 }
 
-pub(super) fn scene<A: Real, B: Real>(scene: &Scene<A>) -> Scene<B> {
+/// A scene in another precision.
+#[must_use]
+pub fn scene<A: Real, B: Real>(scene: &Scene<A>) -> Scene<B> {
     let object = |object: &Object<A>| {
         let Pose { translation, scale, rotation } = object.pose;
         Object {

@@ -104,9 +104,12 @@ impl Runner {
     }
 
     fn fitter<T: Real>(&self) -> Result<Fitter<T>> {
-        let bank = self.tools.bank.as_ref().filter(|_| self.method == Method::SegmentBank);
-        let options =
-            FitOptions { bank: bank.map(precision::bank), max_steps: self.setting.steps, ..Default::default() };
+        let options = match &self.tools.bank {
+            Some(bank) if self.method == Method::SegmentBank => {
+                FitOptions { bank: Some(precision::bank(bank)), max_steps: self.setting.steps, ..Default::default() }
+            }
+            _ => FitOptions { max_harmonics: self.setting.steps, ..Default::default() },
+        };
         Ok(Fitter::new(options)?)
     }
 

@@ -1,6 +1,5 @@
 use alloc::sync::Arc;
 
-use clap::ValueEnum as _;
 use dvp_core::{ImageSize, Scene};
 
 use super::*;
@@ -22,7 +21,7 @@ fn every_method_finds_a_scene_in_every_precision_that_it_knows() {
     let image = Painter::default().paint(&truth, size).unwrap();
     let tools = Tools { bank: Some(mdshr_bank()), network: Some(Arc::new(load_network(None).unwrap())) };
     let mut memory = Memory::default();
-    for &method in Method::value_variants() {
+    for &method in Method::all() {
         for precision in [Precision::F32, Precision::F64] {
             let runner = Runner::new(method, Setting { steps: STEPS, precision }, &tools);
             assert_eq!(runner.is_ok(), method.knows(precision), "{}", method.name());

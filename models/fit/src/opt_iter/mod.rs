@@ -1,7 +1,7 @@
 //! Opt-Iter: objects added one by one where the image is worst explained, all optimized after each addition.
 //!
 //! In: an image. Out: a scene of a fixed number of objects with free shapes. [`blob`] finds where the next object starts;
-//! `tests/golden/optim.rs` and the example `optimizers` of the tests compare the outcome with the published one.
+//! `tests/golden/optim.rs` and `dvp chart` compare the outcome with the published one.
 
 pub mod background;
 pub mod blob;

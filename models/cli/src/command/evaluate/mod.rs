@@ -1,9 +1,7 @@
 //! `dvp evaluate`: predictions against a data set, in the paper's columns.
 
 mod finder;
-mod generated;
 mod report;
-mod score;
 
 use std::path::{Path, PathBuf};
 
@@ -12,10 +10,10 @@ use clap::{Args, ValueEnum};
 use dvp_core::{Image, ImageSize, Scene};
 
 use self::finder::NetworkArguments;
-use self::report::{Row, Totals};
-use self::score::{Score, Scratch, Truth, score_images, score_masks};
 use super::options::{BatchArguments, PaintArguments};
-use super::{Console, Outcome};
+use super::score::{Score, Scratch, Truth, score};
+use super::totals::{Row, Totals};
+use super::{Console, Outcome, generated};
 use crate::format::{DataSet, Place, Sample, SceneJson, read_labels, read_npy, read_picture, read_scene, write_atomic};
 use crate::method::{Runner, Task, seed_of};
 use crate::paint::Painter;
@@ -132,7 +130,7 @@ pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Ou
     if arguments.batch.json {
         writeln!(console.out, "{}", serde_json::to_string_pretty(&totals)?)?;
     } else {
-        writeln!(console.out, "{}", totals.table())?;
+        writeln!(console.out, "{}", report::table(&totals))?;
     }
     Ok(if totals.failed.is_empty() { Outcome::Done } else { Outcome::Partly })
 }
@@ -174,17 +172,12 @@ impl Judge<'_> {
         sample: &Sample,
         truth: Option<&Scene<f32>>,
         image: &Image<f32>,
-        [found, there]: [&Scene<f32>; 2],
+        scenes: [&Scene<f32>; 2],
         scratch: &mut Scratch,
     ) -> Result<Score> {
-        let painted = self.painter.paint(found, image.size())?;
-        let mut score = score_images(painted.view(), image.view(), scratch)?;
         let labels = sample.labels.as_ref().map(|path| self.labels(path, image.size())).transpose()?;
         let known = labels.as_deref().map(Truth::Labels).or_else(|| truth.map(Truth::Scene));
-        if let Some(known) = known {
-            score.masks = Some(score_masks(&self.painter, &known, there, image.size(), scratch)?);
-        }
-        Ok(score)
+        score(&self.painter, image.view(), known.as_ref(), scenes, scratch)
     }
 
     fn labels(&self, path: &Path, size: ImageSize) -> Result<Vec<u32>> {

@@ -6,6 +6,8 @@ use dvp_core::{ImageSize, Real};
 use dvp_fit::{Ambiguity, Completion, Fit, StopReason};
 use serde::Serialize;
 
+use crate::command::statistics::{mean, quantile};
+
 /// Tables of more pictures than this show the summary only.
 const MOST_ROWS: usize = 25;
 
@@ -176,21 +178,9 @@ impl Summary {
     }
 }
 
-/// The mean; none of no values.
-fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
-    let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
-    (count > 0.0).then(|| sum / count)
-}
-
 /// A share as percent; a dash for none.
 fn percent(share: Option<f64>) -> String {
     share.map_or_else(|| "-".to_owned(), |share| format!("{:.2} %", 100.0 * share))
-}
-
-/// The smallest value that at least `percent` percent of the sorted values do not exceed; 0 if there are none.
-fn quantile(sorted: &[f64], percent: usize) -> f64 {
-    let rank = (sorted.len() * percent).div_ceil(100);
-    sorted.get(rank.saturating_sub(1)).copied().unwrap_or(0.0)
 }
 
 /// Pictures and summary as one JSON text.

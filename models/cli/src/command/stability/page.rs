@@ -10,22 +10,16 @@ use super::judge::FOUND;
 use super::summary::{BROKEN, MethodSummary, SweepSummary, label};
 use super::table::{break_point, methods};
 use super::trial::Effort;
-
-const STYLE: &str = "body{font:15px/1.45 sans-serif;max-width:72em;margin:2em auto;padding:0 1em;color:#222}\
-                     table{border-collapse:collapse;margin:1em 0;font-size:13px}\
-                     th,td{padding:.25em .6em;border-bottom:1px solid #ddd;text-align:left;white-space:nowrap}\
-                     td.n{text-align:right}svg{max-width:100%;height:auto}.bug{color:#b00;font-weight:bold}\
-                     .wide{overflow-x:auto}";
+use crate::command::html::{END, begin, escaped};
 
 /// The page.
 ///
 /// # Errors
 /// If a chart cannot be drawn.
 pub(super) fn page(sweeps: &[SweepSummary], machine: Option<&str>, effort: Effort) -> Result<String> {
-    let mut text = format!(
-        "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>dvp: where methods fail</title>\n\
-         <style>{STYLE}</style></head><body>\n<h1>Where methods fail</h1>\n\
-         <p>A run succeeds if the number of objects is right and each agrees with the true one to an IoU of {FOUND} in what \
+    let mut text = begin("dvp: where methods fail", "Where methods fail");
+    text += &format!(
+        "<p>A run succeeds if the number of objects is right and each agrees with the true one to an IoU of {FOUND} in what \
          is seen of it. A method breaks at the first level where fewer than {:.0} % succeed. A failure is silent if \
          the result doubts nothing: no wide covariance, no ambiguity (but symmetry), no stop before it was done, no \
          unexplained rest. {} pictures per level, from number {}; the same scenes at all levels.</p>\n",
@@ -48,7 +42,7 @@ pub(super) fn page(sweeps: &[SweepSummary], machine: Option<&str>, effort: Effor
         text += &draw::svg(sweep)?;
         levels(&mut text, sweep);
     }
-    text.push_str("</body></html>\n");
+    text.push_str(END);
     Ok(text)
 }
 
@@ -132,8 +126,4 @@ fn levels(text: &mut String, sweep: &SweepSummary) {
         text.push_str("</tr>\n");
     }
     text.push_str("</table></div>\n");
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }

@@ -42,12 +42,22 @@ pub(super) struct Scratch {
     pub(super) method: Memory,
 }
 
-/// Compares images of one size.
-pub(super) fn score_images(
-    painted: ImageView<'_, f32>,
-    target: ImageView<'_, f32>,
+/// Scores the scene that is painted, and that of the objects that count.
+pub(super) fn score(
+    painter: &Painter,
+    image: ImageView<'_, f32>,
+    known: Option<&Truth<'_>>,
+    [found, there]: [&Scene<f32>; 2],
     scratch: &mut Scratch,
 ) -> Result<Score> {
+    let painted = painter.paint(found, image.size())?;
+    let mut score = score_images(painted.view(), image, scratch)?;
+    score.masks = known.map(|known| score_masks(painter, known, there, image.size(), scratch)).transpose()?;
+    Ok(score)
+}
+
+/// Compares images of one size.
+fn score_images(painted: ImageView<'_, f32>, target: ImageView<'_, f32>, scratch: &mut Scratch) -> Result<Score> {
     let pair = ImagePair::new(painted, target)?;
     Ok(Score {
         mae: f64::from(PixelLoss::Mae.value(pair, &mut ())?),
@@ -68,7 +78,7 @@ pub(super) enum Truth<'a> {
 
 /// Compares the pixels that objects own. The truth decides the rule: the reference's for scenes that `blend`, else what
 /// is seen, of the prediction by its own compositing.
-pub(super) fn score_masks(
+fn score_masks(
     painter: &Painter,
     truth: &Truth<'_>,
     found: &Scene<f32>,

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use anyhow::{Result, bail};
 use dvp_net::propose::TRAINED_SIDE;
 
-use crate::command::options::square;
+use super::options::square;
 use crate::format::{DataSet, Place, Sample, SceneJson, mdshr_bank};
 use crate::generate::{SceneSettings, sample_scene};
 

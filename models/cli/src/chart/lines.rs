@@ -2,10 +2,11 @@
 
 use std::path::Path;
 
-use anyhow::{Result, bail};
+use anyhow::Result;
 use plotters::coord::ranged1d::ValueFormatter;
 use plotters::prelude::*;
 
+use super::{COLORS, FONT, check_name};
 use crate::format::write_atomic;
 
 /// Width and height, px.
@@ -14,16 +15,6 @@ const SIZE: (u32, u32) = (480, 320);
 const DOTS: usize = 40;
 /// Most numbers under the horizontal axis.
 const MOST_LABELS: usize = 12;
-/// Colors of lines, in order; told apart also without colors of red and green.
-const COLORS: [RGBColor; 6] = [
-    RGBColor(0, 90, 181),
-    RGBColor(220, 50, 32),
-    RGBColor(80, 80, 80),
-    RGBColor(230, 160, 0),
-    RGBColor(0, 158, 115),
-    RGBColor(170, 90, 180),
-];
-
 /// A line, with a dot at every point if they are few.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Line {
@@ -48,17 +39,6 @@ pub struct Chart {
     pub lines: Vec<Line>,
     /// Whether the vertical axis is logarithmic; points that are not above 0 are then left out. Else it ends at 1.
     pub log: bool,
-}
-
-/// Refuses names that charts are not written to, before any work is done.
-///
-/// # Errors
-/// If the name does not end in .svg.
-pub fn check_name(file: &Path) -> Result<()> {
-    if file.extension().is_none_or(|ending| ending != "svg") {
-        bail!("{}: charts are drawn as .svg", file.display());
-    }
-    Ok(())
 }
 
 impl Chart {
@@ -92,7 +72,7 @@ impl Chart {
             let area = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
             area.fill(&WHITE)?;
             let mut builder = ChartBuilder::on(&area);
-            builder.caption(self.title, ("sans-serif", 18)).margin(12).x_label_area_size(36).y_label_area_size(60);
+            builder.caption(self.title, (FONT, 18)).margin(12).x_label_area_size(36).y_label_area_size(60);
             if self.log {
                 let (bottom, top) = if bottom <= top { (bottom / 1.1, top * 1.1) } else { (0.1, 1.0) };
                 self.draw(builder.build_cartesian_2d(left..right, (bottom..top).log_scale())?, 8)?;

@@ -1,0 +1,215 @@
+//! Rows with their place on the fronts: CSV, JSON, a table, and what a budget buys.
+
+use comfy_table::{Table, presets};
+use serde_json::{Value, json};
+
+use super::methods::Charted;
+use super::pareto::{front, within};
+use super::published::PUBLISHED;
+use super::renderers::Rendered;
+use crate::method::{Method, Precision, Setting, Start};
+
+/// Budgets per image that are answered, ms.
+const BUDGETS_MS: [f64; 5] = [0.3, 1.2, 5.0, 25.0, 100.0];
+
+/// All methods; those that were given a start near the truth have fronts of their own.
+pub(super) struct Report {
+    pub(super) rows: Vec<Charted>,
+    /// Mean absolute error of the true scenes.
+    pub(super) floor: f64,
+    /// By mean absolute error, of what starts from the image alone; indices into the rows, by time.
+    pub(super) mae_front: Vec<usize>,
+    /// By 1 - ARI.
+    pub(super) ari_front: Vec<usize>,
+    /// By mean absolute error, of what was given a start.
+    pub(super) given_mae_front: Vec<usize>,
+    /// By 1 - ARI.
+    pub(super) given_ari_front: Vec<usize>,
+}
+
+/// A method and its steps, as people read it.
+pub(super) fn label(method: Method, setting: Setting) -> String {
+    let steps = if method == Method::Net { String::new() } else { format!(" {}", setting.steps) };
+    let precision = if setting.precision == Precision::F64 { " f64" } else { "" };
+    format!("{}{steps}{precision}", method.name())
+}
+
+fn precision_name(precision: Precision) -> &'static str {
+    match precision {
+        Precision::F32 => "f32",
+        Precision::F64 => "f64",
+    }
+}
+
+fn start_name(start: Start) -> &'static str {
+    match start {
+        Start::Image => "image",
+        Start::Scene => "near truth",
+        Start::Random => "random",
+        Start::Network => "network",
+    }
+}
+
+impl Report {
+    pub(super) fn of(rows: Vec<Charted>, floor: f64) -> Self {
+        let front_of = |given: bool, point: fn(&Charted) -> (f64, f64)| {
+            let points: Vec<(f64, f64)> = rows
+                .iter()
+                .map(|row| if (row.method.start() == Start::Scene) == given { point(row) } else { (f64::NAN, 0.0) })
+                .collect();
+            front(&points)
+        };
+        let [mae_front, given_mae_front] = [false, true].map(|given| front_of(given, Charted::mae_point));
+        let [ari_front, given_ari_front] = [false, true].map(|given| front_of(given, Charted::ari_point));
+        Self { rows, floor, mae_front, ari_front, given_mae_front, given_ari_front }
+    }
+
+    /// Images on which some method failed, counted once for each.
+    pub(super) fn failed(&self) -> usize {
+        self.rows.iter().map(|row| row.totals.failed.len()).sum()
+    }
+
+    /// Which fronts a row is on: by MAE, by ARI.
+    fn fronts(&self, k: usize) -> [bool; 2] {
+        [[&self.mae_front, &self.given_mae_front], [&self.ari_front, &self.given_ari_front]]
+            .map(|fronts| fronts.iter().any(|front| front.contains(&k)))
+    }
+
+    /// A line per method and setting; then the published rows, with a time where one was measured.
+    pub(super) fn csv(&self) -> String {
+        let mut text =
+            "method,steps,steps_are,precision,starts_from,hardware,images,failed,mae,mae_q1,mae_median,mae_q3,\
+                        mse,ssim,iou,ari,exact_count,ms_q1,ms_median,ms_q3,front_mae,front_ari\n"
+                .to_owned();
+        let number = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:.6e}"));
+        for (k, row) in self.rows.iter().enumerate() {
+            let Charted { method, setting, totals, mae, ms } = row;
+            let [on_mae, on_ari] = self.fronts(k).map(u8::from);
+            let scores = [totals.mae, Some(mae.low), Some(mae.median), Some(mae.high), totals.mse, totals.ssim];
+            let masks = [totals.iou, totals.ari, totals.exact_count];
+            let times = [ms.low, ms.median, ms.high].map(|ms| format!("{ms:.4}")).join(",");
+            let numbers: Vec<String> = scores.into_iter().chain(masks).map(number).collect();
+            text += &format!(
+                "{},{},{},{},{},this,{},{},{},{times},{on_mae},{on_ari}\n",
+                method.name(),
+                setting.steps,
+                method.steps_are(),
+                precision_name(setting.precision),
+                start_name(method.start()),
+                totals.n,
+                totals.failed.len(),
+                numbers.join(",")
+            );
+        }
+        text += &format!("truth,,,f32,truth,this,,,{:.6e},,,,,,,,,,,,,\n", self.floor);
+        for row in &PUBLISHED {
+            let ms = row.ms.map_or_else(String::new, |ms| ms.to_string());
+            text += &format!("published {},,,,,other,,,{},,,,,,,{},,,{ms},,,\n", row.name, row.mae, row.ari);
+        }
+        text
+    }
+
+    /// What a budget buys from the image alone, and from a start near the truth; what cannot be bought.
+    pub(super) fn budgets(&self) -> Vec<String> {
+        let points: Vec<(f64, f64)> = self.rows.iter().map(Charted::mae_point).collect();
+        let bought = |front: &[usize], budget: f64| match within(&points, front, budget) {
+            Some(k) => {
+                let row = &self.rows[k];
+                let ari = row.totals.ari.unwrap_or(f64::NAN);
+                let name = label(row.method, row.setting);
+                format!("{name} (MAE {:.2e}, ARI {ari:.4}, {:.2} ms)", points[k].1, points[k].0)
+            }
+            None => match front.first() {
+                Some(&k) => format!("nothing: the fastest is {}, {:.2} ms", self.name(k), points[k].0),
+                None => "nothing".to_owned(),
+            },
+        };
+        let line = |budget: f64| {
+            let alone = bought(&self.mae_front, budget);
+            format!("{budget} ms buy: {alone}; from a start near the truth: {}", bought(&self.given_mae_front, budget))
+        };
+        let floor = format!("the true scenes, painted as methods paint theirs: MAE {:.2e}", self.floor);
+        BUDGETS_MS.into_iter().map(line).chain([floor]).collect()
+    }
+
+    pub(super) fn name(&self, k: usize) -> String {
+        label(self.rows[k].method, self.rows[k].setting)
+    }
+
+    /// The cells of a table, with its header.
+    pub(super) fn cells(&self) -> Vec<Vec<String>> {
+        let header = ["method", "starts from", "MAE", "SSIM", "IoU", "ARI", "count", "ms median", "quartiles", "front"];
+        let mut cells = vec![header.map(str::to_owned).to_vec()];
+        let figure = |value: Option<f64>| value.map_or_else(|| "-".to_owned(), |value| format!("{value:.4}"));
+        for (k, row) in self.rows.iter().enumerate() {
+            let Charted { method, totals, ms, .. } = row;
+            let fronts = match self.fronts(k) {
+                [true, true] => "MAE, ARI",
+                [true, false] => "MAE",
+                [false, true] => "ARI",
+                [false, false] => "",
+            };
+            cells.push(vec![
+                self.name(k),
+                start_name(method.start()).to_owned(),
+                totals.mae.map_or_else(|| "-".to_owned(), |mae| format!("{mae:.2e}")),
+                figure(totals.ssim),
+                figure(totals.iou),
+                figure(totals.ari),
+                figure(totals.exact_count),
+                format!("{:.2}", ms.median),
+                format!("{:.2} - {:.2}", ms.low, ms.high),
+                fronts.to_owned(),
+            ]);
+        }
+        cells
+    }
+
+    pub(super) fn table(&self) -> String {
+        let mut table = Table::new();
+        table.load_style(presets::UTF8_HORIZONTAL_ONLY);
+        let mut cells = self.cells().into_iter();
+        if let Some(header) = cells.next() {
+            table.set_header(header);
+        }
+        table.add_rows(cells);
+        table.trim_fmt()
+    }
+}
+
+/// A line per renderer.
+pub(super) fn renderers_csv(rows: &[Rendered]) -> String {
+    let mut text = "sweep,value,precision,images,mae,forward_ms_q1,forward_ms_median,forward_ms_q3,\
+                    backward_ms_q1,backward_ms_median,backward_ms_q3\n"
+        .to_owned();
+    for Rendered { sweep, value, precision, mae, forward_ms, backward_ms, n } in rows {
+        let times = [forward_ms, backward_ms].map(|ms| format!("{:.5},{:.5},{:.5}", ms.low, ms.median, ms.high));
+        text += &format!("{sweep},{value},{},{n},{mae:.6e},{}\n", precision_name(*precision), times.join(","));
+    }
+    text
+}
+
+/// Everything, for programs.
+pub(super) fn json(report: &Report, renderers: &[Rendered]) -> Value {
+    let method = |(k, row): (usize, &Charted)| {
+        let [front_mae, front_ari] = report.fronts(k);
+        json!({
+            "method": row.method.name(), "steps": row.setting.steps, "steps_are": row.method.steps_are(),
+            "precision": precision_name(row.setting.precision), "starts_from": start_name(row.method.start()),
+            "scores": row.totals, "mae": row.mae, "ms": row.ms, "front_mae": front_mae, "front_ari": front_ari,
+        })
+    };
+    let rendered = |row: &Rendered| {
+        json!({
+            "sweep": row.sweep, "value": row.value, "precision": precision_name(row.precision), "images": row.n,
+            "mae": row.mae, "forward_ms": row.forward_ms, "backward_ms": row.backward_ms,
+        })
+    };
+    let published = PUBLISHED.iter().map(|row| json!({"name": row.name, "mae": row.mae, "ari": row.ari, "ms": row.ms}));
+    json!({
+        "methods": report.rows.iter().enumerate().map(method).collect::<Vec<_>>(),
+        "renderers": renderers.iter().map(rendered).collect::<Vec<_>>(),
+        "published": published.collect::<Vec<_>>(),
+        "budgets": report.budgets(), "floor_mae": report.floor,
+    })
+}
