@@ -222,19 +222,19 @@ impl Runner {
             Method::NetOptP => {
                 let settings = OptP { steps, ..OptP::default() };
                 timed(|| {
-                    let start = network.propose(image)?;
+                    let start = network.objects(image)?;
                     adam::descend(&start, |descent| Ok(settings.fit(descent, image, &start)?))
                 })
             }
             Method::NetLm => {
                 let settings = self.refine_settings();
                 timed(|| {
-                    let start = network.there(&network.propose(image)?);
+                    let start = network.objects(image)?;
                     refine(&settings, image, &start, Compositing::default(), usize::MAX, &mut scratch.refine)
                 })
             }
             _ => {
-                let (scene, cpu) = timed(|| Ok(network.propose(image)?))?;
+                let (scene, cpu) = timed(|| Ok(network.objects(image)?))?;
                 fit_of(image, (Optimum { scene, loss: f64::NAN, losses: vec![f64::NAN] }, cpu))
             }
         }

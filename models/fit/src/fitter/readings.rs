@@ -4,6 +4,7 @@
 //! A clean picture pays for an estimate of its noise and for counting its soft pixels. Others are read as the estimate says;
 //! where both a clean reading and one freed from noise are possible, the shorter description wins, at one noise level.
 
+use alloc::vec;
 use alloc::vec::Vec;
 
 use dvp_core::render::{Compositing, EdgeLaw, EdgeProfile};
@@ -178,21 +179,13 @@ impl<T: Real> Fitter<T> {
         } else {
             scratch.segmentation.direct_pixels(image.size().width())
         };
-        let unit = T::of_usize(image.size().unit_px());
-        let kinds = || scratch.segmentation.edges(&image).kinds(unit);
-        let (mut kind, mut other) = self.options.edge.map_or_else(kinds, |edge| (EdgeKind::of(edge), None));
-        let reference = EdgeKind::Profile(EdgeProfile::reference());
-        if self.options.edge.is_none() && scratch.segmentation.is_noisy() && kind != reference {
-            // Noise hides what tells the edges apart.
-            other = Some(reference);
-        }
-        if self.options.edge.is_none() && scratch.segmentation.is_compressed() && !is_blur(&kind, unit) {
-            // Compression spreads edges itself: the softness measured is not that of the drawing.
-            (kind, other) = (EdgeKind::Area, Some(reference));
-        }
+        let kinds = self.edge_kinds(image, scratch);
         // In doubt several readings are fitted; the shortest description wins.
         let mut best: Option<Fit<T>> = None;
-        for kind in [Some(kind), other].into_iter().flatten() {
+        for EdgeReading { kind, only_if_stuck } in kinds {
+            if only_if_stuck && best.as_ref().is_some_and(|best| best.stop != StopReason::StepLimit) {
+                continue;
+            }
             let (compositing, second) = self.compositings(evidence, &kind);
             for compositing in [Some(compositing), second].into_iter().flatten() {
                 let fit = self.fit_with(image, kind, compositing, care, scratch)?;
@@ -208,6 +201,35 @@ impl<T: Real> Fitter<T> {
             }
         }
         best.ok_or(FitError::Setting { what: "edge", must: "known" })
+    }
+
+    /// The kinds of edges that the picture may have, the likeliest first.
+    fn edge_kinds(&self, image: ImageView<'_, T>, scratch: &FitScratch<T>) -> Vec<EdgeReading<T>> {
+        let reading = |kind| EdgeReading { kind, only_if_stuck: false };
+        if let Some(edge) = self.options.edge {
+            return vec![reading(EdgeKind::of(edge))];
+        }
+        let (unit, edges) = (T::of_usize(image.size().unit_px()), scratch.segmentation.edges(&image));
+        let reference = EdgeKind::Profile(EdgeProfile::reference());
+        let (kind, other) = edges.kinds(unit);
+        if scratch.segmentation.is_compressed() && !is_blur(&kind, unit) {
+            // Compression spreads edges itself: the softness measured is not that of the drawing.
+            return vec![reading(EdgeKind::Area), reading(reference)];
+        }
+        let mut kinds = vec![reading(kind)];
+        if kind == reference {
+            kinds.extend(other.map(reading));
+        } else if scratch.segmentation.is_noisy() {
+            // Noise hides what tells the edges apart.
+            kinds.push(reading(reference));
+        } else {
+            kinds.extend(other.map(reading));
+            if other.is_none() && edges.may_be_reference(unit) {
+                // Edges along the grid show few coverages. No outline fits under the wrong kind.
+                kinds.push(EdgeReading { kind: reference, only_if_stuck: true });
+            }
+        }
+        kinds
     }
 
     /// The fit of shorter description. Fractions of a step of color lie up to half a step off every flat pixel of a rounded
@@ -245,6 +267,13 @@ impl<T: Real> Fitter<T> {
             Run { fitter: self, image, kind: EdgeKind::of(edge), edge, compositing, care: Care::Segments, scratch };
         run.bits_of(&fit.scene, noise)
     }
+}
+
+/// A kind of edges to read a picture with.
+struct EdgeReading<T> {
+    kind: EdgeKind<T>,
+    /// Whether it is tried only where the fit before ran out of steps.
+    only_if_stuck: bool,
 }
 
 /// Whether edges are softer than compression alone makes them.

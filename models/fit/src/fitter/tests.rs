@@ -1,14 +1,17 @@
+use alloc::string::String;
+use alloc::vec;
 use alloc::vec::Vec;
 
 use dvp_core::render::contour::ContourRenderer;
-use dvp_core::render::{Compositing, EdgeProfile, Renderer};
-use dvp_core::{Drawing, Image, ImageSize};
+use dvp_core::render::{Compositing, EdgeLaw, EdgeProfile, Renderer, TriangleRenderer};
+use dvp_core::shape::{OutlineBasis, mdshr_bank};
+use dvp_core::{Drawing, Image, ImageSize, Object, Pose, Scene};
 
 use super::shown::Shown;
 use super::subsample::Subsampling;
 use super::{FitScratch, Fitter};
-use crate::FitOptions;
 use crate::residual::Residual;
+use crate::{Bank, FitOptions};
 
 /// A disk of 24 vertices, scene units.
 fn disk([x, y]: [f64; 2], radius: f64) -> Vec<[f64; 2]> {
@@ -111,4 +114,36 @@ fn a_sharp_dot_among_wide_edges_is_found() {
     let fit = Fitter::new(FitOptions::default()).unwrap().fit(image.view(), &mut FitScratch::default()).unwrap();
     let found = fit.scene.objects.iter().map(|object| object.pose.translation);
     assert!(found.into_iter().any(|[x, y]| (x - 1005.5 / 1131.0).abs() < 2e-3 && (y - 303.0 / 1131.0).abs() < 2e-3));
+}
+
+/// A square along the pixel grid shows few coverages, and a small ellipse only some more: those of area coverage as well
+/// as the reference's. Its outlines tell, when they fit.
+#[test]
+fn edges_along_the_grid_do_not_hide_the_reference() {
+    let bank = mdshr_bank::<f64>(64);
+    let object = |prototype: usize, translation, scale, rotation, color| Object {
+        pose: Pose { translation, scale, rotation },
+        color,
+        confidence: 1.0,
+        efd: bank.prototypes()[prototype].clone(),
+        prototype: Some(prototype),
+    };
+    let truth = Scene {
+        objects: vec![
+            object(1, [0.66716456, 0.18682371], 0.23570311, -0.7826108, [0.7940591, 0.6805793, 0.23702353]),
+            object(2, [0.6768109, 0.8212052], 0.11510161, -3.0916421, [0.21781874, 0.033245564, 0.24641508]),
+        ],
+        ..Scene::empty([0.7798844, 0.11206132, 0.06749672])
+    };
+    let size = ImageSize::new(128, 128).unwrap();
+    let (mut drawing, mut image) = (Drawing::default(), Image::zeros(size));
+    truth.draw(&OutlineBasis::new(64, 64).unwrap(), &mut drawing).unwrap();
+    TriangleRenderer::default().render(&drawing, size, &mut Default::default(), image.data_mut()).unwrap();
+    let prototypes = bank.prototypes().iter().map(|efd| (String::new(), efd.clone())).collect();
+    let fitter = Fitter::new(FitOptions { bank: Some(Bank { prototypes }), ..FitOptions::default() }).unwrap();
+    let fit = fitter.fit(image.view(), &mut FitScratch::default()).unwrap();
+    assert_eq!((fit.scene.edge.law, fit.scene.objects.len()), (EdgeLaw::SquaredDistance, 2));
+    for (found, truth) in fit.scene.objects.iter().zip(&truth.objects) {
+        assert!((found.pose.scale - truth.pose.scale).abs() < 1e-3, "{} for {}", found.pose.scale, truth.pose.scale);
+    }
 }

@@ -88,14 +88,30 @@ impl Proposer {
         &self.bank
     }
 
-    /// The scene of a picture, every slot of the model an object with its confidence; see [`Self::there`].
+    /// The scene of a picture as the model sees it: every slot an object with its confidence.
     ///
     /// # Errors
     /// [`NetError::Image`] for a picture with NaN or infinity.
     pub fn propose(&self, image: ImageView<'_, f32>) -> Result<Scene<f32>, NetError> {
         let (square, target) = Square::of(image, TRAINED_SIDE)?;
-        let scenes = self.model.scenes::<f32>(&self.latents(&target)?)?.scenes(self.painter.edge())?;
-        Ok(square.to_picture(one(scenes)?))
+        Ok(square.to_picture(self.see(&target)?))
+    }
+
+    /// The objects of a picture: the slots that the model is sure of, and of the doubtful ones those that the picture is
+    /// painted better with, with confidence 1; of two that stand for one thing (nearly the same place, size and color) the
+    /// more confident; each with the shape of the prototype that weighs most in it, if shapes are mixed of prototypes.
+    ///
+    /// # Errors
+    /// As [`Self::propose`].
+    pub fn objects(&self, image: ImageView<'_, f32>) -> Result<Scene<f32>, NetError> {
+        let (square, target) = Square::of(image, TRAINED_SIDE)?;
+        let mut scene = self.see(&target)?;
+        for object in &mut scene.objects {
+            if let Some(efd) = object.prototype.and_then(|index| self.bank.prototypes().get(index)) {
+                object.efd = efd.clone();
+            }
+        }
+        Ok(square.to_picture(there::keep_objects(scene, &target, &self.painter)?))
     }
 
     /// OptZ from what the model sees. Losses are those on the square.
@@ -117,20 +133,9 @@ impl Proposer {
         self.descend(&square, &target, settings, &start)
     }
 
-    /// What is there of a scene that was proposed: the objects of a confidence above 1/2, with confidence 1; of two that
-    /// stand for one thing (nearly the same place, size and color) the more confident; each with the shape of the
-    /// prototype that weighs most in it, if shapes are mixed of prototypes.
-    #[must_use]
-    pub fn there(&self, scene: &Scene<f32>) -> Scene<f32> {
-        let mut scene = scene.clone();
-        there::drop_doubles(&mut scene);
-        scene.keep_visible();
-        for object in &mut scene.objects {
-            if let Some(efd) = object.prototype.and_then(|index| self.bank.prototypes().get(index)) {
-                object.efd = efd.clone();
-            }
-        }
-        scene
+    /// Every slot, in units of the square.
+    fn see(&self, target: &Image<f32>) -> Result<Scene<f32>, NetError> {
+        one(self.model.scenes::<f32>(&self.latents(target)?)?.scenes(self.painter.edge())?)
     }
 
     fn latents(&self, target: &Image<f32>) -> Result<Latents<Host>, NetError> {

@@ -4,6 +4,7 @@ use dvp_core::tensor::HostDevice;
 use dvp_core::{Image, ImageSize, Object, Pose, Real, Scene};
 
 use super::square::Square;
+use super::there::keep_objects;
 use super::*;
 use crate::train::{Judge, Mode, Schedule, Trainer};
 
@@ -26,8 +27,13 @@ fn object(translation: [f32; 2], scale: f32, color: [f32; 3], confidence: f32) -
     Object { pose, color, confidence, efd: Efd::new(vec![[1.0, 0.0, 0.0, -1.0]]), prototype: None }
 }
 
+/// Of disks.
+fn painter() -> SceneSteps<f32> {
+    SceneSteps::new(1, 1, EdgeProfile::reference()).unwrap()
+}
+
 fn painted(scene: &Scene<f32>, size: ImageSize) -> Image<f32> {
-    SceneSteps::new(1, 1, EdgeProfile::reference()).unwrap().paint(scene, size).unwrap()
+    painter().paint(scene, size).unwrap()
 }
 
 #[test]
@@ -125,27 +131,51 @@ fn latents_move_toward_pictures_that_are_no_squares() {
 
 #[test]
 fn one_thing_is_one_object() {
-    let proposer = Proposer::new(&checkpoint::<f32>()).unwrap();
     let red = [0.8, 0.2, 0.1];
     let mut scene = Scene::empty([0.0; 3]);
     scene.objects = vec![
         object([0.50, 0.5], 0.20, red, 0.7),
         // The same thing: 0.02 beside, a fifth larger, hardly another color; more confident.
-        object([0.52, 0.5], 0.24, [0.8, 0.25, 0.1], 0.9),
+        object([0.52, 0.5], 0.24, [0.8, 0.25, 0.1], 0.97),
         // Not the same: farther off, of another size, of another color.
-        object([0.60, 0.5], 0.20, red, 0.8),
-        object([0.52, 0.5], 0.10, red, 0.8),
-        object([0.52, 0.5], 0.24, [0.8, 0.5, 0.1], 0.8),
+        object([0.60, 0.5], 0.20, red, 0.96),
+        object([0.52, 0.5], 0.10, red, 0.96),
+        object([0.52, 0.5], 0.24, [0.8, 0.5, 0.1], 0.96),
         // Hardly there.
-        object([0.1, 0.1], 0.2, red, 0.4),
+        object([0.1, 0.1], 0.2, red, 0.04),
     ];
-    scene.objects[4].prototype = Some(1);
-    let there = proposer.there(&scene);
+    // The model is sure: the picture is not asked.
+    let there = keep_objects(scene.clone(), &Image::zeros(size(64, 64)), &painter()).unwrap();
     let expected: Vec<_> = [1, 2, 3, 4].map(|k| scene.objects[k].pose).to_vec();
     assert_eq!(there.objects.iter().map(|object| object.pose).collect::<Vec<_>>(), expected);
     assert!(there.objects.iter().all(|object| object.confidence >= 1.0));
-    assert_eq!(there.objects[3].efd, proposer.bank().prototypes()[1]);
-    assert_eq!(there.objects[0].efd, scene.objects[1].efd);
+}
+
+#[test]
+fn what_is_in_doubt_is_there_if_the_picture_shows_it() {
+    let (shown, hidden) =
+        (object([0.3, 0.3], 0.15, [0.9, 0.2, 0.1], 1.0), object([0.7, 0.6], 0.2, [0.1, 0.9, 0.4], 1.0));
+    let truth = Scene { objects: vec![shown.clone()], ..Scene::empty([0.2, 0.2, 0.7]) };
+    let target = painted(&truth, size(64, 64));
+    for (of_shown, of_hidden) in [(0.9, 0.9), (0.1, 0.1), (0.1, 0.9), (0.94, 0.06)] {
+        let mut scene = truth.clone();
+        scene.objects =
+            vec![Object { confidence: of_hidden, ..hidden.clone() }, Object { confidence: of_shown, ..shown.clone() }];
+        assert_eq!(keep_objects(scene, &target, &painter()).unwrap(), truth, "{of_shown} {of_hidden}");
+    }
+}
+
+#[test]
+fn objects_have_shapes_of_the_bank() {
+    let proposer = Proposer::from_bytes(BUILT_IN).unwrap();
+    let heart = proposer.bank().prototypes()[0].clone();
+    let there = Object { efd: heart.clone(), ..object([0.4, 0.5], 0.25, [0.9, 0.8, 0.1], 1.0) };
+    let painter = SceneSteps::new(1, 16, EdgeProfile::reference()).unwrap();
+    let image =
+        painter.paint(&Scene { objects: vec![there], ..Scene::empty([0.1, 0.2, 0.4]) }, size(128, 128)).unwrap();
+    let found = proposer.objects(image.view()).unwrap();
+    assert_eq!(found.objects.len(), 1);
+    assert_eq!((found.objects[0].efd.clone(), found.objects[0].confidence), (heart, 1.0));
 }
 
 #[test]

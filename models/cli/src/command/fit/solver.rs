@@ -115,7 +115,7 @@ impl Solver {
         scratch: &mut Scratch,
     ) -> Result<Fit<f32>> {
         let start = match &self.start {
-            Start::Network(network) => Some(network.there(&network.propose(image)?)),
+            Start::Network(network) => Some(network.objects(image)?),
             _ => read,
         };
         match (self.method, start) {

@@ -76,6 +76,13 @@ impl<T: Real> EdgeEvidence<T> {
         (self.length > T::of(4.0)).then(|| self.spread / self.length)
     }
 
+    /// Whether edges are about as wide as the reference's, at `unit_px` pixels per scene unit.
+    pub(crate) fn may_be_reference(&self, unit_px: T) -> bool {
+        let ratio = |softness: T| (softness / (unit_px * T::of(REFERENCE_SOFTNESS))).as_f64();
+        let in_range = |softness| (REFERENCE_RANGE[0]..REFERENCE_RANGE[1]).contains(&ratio(softness));
+        self.low + self.middle + self.high >= FEW && self.softness().is_some_and(in_range)
+    }
+
     /// The kind that the pixels speak for, and another one to try where they leave a doubt, at `unit_px` pixels per scene
     /// unit.
     pub(crate) fn kinds(&self, unit_px: T) -> (EdgeKind<T>, Option<EdgeKind<T>>) {
@@ -90,8 +97,7 @@ impl<T: Real> EdgeEvidence<T> {
             let sigma_px = softness * T::of(LOGISTIC);
             EdgeKind::Profile(EdgeProfile::distance(sigma_px * T::of(2.0) / unit_px))
         };
-        let ratio = (softness / (unit_px * T::of(REFERENCE_SOFTNESS))).as_f64();
-        if soft < FEW || !(REFERENCE_RANGE[0]..REFERENCE_RANGE[1]).contains(&ratio) {
+        if !self.may_be_reference(unit_px) {
             return (other, None);
         }
         let count = T::of_usize(soft).as_f64();
