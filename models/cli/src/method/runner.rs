@@ -45,7 +45,7 @@ pub struct Task<'a> {
 /// What a method found.
 #[derive(Clone, Debug)]
 pub struct Found {
-    /// The scene that is painted (of a network with every slot, opaque as it is confident), how it was reached, and what the
+    /// The scene that is painted (of latents with every slot, opaque as it is confident), how it was reached, and what the
     /// method itself doubts. What a method does not know is empty or NaN; a network alone takes no step.
     pub fit: Fit<f32>,
     /// Its objects of a confidence above 1/2: those that count.

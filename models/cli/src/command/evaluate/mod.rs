@@ -20,8 +20,8 @@ use crate::paint::Painter;
 
 /// Scores a folder of predictions (STEM.json, as `dvp fit` writes them), or a network, against a data set.
 ///
-/// A network (--model) predicts from the images that it is compared with; its scenes are painted with the confidences
-/// that it gives, and objects count if theirs is above 1/2.
+/// A network (--model) predicts from the images that it is compared with. Objects are there if it is sure of them, or in
+/// doubt if the image is painted better with them; those of opt-z count if their confidence is above 1/2.
 ///
 /// MAE, MSE and SSIM compare images; IoU (pooled over all images), ARI and the share of exact object counts need the
 /// true scenes (scenes.jsonl) or, beside a picture STEM.png, a label map STEM.labels.png: gray of 8 or 16 bits, 0 for the
