@@ -62,6 +62,15 @@ impl<B: Backend> Heads<B> {
         })
     }
 
+    /// Those of some of the slots.
+    ///
+    /// # Errors
+    /// [`NetError::Tensor`] if there is no such slot.
+    pub(super) fn of_slots(&self, slots: &[usize]) -> Result<Self, NetError> {
+        let anchors = self.anchors.as_ref().map(|anchors| anchors.select(1, slots)).transpose()?;
+        Ok(Self { anchors, ..self.clone() })
+    }
+
     /// Scenes of latents; `T` is the number type of the latents.
     ///
     /// # Errors

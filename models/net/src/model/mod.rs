@@ -58,6 +58,14 @@ impl<B: Backend> Latents<B> {
     pub fn of_objects(objects: Tensor<B>) -> Result<Self, TensorError> {
         Ok(Self { image: image_latent(&objects)?, objects })
     }
+
+    /// Those of some of the slots, by their indices; that of the image stays.
+    ///
+    /// # Errors
+    /// [`TensorError`] if there is no such slot.
+    pub fn of_slots(&self, slots: &[usize]) -> Result<Self, TensorError> {
+        Ok(Self { objects: self.objects.select(1, slots)?, image: self.image.clone() })
+    }
 }
 
 /// The network, from images to scenes.
@@ -135,6 +143,14 @@ impl<B: Backend> Model<B> {
     /// [`NetError::Tensor`] if these are no latents of this model.
     pub fn scenes<T: Real>(&self, latents: &Latents<B>) -> Result<Prediction<B>, NetError> {
         self.heads.forward::<T>(latents)
+    }
+
+    /// The model that makes scenes of the latents of some of the slots ([`Latents::of_slots`]).
+    ///
+    /// # Errors
+    /// [`NetError::Tensor`] if there is no such slot.
+    pub fn of_slots(&self, slots: &[usize]) -> Result<Self, NetError> {
+        Ok(Self { heads: self.heads.of_slots(slots)?, ..self.clone() })
     }
 
     /// Scenes of images, by what was learned: [`Self::features`], [`Self::latents`], [`Self::scenes`].

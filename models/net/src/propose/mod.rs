@@ -20,7 +20,7 @@ mod there;
 use dvp_core::render::EdgeProfile;
 use dvp_core::shape::PrototypeBank;
 use dvp_core::tensor::{Host, HostDevice, Parameters};
-use dvp_core::{Image, ImageView, Real, Scene};
+use dvp_core::{Image, ImageView, Object, Real, Scene};
 
 pub use built_in::BUILT_IN;
 
@@ -94,7 +94,7 @@ impl Proposer {
     /// [`NetError::Image`] for a picture with NaN or infinity.
     pub fn propose(&self, image: ImageView<'_, f32>) -> Result<Scene<f32>, NetError> {
         let (square, target) = Square::of(image, TRAINED_SIDE)?;
-        Ok(square.to_picture(self.see(&target)?))
+        Ok(square.to_picture(self.scene(&self.latents(&target)?)?))
     }
 
     /// The objects of a picture: the slots that the model is sure of, and of the doubtful ones those that the picture is
@@ -105,22 +105,29 @@ impl Proposer {
     /// As [`Self::propose`].
     pub fn objects(&self, image: ImageView<'_, f32>) -> Result<Scene<f32>, NetError> {
         let (square, target) = Square::of(image, TRAINED_SIDE)?;
-        let mut scene = self.see(&target)?;
-        for object in &mut scene.objects {
-            if let Some(efd) = object.prototype.and_then(|index| self.bank.prototypes().get(index)) {
-                object.efd = efd.clone();
-            }
-        }
-        Ok(square.to_picture(there::keep_objects(scene, &target, &self.painter)?))
+        let mut scene = self.scene(&self.latents(&target)?)?;
+        let slots = there::there(&scene, &target, &self.painter)?;
+        scene.objects = slots.into_iter().map(|slot| self.as_object(&scene.objects[slot])).collect();
+        Ok(square.to_picture(scene))
     }
 
-    /// OptZ from what the model sees. Losses are those on the square.
+    /// OptZ from the slots that are objects (see [`Self::objects`]), at least the most confident one. The paper's moves all
+    /// slots: it takes as many times as long, and several come to share an object. Losses are those on the square.
     ///
     /// # Errors
     /// As [`Self::propose`] and [`OptZ::run`].
     pub fn opt_z(&self, image: ImageView<'_, f32>, settings: &OptZ) -> Result<Optimum<f32>, NetError> {
         let (square, target) = Square::of(image, TRAINED_SIDE)?;
-        self.descend(&square, &target, settings, &self.latents(&target)?)
+        let latents = self.latents(&target)?;
+        let scene = self.scene(&latents)?;
+        let mut slots = there::there(&scene, &target, &self.painter)?;
+        if slots.is_empty() {
+            let confidence = |&slot: &usize| scene.objects[slot].confidence;
+            slots.extend((0..scene.objects.len()).max_by(|a, b| confidence(a).total_cmp(&confidence(b))));
+        }
+        let painter = SceneSteps::new(slots.len(), self.config.harmonics(&self.bank), self.painter.edge())?;
+        let found = settings.run(&self.model.of_slots(&slots)?, &painter, &target, &latents.of_slots(&slots)?)?;
+        Ok(Optimum { scene: square.to_picture(found.scene), ..found })
     }
 
     /// Rand-OptZ: OptZ from latents drawn at random, which asks nothing of the encoder.
@@ -130,28 +137,24 @@ impl Proposer {
     pub fn rand_opt_z(&self, image: ImageView<'_, f32>, settings: &OptZ, seed: u64) -> Result<Optimum<f32>, NetError> {
         let (square, target) = Square::of(image, TRAINED_SIDE)?;
         let start = random_latents(&self.config, seed, f32::DTYPE, &HostDevice)?;
-        self.descend(&square, &target, settings, &start)
+        let found = settings.run(&self.model, &self.painter, &target, &start)?;
+        Ok(Optimum { scene: square.to_picture(found.scene), ..found })
     }
 
     /// Every slot, in units of the square.
-    fn see(&self, target: &Image<f32>) -> Result<Scene<f32>, NetError> {
-        one(self.model.scenes::<f32>(&self.latents(target)?)?.scenes(self.painter.edge())?)
+    fn scene(&self, latents: &Latents<Host>) -> Result<Scene<f32>, NetError> {
+        one(self.model.scenes::<f32>(latents)?.scenes(self.painter.edge())?)
+    }
+
+    /// A slot that is there, with the shape of the prototype that weighs most in it.
+    fn as_object(&self, slot: &Object<f32>) -> Object<f32> {
+        let prototype = slot.prototype.and_then(|index| self.bank.prototypes().get(index));
+        Object { confidence: 1.0, efd: prototype.unwrap_or(&slot.efd).clone(), ..slot.clone() }
     }
 
     fn latents(&self, target: &Image<f32>) -> Result<Latents<Host>, NetError> {
         let images = image_tensor(core::slice::from_ref(target), &HostDevice)?;
         Ok(self.model.latents(&self.model.features(&images)?, Phase::Inference)?.0)
-    }
-
-    fn descend(
-        &self,
-        square: &Square,
-        target: &Image<f32>,
-        settings: &OptZ,
-        start: &Latents<Host>,
-    ) -> Result<Optimum<f32>, NetError> {
-        let found = settings.run(&self.model, &self.painter, target, start)?;
-        Ok(Optimum { scene: square.to_picture(found.scene), ..found })
     }
 }
 

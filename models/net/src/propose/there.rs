@@ -21,48 +21,47 @@ const SAME_SCALE: f32 = 1.5;
 /// ... and no channel of their colors differs by more than this.
 const SAME_COLOR: f32 = 0.15;
 
-/// Keeps the objects that are there, opaque, for the picture `target`.
+/// The slots of a scene that are objects of the picture `target`, in their order.
 ///
 /// # Errors
 /// As [`SceneSteps::paint`].
-pub(super) fn keep_objects(
-    mut scene: Scene<f32>,
+pub(super) fn there(
+    scene: &Scene<f32>,
     target: &Image<f32>,
     painter: &SceneSteps<f32>,
-) -> Result<Scene<f32>, NetError> {
-    drop_doubles(&mut scene);
-    scene.objects.retain(|object| object.confidence > DOUBTFUL[0]);
-    // The least certain first.
-    let certainty = |object: &Object<f32>| (object.confidence - 0.5).abs();
-    let mut doubts: Vec<usize> =
-        (0..scene.objects.len()).filter(|&at| scene.objects[at].confidence < DOUBTFUL[1]).collect();
-    doubts.sort_by(|&a, &b| certainty(&scene.objects[a]).total_cmp(&certainty(&scene.objects[b])));
+) -> Result<Vec<usize>, NetError> {
+    let mut slots = without_doubles(&scene.objects);
+    slots.retain(|&slot| scene.objects[slot].confidence > DOUBTFUL[0]);
     // Nothing is painted of an object without confidence.
-    for object in &mut scene.objects {
-        object.confidence = if object.confidence > 0.5 { 1.0 } else { 0.0 };
-    }
-    if !doubts.is_empty() {
-        let mut error = squared_error(&scene, target, painter)?;
-        for _ in 0..ROUNDS {
-            let mut changed = false;
-            for &at in &doubts {
-                let was_there = scene.objects[at].confidence > 0.5;
-                scene.objects[at].confidence = if was_there { 0.0 } else { 1.0 };
-                let other = squared_error(&scene, target, painter)?;
-                let (with, without) = if was_there { (error, other) } else { (other, error) };
-                if (without > PAYS * with) == was_there {
-                    scene.objects[at].confidence = if was_there { 1.0 } else { 0.0 };
-                } else {
-                    (error, changed) = (other, true);
-                }
-            }
-            if !changed {
-                break;
+    let opaque = |&slot: &usize| {
+        let object = &scene.objects[slot];
+        Object { confidence: if object.confidence > 0.5 { 1.0 } else { 0.0 }, ..object.clone() }
+    };
+    let mut tried = Scene { objects: slots.iter().map(opaque).collect(), ..scene.clone() };
+    let confidence = |at: usize| scene.objects[slots[at]].confidence;
+    let mut doubts: Vec<usize> = (0..slots.len()).filter(|&at| confidence(at) < DOUBTFUL[1]).collect();
+    // The least certain first.
+    doubts.sort_by(|&a, &b| (confidence(a) - 0.5).abs().total_cmp(&(confidence(b) - 0.5).abs()));
+    let mut error = if doubts.is_empty() { 0.0 } else { squared_error(&tried, target, painter)? };
+    for _ in 0..ROUNDS {
+        let mut changed = false;
+        for &at in &doubts {
+            let before = tried.objects[at].confidence;
+            tried.objects[at].confidence = 1.0 - before;
+            let other = squared_error(&tried, target, painter)?;
+            let was_there = before > 0.5;
+            let (with, without) = if was_there { (error, other) } else { (other, error) };
+            if (without > PAYS * with) == was_there {
+                tried.objects[at].confidence = before;
+            } else {
+                (error, changed) = (other, true);
             }
         }
+        if !changed {
+            break;
+        }
     }
-    scene.keep_visible();
-    Ok(scene)
+    Ok((0..slots.len()).filter(|&at| tried.objects[at].confidence > 0.5).map(|at| slots[at]).collect())
 }
 
 fn squared_error(scene: &Scene<f32>, target: &Image<f32>, painter: &SceneSteps<f32>) -> Result<f64, NetError> {
@@ -70,18 +69,18 @@ fn squared_error(scene: &Scene<f32>, target: &Image<f32>, painter: &SceneSteps<f
     Ok(painted.data().iter().zip(target.data()).map(|(a, b)| f64::from(a - b).powi(2)).sum())
 }
 
-/// Of candidates for one thing keeps the most confident, the first of equals; the order stays.
-fn drop_doubles(scene: &mut Scene<f32>) {
-    let mut order: Vec<usize> = (0..scene.objects.len()).collect();
-    order.sort_by(|&a, &b| scene.objects[b].confidence.total_cmp(&scene.objects[a].confidence));
+/// Of candidates for one thing the most confident, the first of equals; in their order.
+fn without_doubles(objects: &[Object<f32>]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..objects.len()).collect();
+    order.sort_by(|&a, &b| objects[b].confidence.total_cmp(&objects[a].confidence));
     let mut kept: Vec<usize> = Vec::with_capacity(order.len());
     for candidate in order {
-        if !kept.iter().any(|&other| is_double(&scene.objects[candidate], &scene.objects[other])) {
+        if !kept.iter().any(|&other| is_double(&objects[candidate], &objects[other])) {
             kept.push(candidate);
         }
     }
-    let mut index = 0..scene.objects.len();
-    scene.objects.retain(|_| index.next().is_some_and(|index| kept.contains(&index)));
+    kept.sort_unstable();
+    kept
 }
 
 fn is_double(one: &Object<f32>, other: &Object<f32>) -> bool {
