@@ -35,6 +35,8 @@ const NOT_FLAT: f64 = 0.05;
 const MANY_REGIONS: usize = 64;
 /// A picture that is not flat is cut between pixels that differ by more than this: a tenth of a step of 8 bits.
 const FINE_ZONE: f64 = 0.0004;
+/// A picture read with the wrong kind of edges leaves more than this share of its variance unexplained.
+const MISSED: f64 = 0.002;
 /// Texture finer than this is averaged away in a picture that is not flat.
 const TEXTURE: f64 = 0.03;
 
@@ -182,8 +184,8 @@ impl<T: Real> Fitter<T> {
         let kinds = self.edge_kinds(image, scratch);
         // In doubt several readings are fitted; the shortest description wins.
         let mut best: Option<Fit<T>> = None;
-        for EdgeReading { kind, only_if_stuck } in kinds {
-            if only_if_stuck && best.as_ref().is_some_and(|best| best.stop != StopReason::StepLimit) {
+        for EdgeReading { kind, only_if_missed } in kinds {
+            if only_if_missed && best.as_ref().is_some_and(|best| best.unexplained < MISSED) {
                 continue;
             }
             let (compositing, second) = self.compositings(evidence, &kind);
@@ -205,7 +207,7 @@ impl<T: Real> Fitter<T> {
 
     /// The kinds of edges that the picture may have, the likeliest first.
     fn edge_kinds(&self, image: ImageView<'_, T>, scratch: &FitScratch<T>) -> Vec<EdgeReading<T>> {
-        let reading = |kind| EdgeReading { kind, only_if_stuck: false };
+        let reading = |kind| EdgeReading { kind, only_if_missed: false };
         if let Some(edge) = self.options.edge {
             return vec![reading(EdgeKind::of(edge))];
         }
@@ -226,7 +228,7 @@ impl<T: Real> Fitter<T> {
             kinds.extend(other.map(reading));
             if other.is_none() && edges.may_be_reference(unit) {
                 // Edges along the grid show few coverages. No outline fits under the wrong kind.
-                kinds.push(EdgeReading { kind: reference, only_if_stuck: true });
+                kinds.push(EdgeReading { kind: reference, only_if_missed: true });
             }
         }
         kinds
@@ -272,8 +274,8 @@ impl<T: Real> Fitter<T> {
 /// A kind of edges to read a picture with.
 struct EdgeReading<T> {
     kind: EdgeKind<T>,
-    /// Whether it is tried only where the fit before ran out of steps.
-    only_if_stuck: bool,
+    /// Whether it is tried only where the fit before leaves something unexplained.
+    only_if_missed: bool,
 }
 
 /// Whether edges are softer than compression alone makes them.

@@ -140,10 +140,14 @@ fn edges_along_the_grid_do_not_hide_the_reference() {
     truth.draw(&OutlineBasis::new(64, 64).unwrap(), &mut drawing).unwrap();
     TriangleRenderer::default().render(&drawing, size, &mut Default::default(), image.data_mut()).unwrap();
     let prototypes = bank.prototypes().iter().map(|efd| (String::new(), efd.clone())).collect();
-    let fitter = Fitter::new(FitOptions { bank: Some(Bank { prototypes }), ..FitOptions::default() }).unwrap();
-    let fit = fitter.fit(image.view(), &mut FitScratch::default()).unwrap();
-    assert_eq!((fit.scene.edge.law, fit.scene.objects.len()), (EdgeLaw::SquaredDistance, 2));
-    for (found, truth) in fit.scene.objects.iter().zip(&truth.objects) {
-        assert!((found.pose.scale - truth.pose.scale).abs() < 1e-3, "{} for {}", found.pose.scale, truth.pose.scale);
+    let bank = Some(Bank { prototypes });
+    for max_steps in [0, 10, 20] {
+        let options = FitOptions { bank: bank.clone(), max_steps, ..FitOptions::default() };
+        let fit = Fitter::new(options).unwrap().fit(image.view(), &mut FitScratch::default()).unwrap();
+        assert_eq!((fit.scene.edge.law, fit.scene.objects.len()), (EdgeLaw::SquaredDistance, 2), "{max_steps} steps");
+        for (found, truth) in fit.scene.objects.iter().zip(&truth.objects) {
+            let (found, truth) = (found.pose.scale, truth.pose.scale);
+            assert!((found - truth).abs() < 1e-3, "{max_steps} steps: {found} for {truth}");
+        }
     }
 }
