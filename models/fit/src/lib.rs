@@ -50,6 +50,7 @@ use dvp_core::Scene;
 
 pub use fitter::{FitScratch, Fitter, fit_image};
 pub use options::{Bank, FitError, FitOptions};
+pub use price::{Prices, scene_bits};
 pub use residual::Unexplained;
 pub use verdict::Doubts;
 

@@ -64,7 +64,7 @@ pub(crate) fn fit_of<T: Real, R: Renderer<T>>(
     outcome: Outcome<T>,
     steps: usize,
 ) -> Result<Fit<T>, DescentError> {
-    let Unexplained { share, noise } = descent.unexplained(&scene, image)?;
+    let Unexplained { share, noise, .. } = descent.unexplained(&scene, image)?;
     Ok(Fit {
         scene,
         loss: outcome.loss,

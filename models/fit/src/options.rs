@@ -8,6 +8,8 @@ use dvp_core::render::{Compositing, EdgeProfile, RenderError};
 use dvp_core::shape::{Efd, ShapeError};
 use dvp_core::{ImageView, Real};
 
+use crate::price::Prices;
+
 /// Shapes that objects are known to have.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Bank<T> {
@@ -31,11 +33,21 @@ pub struct FitOptions<T> {
     pub edge: Option<EdgeProfile<T>>,
     /// How overlapping objects mix; none: as the picture shows.
     pub compositing: Option<Compositing>,
+    /// What objects and harmonics must pay; to be left as it is but to see what prices are good for.
+    pub prices: Prices,
 }
 
 impl<T: Real> Default for FitOptions<T> {
     fn default() -> Self {
-        Self { bank: None, max_objects: 256, max_harmonics: 31, max_steps: 10, edge: None, compositing: None }
+        Self {
+            bank: None,
+            max_objects: 256,
+            max_harmonics: 31,
+            max_steps: 10,
+            edge: None,
+            compositing: None,
+            prices: Prices::default(),
+        }
     }
 }
 

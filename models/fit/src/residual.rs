@@ -139,6 +139,9 @@ pub struct Unexplained<T> {
     pub share: f64,
     /// Standard deviation of a channel that was taken for noise: at least the rounding of 8 bits.
     pub noise: T,
+    /// Bits of what is left at that noise: half the squared largest channel difference of each pixel in units of the noise, in
+    /// base 2, at most 24 per pixel.
+    pub bits: f64,
 }
 
 impl<T: Real> Unexplained<T> {
@@ -146,7 +149,9 @@ impl<T: Real> Unexplained<T> {
     #[must_use]
     pub fn of(image: &ImageView<'_, T>, painted: &[T]) -> Self {
         let noise = noise_level(image, &mut Vec::new()).max(T::of(PIXEL_NOISE));
-        Self { share: Residual::unexplained(image, painted, noise).0, noise }
+        let mut residual = Residual::default();
+        residual.measure(image, painted);
+        Self { share: Residual::unexplained(image, painted, noise).0, noise, bits: residual.bits(noise) }
     }
 }
 

@@ -11,7 +11,7 @@ use crate::cholesky::{factor, packed, solve};
 use crate::colors::{ColorScratch, is_rounded, refine_colors};
 use crate::doubt::{covariance, visible_share};
 use crate::free::foot::EdgeLanes;
-use crate::price::scene_bits;
+use crate::price::{Prices, scene_bits};
 use crate::residual::Residual;
 use crate::segment::EdgeSample;
 use crate::{Ambiguity, Doubts, Fit, FitOptions, StopReason, fit_image};
@@ -58,7 +58,14 @@ fn description_lengths() {
     scene.objects.push(object(Some(1), 16));
     assert!((scene_bits(&scene, 4) - (24.0 + 72.0 + 2.0)).abs() < 1e-12);
     scene.objects.push(object(None, 2));
-    assert!((scene_bits(&scene, 4) - (24.0 + 74.0 + 72.0 + 64.0)).abs() < 1e-12);
+    let both = 24.0 + 74.0 + 72.0 + 64.0;
+    assert!((scene_bits(&scene, 4) - both).abs() < 1e-12);
+    // A shape that occurs again is not written again, wherever it stands.
+    scene.objects.insert(0, object(None, 2));
+    assert!((scene_bits(&scene, 4) - (both + 72.0)).abs() < 1e-12);
+    // At other prices.
+    let prices = Prices { object: 0.5, harmonic: 2.0, ..Prices::default() };
+    assert!((prices.scene_bits(&scene, 4) - (24.0 + 3.0 * 36.0 + 2.0 + 128.0)).abs() < 1e-12);
 }
 
 #[test]

@@ -255,7 +255,7 @@ pub fn timed<R>(work: impl FnOnce() -> Result<R>) -> Result<(R, Duration)> {
 /// A descent of latents, or a network alone, as a fit that doubts what it leaves unexplained; with the time it took.
 fn fit_of(image: ImageView<'_, f32>, (found, cpu): (Optimum<f32>, Duration)) -> Result<(Fit<f32>, Duration)> {
     let painted = Painter::default().paint(&found.scene, image.size())?;
-    let Unexplained { share, noise } = Unexplained::of(&image, painted.data());
+    let Unexplained { share, noise, .. } = Unexplained::of(&image, painted.data());
     let fit = Fit {
         scene: found.scene,
         loss: f32::of(found.loss),

@@ -14,7 +14,7 @@ use super::run::Run;
 use super::unknown::Guess;
 use crate::free::grow::Freedom;
 use crate::pose::search::Effort;
-use crate::price::{coefficient_bits, equal_bits, misfit_bits};
+use crate::price::{coefficient_bits, misfit_bits};
 
 /// Descriptions whose lengths differ by less say nothing.
 const CLEARLY_SHORTER_BITS: f64 = 8.0;
@@ -62,10 +62,11 @@ impl<T: Real> Run<'_, T> {
         let size = self.image.size();
         self.scratch.segmentation.gather_object(object, size, &self.kind);
         if self.fitter.prototypes.is_empty() {
+            let prices = self.fitter.options.prices;
             let grown = self.outline_of(object as usize, Freedom::Full, guess);
             return grown.map_or(NO_FIT_BITS, |(grown, _)| {
                 let rows = &grown.outline.rows;
-                grown.bits.as_f64() - equal_bits(rows.len()) + coefficient_bits(rows)
+                grown.bits.as_f64() - prices.equal_bits(rows.len()) + coefficient_bits(rows)
             });
         }
         self.search(object, Effort::Usual);

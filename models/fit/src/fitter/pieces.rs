@@ -10,7 +10,6 @@ use dvp_core::Real;
 
 use super::run::Run;
 use super::unknown::Guess;
-use crate::price::OBJECT_BITS;
 use crate::segment::color::may_be_same;
 
 /// Most pieces that are tried together.
@@ -108,7 +107,7 @@ impl<T: Real> Run<'_, T> {
         apart[1] += self.bits_around(&covers, &[]);
         apart[2] += self.bits_around(&covers, &behind) + MIXED_BITS;
         let others = f64::from(u32::try_from(pieces.len() - 1).unwrap_or(u32::MAX));
-        let apart = OBJECT_BITS * others + apart.into_iter().fold(f64::INFINITY, f64::min);
+        let apart = self.fitter.options.prices.object_bits() * others + apart.into_iter().fold(f64::INFINITY, f64::min);
         let before = self.scratch.segmentation.join(pieces);
         let joined = self.part_bits(pieces[0], Guess::Shortest) + around;
         if joined < apart {

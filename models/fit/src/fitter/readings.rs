@@ -51,7 +51,8 @@ impl<T: Real> Fitter<T> {
         let noise = noise_level(&image, &mut scratch.differences);
         let mut clean = false;
         let fit = if noise >= T::of(QUIET) {
-            let options = NoisyOptions { noise, compressed: false, zone: None, most_regions };
+            let boundary = self.options.prices.boundary;
+            let options = NoisyOptions { noise, compressed: false, zone: None, most_regions, boundary };
             let readable = scratch.segmentation.read_noisy(&image, options);
             self.fit_noisy(image, readable, scratch)?
         } else {
@@ -103,7 +104,13 @@ impl<T: Real> Fitter<T> {
     ) -> Result<Fit<T>, FitError> {
         scratch.code = BlockCode::of(&image);
         let (soft, regions) = (scratch.segmentation.soft_count(), scratch.segmentation.region_count());
-        let options = NoisyOptions { noise: T::of(COMPRESSED), compressed: true, zone: None, most_regions };
+        let options = NoisyOptions {
+            noise: T::of(COMPRESSED),
+            compressed: true,
+            zone: None,
+            most_regions,
+            boundary: self.options.prices.boundary,
+        };
         let readable = scratch.segmentation.read_noisy(&image, options);
         // What was soft in between edges is flat now: that was no edge.
         let surely = T::of_usize(scratch.segmentation.soft_count()) < T::of(STILL_SOFT) * T::of_usize(soft);
@@ -138,7 +145,8 @@ impl<T: Real> Fitter<T> {
         scratch: &mut FitScratch<T>,
     ) -> Result<Fit<T>, FitError> {
         let noise = T::of(TEXTURE).max(fit.noise);
-        let options = NoisyOptions { noise, compressed: false, zone: Some(T::of(FINE_ZONE)), most_regions };
+        let boundary = self.options.prices.boundary;
+        let options = NoisyOptions { noise, compressed: false, zone: Some(T::of(FINE_ZONE)), most_regions, boundary };
         if !scratch.segmentation.read_noisy(&image, options) {
             return Ok(Fit { stop: StopReason::NotFlat, ..fit });
         }

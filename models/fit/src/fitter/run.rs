@@ -10,7 +10,6 @@ use super::{FitScratch, Fitter};
 use crate::buys::{buys, ranking, squared_errors};
 use crate::colors::{MAX_COVERAGE_VALUES, is_rounded, refine_colors};
 use crate::doubt::covariance;
-use crate::price::{equal_bits, scene_bits};
 use crate::residual::Residual;
 use crate::segment::EdgeKind;
 use crate::segment::color::distance;
@@ -129,7 +128,9 @@ impl<T: Real> Run<'_, T> {
         let mut bits = None;
         let mut drawn = true;
         for at in (0..scene.objects.len()).rev() {
-            if self.is_doubtful(&scene, &found.objects[at]) || self.is_mixed(&scene, at) {
+            if self.is_doubtful(&scene, &found.objects[at])
+                || self.fitter.options.prices.mixed && self.is_mixed(&scene, at)
+            {
                 let before = match bits {
                     Some(bits) => bits,
                     None => self.bits(&scene, rough),
@@ -226,20 +227,25 @@ impl<T: Real> Run<'_, T> {
     /// Description length of the scene plus that of the residual last measured, at the given noise; of a coded picture, of
     /// what its coder cannot have thrown away.
     fn bits(&mut self, scene: &Scene<T>, noise: T) -> f64 {
+        let prices = self.fitter.options.prices;
         let spared: f64 = scene.objects.iter().map(|object| self.spared(object)).sum();
         let FitScratch { code, code_bits, shown, residual, .. } = &mut *self.scratch;
         let left = match code {
             Some(code) => code.bits(&self.image, shown.pixels(), code_bits),
             None => residual.bits(noise),
         };
-        scene_bits(scene, self.fitter.prototypes.len()) - spared + left
+        prices.scene_bits(scene, self.fitter.prototypes.len()) - spared + left
     }
 
     /// Bits that a plain shape would spare: in a coded picture, fine detail of an outline says how coarse its edge is and
     /// not that there is no object.
     fn spared(&self, object: &Object<T>) -> f64 {
         let fine = object.efd.harmonic_count().saturating_sub(PLAIN_HARMONICS);
-        if self.scratch.code.is_some() && object.prototype.is_none() { equal_bits(fine) } else { 0.0 }
+        if self.scratch.code.is_some() && object.prototype.is_none() {
+            self.fitter.options.prices.equal_bits(fine)
+        } else {
+            0.0
+        }
     }
 
     fn is_doubtful(&self, scene: &Scene<T>, part: &FoundObject<T>) -> bool {

@@ -14,7 +14,6 @@ use crate::free::outline_fit::FreeOutline;
 use crate::joint::{JointObject, JointScene};
 use crate::pose::field::OutlineField;
 use crate::pose::search::{Effort, search};
-use crate::price::{OBJECT_BITS, free_shape_bits, known_object_bits};
 use crate::split::motion::Motion;
 use crate::split::twins::{Union, misfit, repeats};
 use crate::split::waist::{is_convex, is_waisted};
@@ -64,6 +63,7 @@ impl<T: Real> Run<'_, T> {
         sources: &mut Vec<Source>,
         mut loss: T,
     ) -> Result<T, FitError> {
+        let prices = self.fitter.options.prices;
         let (mut at, mut failures) = (0, 0);
         while at < sources.len() && failures < MOST_FAILURES {
             let source = sources[at];
@@ -85,7 +85,7 @@ impl<T: Real> Run<'_, T> {
                 posed.objects.splice(at..at + placed, objects.iter().copied());
                 placed = objects.len();
                 self.compare(posed)?;
-                let price = known_object_bits(self.fitter.prototypes.len()) * f64::of_usize(placed - 1);
+                let price = prices.known_object_bits(self.fitter.prototypes.len()) * f64::of_usize(placed - 1);
                 let bits = self.scratch.residual.bits(noise) + price;
                 if bits < best.0 {
                     best = (bits, objects);
@@ -105,6 +105,7 @@ impl<T: Real> Run<'_, T> {
     pub(super) fn split_unknown(&mut self, found: &mut Found<T>) -> Result<(), FitError> {
         // What cut corners leave is no evidence of a union.
         let noise = self.noise().max(T::of(CORNER_NOISE));
+        let prices = self.fitter.options.prices;
         let (mut at, mut failures) = (0, 0);
         while at < found.objects.len() && failures < MOST_FAILURES {
             let single = found.objects[at].clone();
@@ -121,7 +122,7 @@ impl<T: Real> Run<'_, T> {
                         found.objects.splice(at..at + placed, objects.iter().cloned());
                         placed = objects.len();
                         self.compare_found(found)?;
-                        let poses = OBJECT_BITS * f64::of_usize(placed - 1);
+                        let poses = prices.object_bits() * f64::of_usize(placed - 1);
                         let bits = explanation.shape_bits + poses + self.scratch.residual.bits(noise);
                         if bits < best.0 {
                             best = (bits, objects);
@@ -173,7 +174,7 @@ impl<T: Real> Run<'_, T> {
             Symmetry::Continuous => 1,
         };
         let repeats = repeats(&contour, &field, samples).max(turns);
-        let shape_bits = free_shape_bits(single.object.efd.harmonic_count(), repeats);
+        let shape_bits = self.fitter.options.prices.free_shape_bits(single.object.efd.harmonic_count(), repeats);
         Ok(Some(Waisted { contour, field, most, shape_bits }))
     }
 
@@ -205,6 +206,7 @@ impl<T: Real> Run<'_, T> {
                 max_harmonics: self.fitter.options.max_harmonics,
                 freedom: Freedom::Full,
                 noise: scratch.segmentation.noise(),
+                prices: self.fitter.options.prices,
             },
         };
         match way {

@@ -157,7 +157,13 @@ impl<T: Real> Run<'_, T> {
             max_harmonics = (perimeter(&contour) / T::of(SEGMENT_HARMONIC_PX)).to_count().clamp(1, max_harmonics);
         }
         let basis = &self.fitter.basis;
-        let settings = GrowSettings { vertex_count: REFERENCE_VERTICES, max_harmonics, freedom, noise };
+        let settings = GrowSettings {
+            vertex_count: REFERENCE_VERTICES,
+            max_harmonics,
+            freedom,
+            noise,
+            prices: self.fitter.options.prices,
+        };
         let straight = grow(&contour, &scratch.samples, basis, settings, &mut scratch.free)?;
         let object = u32::try_from(segment).ok()?;
         let whole = freedom != Freedom::Full || guess == Guess::Shortest || !scratch.segmentation.may_go_on(object);

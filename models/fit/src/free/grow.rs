@@ -8,7 +8,7 @@ use dvp_core::{Efd, Real};
 use super::basis::Basis;
 use super::outline_fit::{FreeOutline, OutlineScratch, OutlineSettings, refine};
 use super::polygon_fit::{PolygonScratch, move_vertices, transform};
-use crate::price::{COEFFICIENT_BITS, misfit_bits};
+use crate::price::{Prices, misfit_bits};
 use crate::segment::EdgeSample;
 
 /// Numbers of harmonics an outline is cut to.
@@ -44,6 +44,7 @@ pub(crate) struct GrowSettings<T> {
     pub(crate) freedom: Freedom,
     /// Noise of a pixel value that the weights of the samples refer to.
     pub(crate) noise: T,
+    pub(crate) prices: Prices,
 }
 
 /// Memory of [`grow`].
@@ -66,14 +67,15 @@ pub(crate) fn grow<T: Real>(
     settings: GrowSettings<T>,
     scratch: &mut GrowScratch<T>,
 ) -> Option<Grown<T>> {
-    let GrowSettings { vertex_count, max_harmonics, freedom, noise } = settings;
+    let GrowSettings { vertex_count, max_harmonics, freedom, noise, prices } = settings;
+    let price = |harmonics| T::of(prices.equal_bits(harmonics));
     if freedom != Freedom::Full {
         let GrowScratch { polygon, vertices, .. } = scratch;
         take_vertices(contour, vertex_count, vertices)?;
         let steps = if freedom == Freedom::Normals { 2 } else { 0 };
         let cost = move_vertices(vertices, samples, T::one(), noise, steps, polygon);
         let outline = transform(vertices, basis, max_harmonics);
-        return Some(Grown { outline, bits: price::<T>(max_harmonics) + cost * misfit_bits(), steps });
+        return Some(Grown { outline, bits: price(max_harmonics) + cost * misfit_bits(), steps });
     }
     let mut steps = 0;
     let mut fit = |start: &FreeOutline<T>, harmonics: usize, widths: &[f64], scratch: &mut OutlineScratch<T>| {
@@ -85,7 +87,7 @@ pub(crate) fn grow<T: Real>(
             cost = refine(&mut outline, samples, basis, vertex_count, &settings, scratch);
             steps += settings.max_steps;
         }
-        Grown { outline, bits: price::<T>(harmonics) + cost * misfit_bits(), steps: 0 }
+        Grown { outline, bits: price(harmonics) + cost * misfit_bits(), steps: 0 }
     };
     let (first, center) = Efd::from_contour(contour, 1).ok()?;
     let start = FreeOutline { center, rows: first.rows().to_vec() };
@@ -97,8 +99,8 @@ pub(crate) fn grow<T: Real>(
         move_vertices(vertices, samples, T::of(2.0), noise, 2, polygon);
         let cost = move_vertices(vertices, samples, T::of(0.5), noise, POLYGON_STEPS, polygon);
         let outline = transform(vertices, basis, max_harmonics);
-        let full = Grown { outline, bits: price::<T>(max_harmonics) + cost * misfit_bits(), steps: 0 };
-        let cut = most_promising_cut(&full, samples, basis, vertex_count, noise);
+        let full = Grown { outline, bits: price(max_harmonics) + cost * misfit_bits(), steps: 0 };
+        let cut = most_promising_cut(&full, samples, basis, &settings);
         // Coefficients let vertices slide into corners, which normals alone do not.
         let tried = fit(&full.outline, cut, &[0.5], outline_scratch);
         steps += 2 + POLYGON_STEPS;
@@ -118,17 +120,12 @@ fn take_vertices<T: Real>(contour: &[[T; 2]], vertex_count: usize, vertices: &mu
     Some(())
 }
 
-fn price<T: Real>(harmonics: usize) -> T {
-    T::of(4.0 * COEFFICIENT_BITS) * T::of_usize(harmonics)
-}
-
 /// The number of harmonics with the shortest foretold description.
 fn most_promising_cut<T: Real>(
     full: &Grown<T>,
     samples: &[EdgeSample<T>],
     basis: &Basis<T>,
-    vertex_count: usize,
-    noise: T,
+    &GrowSettings { vertex_count, noise, prices, .. }: &GrowSettings<T>,
 ) -> usize {
     let rows = &full.outline.rows;
     let precision = T::one() / (noise * noise);
@@ -154,7 +151,7 @@ fn most_promising_cut<T: Real>(
         }
         if LADDER.contains(&harmonics) {
             let extra = weights * across / T::of_usize(edges) * misfit_bits();
-            let saved = T::of(4.0 * COEFFICIENT_BITS) * T::of_usize(rows.len() - harmonics);
+            let saved = T::of(prices.equal_bits(rows.len() - harmonics));
             let bits = full.bits + extra - saved;
             if bits < best.0 {
                 best = (bits, harmonics);

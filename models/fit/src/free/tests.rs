@@ -8,6 +8,7 @@ use super::grow::{Freedom, GrowScratch, GrowSettings, grow};
 use super::outline_fit::{FreeOutline, OutlineScratch, OutlineSettings, expand, gather};
 use super::repeat::complete;
 use crate::Completion;
+use crate::price::Prices;
 use crate::segment::EdgeSample;
 
 const VERTICES: usize = 64;
@@ -89,7 +90,13 @@ fn ellipse_samples() -> (Vec<[f64; 2]>, Vec<EdgeSample<f64>>) {
 fn an_ellipse_pays_for_one_harmonic() {
     let (contour, samples) = ellipse_samples();
     let basis = Basis::new(VERTICES, 31);
-    let settings = GrowSettings { vertex_count: VERTICES, max_harmonics: 31, freedom: Freedom::Full, noise: 0.003 };
+    let settings = GrowSettings {
+        vertex_count: VERTICES,
+        max_harmonics: 31,
+        freedom: Freedom::Full,
+        noise: 0.003,
+        prices: Prices::default(),
+    };
     let grown = grow(&contour[1..], &samples, &basis, settings, &mut GrowScratch::default()).unwrap();
     assert_eq!(grown.outline.rows.len(), 1);
     let [a, b, c, d] = grown.outline.rows[0];

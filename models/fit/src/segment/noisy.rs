@@ -34,6 +34,8 @@ pub(crate) struct NoisyOptions<T> {
     pub(crate) zone: Option<T>,
     /// Regions are merged until there are no more than this.
     pub(crate) most_regions: usize,
+    /// What a boundary must pay, in units of the usual price.
+    pub(crate) boundary: f64,
 }
 
 impl<T: Real> Segmentation<T> {
@@ -45,7 +47,11 @@ impl<T: Real> Segmentation<T> {
         } else {
             RobustSettings::of(noise)
         };
-        let settings = RobustSettings { zone: options.zone.unwrap_or(settings.zone), ..settings };
+        let settings = RobustSettings {
+            zone: options.zone.unwrap_or(settings.zone),
+            boundary: T::of(options.boundary),
+            ..settings
+        };
         robust::read_flat(image, settings, options.most_regions, &mut self.robust, &mut self.map);
         // Clipping at black and white moves means, and the denoised picture with them: soft pixels lie between its colors.
         let Ok(smooth) = ImageView::new(image.size(), &self.robust.smooth) else { return false };

@@ -19,7 +19,6 @@ use crate::free::grow::{GrowScratch, GrowSettings, grow};
 use crate::pose::field::OutlineField;
 use crate::pose::gauss_newton::{Frame, PosePx};
 use crate::pose::search::Prototype;
-use crate::price::free_shape_bits;
 use crate::segment::EdgeSample;
 
 /// Motions whose shape is fitted.
@@ -142,7 +141,7 @@ impl<T: Real> Union<'_, T> {
             let [first, second] = *set.parts else { return None };
             poses = [first.pose, second.pose];
             found = Some(Explanation {
-                shape_bits: free_shape_bits(grown.outline.rows.len(), symmetries.len() + 1),
+                shape_bits: self.settings.prices.free_shape_bits(grown.outline.rows.len(), symmetries.len() + 1),
                 members: poses.map(|pose| (grown.outline.clone(), Motion { pose })).into(),
                 cost: set.cost,
             });

@@ -48,12 +48,15 @@ pub(crate) struct RobustSettings<T> {
     pub(crate) strip_width: T,
     /// Largest difference between denoised neighbors that are never cut apart.
     pub(crate) zone: T,
+    /// What a boundary must pay, in units of the usual price.
+    pub(crate) boundary: T,
 }
 
 impl<T: Real> RobustSettings<T> {
     /// For noise that is everywhere alike.
     pub(crate) fn of(noise: T) -> Self {
-        Self { noise, halo: T::zero(), strip_width: T::of(STRIP_WIDTH), zone: T::of(0.004) + T::of(0.1) * noise }
+        let zone = T::of(0.004) + T::of(0.1) * noise;
+        Self { noise, halo: T::zero(), strip_width: T::of(STRIP_WIDTH), zone, boundary: T::one() }
     }
 }
 
@@ -79,7 +82,7 @@ pub(crate) fn read_flat<T: Real>(
     scratch: &mut RobustScratch<T>,
     map: &mut FlatMap,
 ) {
-    let RobustSettings { noise, halo, strip_width, zone } = settings;
+    let RobustSettings { noise, halo, strip_width, zone, boundary } = settings;
     let variance = noise * noise;
     let two = T::of(2.0);
     let first = DenoiseSettings { reach: REACH, expected: two * variance, limit: two * variance };
@@ -89,7 +92,7 @@ pub(crate) fn read_flat<T: Real>(
     let second = DenoiseSettings { reach: REACH, expected: left, limit: two * left };
     denoise(image, &guide, second, &mut scratch.denoise, &mut scratch.smooth);
     let Ok(smooth) = ImageView::new(image.size(), &scratch.smooth) else { return };
-    let stop = Stop { price: T::of(BOUNDARY_PRICE) * variance, halo, most_regions };
+    let stop = Stop { price: T::of(BOUNDARY_PRICE) * boundary * variance, halo, most_regions };
     let count = scratch.merger.partition(image, &smooth, zone, stop, &mut scratch.labels);
     measure_zones(&smooth, count, &scratch.labels, &mut scratch.zones, &mut scratch.steps);
     find_strips(&mut scratch.zones, &scratch.steps, strip_width, T::of(0.02) + noise);
