@@ -11,8 +11,12 @@ use super::polygon_fit::{PolygonScratch, move_vertices, transform};
 use crate::price::{Prices, misfit_bits};
 use crate::segment::EdgeSample;
 
-/// Numbers of harmonics an outline is cut to.
-const LADDER: [usize; 10] = [2, 3, 4, 6, 8, 10, 12, 16, 20, 24];
+/// Numbers of harmonics that are tried before all of them: steps of four, as a square gains at every fourth.
+const LADDER: [usize; 7] = [3, 6, 10, 14, 18, 22, 26];
+/// A number that is foretold to gain less than this share of what is missed is left out: more may gain it at once.
+const LEAST_GAIN: f64 = 0.1;
+/// After so many in a row that do not pay, no more are tried.
+const MOST_FAILURES: usize = 2;
 /// Steps of the polygon after the first two.
 const POLYGON_STEPS: usize = 3;
 
@@ -58,8 +62,9 @@ pub(crate) struct GrowScratch<T> {
 /// Fits the traced outline with as many harmonics as pay.
 ///
 /// An ellipse is tried first. If it does not explain the samples, a polygon is fitted, which all harmonics together can
-/// be. Then harmonics that do not pay are dropped: what a cut outline misses is foretold from how far its vertices move
-/// across the outline, and the most promising cut is fitted.
+/// be. Then more and more of its harmonics are fitted, as long as they pay; all of them if they still may. What more harmonics
+/// gain is foretold from how far they move the vertices of the polygon across its outline. That is more or less the most they gain:
+/// vertices that slide along the outline save harmonics, so only a fit tells.
 pub(crate) fn grow<T: Real>(
     contour: &[[T; 2]],
     samples: &[EdgeSample<T>],
@@ -97,16 +102,33 @@ pub(crate) fn grow<T: Real>(
         let GrowScratch { outline: outline_scratch, polygon, vertices } = scratch;
         take_vertices(contour, vertex_count, vertices)?;
         move_vertices(vertices, samples, T::of(2.0), noise, 2, polygon);
-        let cost = move_vertices(vertices, samples, T::of(0.5), noise, POLYGON_STEPS, polygon);
+        move_vertices(vertices, samples, T::of(0.5), noise, POLYGON_STEPS, polygon);
         let outline = transform(vertices, basis, max_harmonics);
-        let full = Grown { outline, bits: price(max_harmonics) + cost * misfit_bits(), steps: 0 };
-        let cut = most_promising_cut(&full, samples, basis, &settings);
-        // Coefficients let vertices slide into corners, which normals alone do not.
-        let tried = fit(&full.outline, cut, &[0.5], outline_scratch);
-        steps += 2 + POLYGON_STEPS;
-        if tried.bits < best.bits {
-            best = tried;
+        let missed = cut_bits(&outline, samples, basis, &settings);
+        let (mut last, mut failures) = (1, 0);
+        for harmonics in LADDER.into_iter().filter(|&harmonics| harmonics < max_harmonics) {
+            let gain = missed[last] - missed[harmonics];
+            if gain < price(harmonics - last) || gain < T::of(LEAST_GAIN) * missed[last] {
+                continue;
+            }
+            last = harmonics;
+            let tried = fit(&outline, harmonics, &[0.5], outline_scratch);
+            let is_enough = tried.bits < price(harmonics + 2);
+            failures += 1;
+            if tried.bits < best.bits {
+                (best, failures) = (tried, 0);
+            }
+            if is_enough || failures == MOST_FAILURES {
+                break;
+            }
         }
+        if best.bits - price(best.outline.rows.len()) > price(max_harmonics) {
+            let tried = fit(&outline, max_harmonics, &[0.5], outline_scratch);
+            if tried.bits < best.bits {
+                best = tried;
+            }
+        }
+        steps += 2 + POLYGON_STEPS;
     }
     best.steps = steps;
     Some(best)
@@ -120,22 +142,22 @@ fn take_vertices<T: Real>(contour: &[[T; 2]], vertex_count: usize, vertices: &mu
     Some(())
 }
 
-/// The number of harmonics with the shortest foretold description.
-fn most_promising_cut<T: Real>(
-    full: &Grown<T>,
+/// By number of harmonics: bits of what is missed without those above, if vertices stay where they are along the outline.
+fn cut_bits<T: Real>(
+    outline: &FreeOutline<T>,
     samples: &[EdgeSample<T>],
     basis: &Basis<T>,
-    &GrowSettings { vertex_count, noise, prices, .. }: &GrowSettings<T>,
-) -> usize {
-    let rows = &full.outline.rows;
+    &GrowSettings { vertex_count, noise, .. }: &GrowSettings<T>,
+) -> Vec<T> {
+    let rows = &outline.rows;
     let precision = T::one() / (noise * noise);
     let weights = samples.iter().map(|sample| sample.weight * sample.weight * precision).sum::<T>();
     let mut vertices = Vec::new();
-    full.outline.write_vertices(basis, vertex_count, &mut vertices);
+    outline.write_vertices(basis, vertex_count, &mut vertices);
     let edges = vertex_count - 1;
     let mut missed = vertices.clone();
     missed.iter_mut().for_each(|v| *v = [T::zero(); 2]);
-    let mut best = (full.bits, rows.len());
+    let mut bits = alloc::vec![T::zero(); rows.len() + 1];
     for harmonics in (1..rows.len()).rev() {
         // Displacement of each vertex by all harmonics above, taken across the outline.
         let [a, b, c, d] = rows[harmonics];
@@ -149,16 +171,9 @@ fn most_promising_cut<T: Real>(
             let normal = missed[i][0] * y - missed[i][1] * x;
             across += normal * normal / (x * x + y * y).max(T::of(1e-9));
         }
-        if LADDER.contains(&harmonics) {
-            let extra = weights * across / T::of_usize(edges) * misfit_bits();
-            let saved = T::of(prices.equal_bits(rows.len() - harmonics));
-            let bits = full.bits + extra - saved;
-            if bits < best.0 {
-                best = (bits, harmonics);
-            }
-        }
+        bits[harmonics] = weights * across / T::of_usize(edges) * misfit_bits();
     }
-    best.1
+    bits
 }
 
 /// Weight of samples that hold an outline where nothing is seen of it.

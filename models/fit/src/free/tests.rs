@@ -1,10 +1,11 @@
+use alloc::vec;
 use alloc::vec::Vec;
 
 use dvp_core::contour::signed_area;
 
 use super::basis::Basis;
 use super::conic::ellipse_through;
-use super::grow::{Freedom, GrowScratch, GrowSettings, grow};
+use super::grow::{Freedom, GrowScratch, GrowSettings, Grown, grow};
 use super::outline_fit::{FreeOutline, OutlineScratch, OutlineSettings, expand, gather};
 use super::repeat::complete;
 use crate::Completion;
@@ -66,12 +67,11 @@ fn the_gradient_is_that_of_half_the_cost() {
     }
 }
 
-/// Exact samples around an ellipse with half axes 14 and 9 px.
-fn ellipse_samples() -> (Vec<[f64; 2]>, Vec<EdgeSample<f64>>) {
-    let basis = Basis::new(VERTICES, 1);
-    let ellipse = FreeOutline { center: [30.0, 28.0], rows: [[14.0, 0.0, 0.0, -9.0]].into() };
+/// Vertices of an outline, and exact samples around it.
+fn exact_samples(outline: &FreeOutline<f64>) -> (Vec<[f64; 2]>, Vec<EdgeSample<f64>>) {
+    let basis = Basis::new(VERTICES, outline.rows.len());
     let mut vertices = Vec::new();
-    ellipse.write_vertices(&basis, VERTICES, &mut vertices);
+    outline.write_vertices(&basis, VERTICES, &mut vertices);
     let mut samples = Vec::new();
     for pair in vertices.windows(2) {
         let step: [f64; 2] = [pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]];
@@ -86,9 +86,9 @@ fn ellipse_samples() -> (Vec<[f64; 2]>, Vec<EdgeSample<f64>>) {
     (vertices, samples)
 }
 
-#[test]
-fn an_ellipse_pays_for_one_harmonic() {
-    let (contour, samples) = ellipse_samples();
+/// The outline that is grown from exact samples of another.
+fn grown(outline: &FreeOutline<f64>) -> Grown<f64> {
+    let (contour, samples) = exact_samples(outline);
     let basis = Basis::new(VERTICES, 31);
     let settings = GrowSettings {
         vertex_count: VERTICES,
@@ -97,7 +97,36 @@ fn an_ellipse_pays_for_one_harmonic() {
         noise: 0.003,
         prices: Prices::default(),
     };
-    let grown = grow(&contour[1..], &samples, &basis, settings, &mut GrowScratch::default()).unwrap();
+    grow(&contour[1..], &samples, &basis, settings, &mut GrowScratch::default()).unwrap()
+}
+
+#[test]
+fn an_outline_pays_for_no_more_harmonics_than_it_needs() {
+    // 2, 0.7 and 0.2 px off a circle, 3, 5 and 9 times around.
+    let mut rows = vec![[0.0; 4]; 9];
+    rows[0] = [20.0, 0.0, 0.0, -20.0];
+    for (harmonic, size) in [(3, 2.0), (5, 0.7), (9, 0.2)] {
+        rows[harmonic - 1] = [size, 0.0, 0.0, size];
+    }
+    let grown = grown(&FreeOutline { center: [40.0, 38.0], rows });
+    assert!((5..=14).contains(&grown.outline.rows.len()), "{} harmonics", grown.outline.rows.len());
+    // As much again for what is missed.
+    assert!(grown.bits < 2.0 * 32.0 * 10.0, "{}", grown.bits);
+}
+
+#[test]
+fn a_cog_pays_for_the_harmonics_of_its_teeth() {
+    // Nothing is gained by any harmonic below the 11th.
+    let mut rows = vec![[0.0; 4]; 11];
+    rows[0] = [30.0, 0.0, 0.0, -30.0];
+    rows[10] = [1.5, 0.0, 0.0, 1.5];
+    let grown = grown(&FreeOutline { center: [40.0, 38.0], rows });
+    assert!((11..=22).contains(&grown.outline.rows.len()), "{} harmonics", grown.outline.rows.len());
+}
+
+#[test]
+fn an_ellipse_pays_for_one_harmonic() {
+    let grown = grown(&FreeOutline { center: [30.0, 28.0], rows: vec![[14.0, 0.0, 0.0, -9.0]] });
     assert_eq!(grown.outline.rows.len(), 1);
     let [a, b, c, d] = grown.outline.rows[0];
     // The area pi |a d - b c| does not depend on where the outline starts.
