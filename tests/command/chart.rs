@@ -8,28 +8,8 @@ use dvp::method::Method;
 use resvg::usvg::{Options, Tree};
 use serde_json::Value;
 
+use crate::rows::{cell, number, rows};
 use crate::runner::{Run, dvp, dvp_done, names, text};
-
-/// The lines of a CSV by their header.
-fn rows(path: &Path) -> Vec<Vec<(String, String)>> {
-    let csv = fs::read_to_string(path).unwrap();
-    let mut lines = csv.lines().map(|line| line.split(',').map(str::to_owned).collect::<Vec<_>>());
-    let header = lines.next().unwrap();
-    lines
-        .map(|line| {
-            assert_eq!(line.len(), header.len(), "{line:?}");
-            header.iter().cloned().zip(line).collect()
-        })
-        .collect()
-}
-
-fn cell<'a>(row: &'a [(String, String)], name: &str) -> &'a str {
-    &row.iter().find(|(column, _)| column == name).unwrap().1
-}
-
-fn number(row: &[(String, String)], name: &str) -> f64 {
-    cell(row, name).parse().unwrap_or_else(|_| panic!("{name}: {row:?}"))
-}
 
 #[test]
 fn a_tiny_chart_has_everything() {

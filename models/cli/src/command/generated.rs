@@ -14,12 +14,17 @@ pub(super) fn mds_hr(count: u64, seed: u64) -> Result<DataSet<f32>> {
     if count == 0 {
         bail!("--generated must be at least 1");
     }
-    let (settings, bank, size) = (SceneSettings::mds_hr(), mdshr_bank(), square(TRAINED_SIDE)?);
+    scenes(&SceneSettings::mds_hr(), count, seed)
+}
+
+/// `count` scenes of the shapes of MDS-HR as a data set without pictures.
+pub(super) fn scenes(settings: &SceneSettings, count: u64, seed: u64) -> Result<DataSet<f32>> {
+    let (bank, size) = (mdshr_bank(), square(TRAINED_SIDE)?);
     let place = Place::file(&PathBuf::from("generated"));
     let sample = |index| Sample {
         stem: format!("{index:05}"),
         image: PathBuf::new(),
-        scene: Some((SceneJson::from_scene(&sample_scene(&settings, &bank, size, seed, index), size), place.clone())),
+        scene: Some((SceneJson::from_scene(&sample_scene(settings, &bank, size, seed, index), size), place.clone())),
         labels: None,
     };
     Ok(DataSet { samples: (0..count).map(sample).collect(), bank })

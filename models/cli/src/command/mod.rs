@@ -11,6 +11,8 @@ mod generated;
 mod gradients;
 mod html;
 mod options;
+mod parsimony;
+mod pictures;
 mod progress;
 mod prototypes;
 mod render;
@@ -60,6 +62,7 @@ enum Command {
     Gradients(gradients::Arguments),
     Stability(stability::Arguments),
     Chart(chart::Arguments),
+    Parsimony(parsimony::Arguments),
 }
 
 /// Runs the command with the arguments `args` (the program's name first) and returns its exit code.
@@ -96,5 +99,6 @@ fn dispatch(command: Command, console: &mut Console<'_>) -> Result<Outcome> {
         Command::Gradients(arguments) => gradients::run(&arguments, console),
         Command::Stability(arguments) => stability::run(&arguments, console),
         Command::Chart(arguments) => chart::run(&arguments, console),
+        Command::Parsimony(arguments) => parsimony::run(&arguments, console),
     }
 }

@@ -4,8 +4,8 @@ use anyhow::Result;
 use dvp_core::render::{DenseRenderer, EdgeProfile, PixelLoss, TensorDrawing};
 use dvp_core::tensor::{Backend, Host, HostDevice, Tensor};
 
-use super::pictures::Picture;
 use super::renderers::{Candidate, Paints, Sample, timed_ms};
+use crate::command::pictures::Picture;
 use crate::method::Precision;
 use crate::paint::Painter;
 

@@ -6,7 +6,7 @@ use anyhow::Result;
 use dvp_fit::Bank;
 use dvp_net::propose::Proposer;
 
-use super::pictures::Picture;
+use crate::command::pictures::Picture;
 use crate::command::progress;
 use crate::command::score::{Score, Scratch, Truth, score};
 use crate::command::statistics::Quartiles;

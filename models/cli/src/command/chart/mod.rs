@@ -3,7 +3,6 @@
 //! | file | does |
 //! |---|---|
 //! | `settings` | which methods run, with which settings |
-//! | `pictures` | the images that they run on |
 //! | `methods` | runs them by turns |
 //! | `renderers`, `dense` | times and errors of the renderers |
 //! | `pareto` | what nothing beats in both |
@@ -17,7 +16,6 @@ mod figures;
 mod methods;
 mod page;
 mod pareto;
-mod pictures;
 mod published;
 mod renderers;
 mod report;
@@ -31,7 +29,7 @@ use clap::Args;
 
 use self::page::Page;
 use self::report::{Report, renderers_csv};
-use super::{Console, Outcome, generated};
+use super::{Console, Outcome, generated, html, pictures};
 use crate::format::{DEFAULT_MAX_PIXELS, DataSet, read_npy, write_atomic};
 use crate::method::load_network;
 use crate::paint::RendererName;
@@ -123,7 +121,7 @@ pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Ou
     }
     let page = Page {
         command: arguments.command(),
-        machine: arguments.machine.clone().unwrap_or_else(page::machine),
+        machine: arguments.machine.clone().unwrap_or_else(html::machine),
         images: pictures.len(),
         seconds: clock.elapsed().as_secs_f64(),
         report: &report,

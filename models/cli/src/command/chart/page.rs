@@ -4,7 +4,7 @@ use core::fmt::Write as _;
 
 use super::renderers::Rendered;
 use super::report::{Report, renderers_csv};
-use crate::command::html::{END, begin, escaped};
+use crate::command::html::{END, begin, escaped, inline, table};
 
 /// What the page tells.
 pub(super) struct Page<'a> {
@@ -16,12 +16,6 @@ pub(super) struct Page<'a> {
     pub(super) renderers: &'a [Rendered],
     /// SVG.
     pub(super) charts: &'a [String],
-}
-
-/// The machine, as far as the program knows it.
-pub(super) fn machine() -> String {
-    let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    format!("{} on {}, {cores} cores", std::env::consts::ARCH, std::env::consts::OS)
 }
 
 impl Page<'_> {
@@ -59,19 +53,4 @@ impl Page<'_> {
         html += &table(&csv.lines().map(|line| line.split(',').map(str::to_owned).collect()).collect::<Vec<_>>());
         html + END
     }
-}
-
-/// The drawing without what only a file of its own needs.
-fn inline(svg: &str) -> &str {
-    svg.find("<svg").map_or(svg, |at| &svg[at..])
-}
-
-fn table(cells: &[Vec<String>]) -> String {
-    let mut html = "<div class=\"wide\"><table>\n".to_owned();
-    for (k, row) in cells.iter().enumerate() {
-        let tag = if k == 0 { "th" } else { "td" };
-        let row: String = row.iter().map(|cell| format!("<{tag}>{}</{tag}>", escaped(cell))).collect();
-        html += &format!("<tr>{row}</tr>\n");
-    }
-    html + "</table></div>\n"
 }

@@ -14,7 +14,7 @@ use dvp_core::shape::OutlineBasis;
 use dvp_core::{Drawing, DrawingGrad, Image, Real, Scene, SceneGrad};
 
 use super::dense;
-use super::pictures::Picture;
+use crate::command::pictures::Picture;
 use crate::command::statistics::{Quartiles, mean};
 use crate::method::{Precision, cast_scene};
 

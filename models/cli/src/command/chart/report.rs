@@ -1,12 +1,12 @@
 //! Rows with their place on the fronts: CSV, JSON, a table, and what a budget buys.
 
-use comfy_table::{Table, presets};
 use serde_json::{Value, json};
 
 use super::methods::Charted;
 use super::pareto::{front, within};
 use super::published::PUBLISHED;
 use super::renderers::Rendered;
+use crate::command::html::text_table;
 use crate::method::{Method, Precision, Setting, Start};
 
 /// Budgets per image that are answered, ms.
@@ -166,14 +166,7 @@ impl Report {
     }
 
     pub(super) fn table(&self) -> String {
-        let mut table = Table::new();
-        table.load_style(presets::UTF8_HORIZONTAL_ONLY);
-        let mut cells = self.cells().into_iter();
-        if let Some(header) = cells.next() {
-            table.set_header(header);
-        }
-        table.add_rows(cells);
-        table.trim_fmt()
+        text_table(self.cells())
     }
 }
 

@@ -1,15 +1,17 @@
-//! The images that are charted on.
+//! Images painted from true scenes, for reports to run methods on.
 
 use anyhow::{Context, Result};
 use dvp_core::{Image, ImageSize, Scene};
 use dvp_net::propose::TRAINED_SIDE;
 
-use crate::command::options::square;
-use crate::command::statistics::mean;
+use super::options::square;
+use super::statistics::mean;
 use crate::format::{DataSet, Sample};
+use crate::generate;
 use crate::paint::{Painter, RendererName};
 
 /// An image and the scene that it was painted from.
+#[derive(Clone)]
 pub(super) struct Picture {
     pub(super) stem: String,
     pub(super) truth: Scene<f32>,
@@ -26,6 +28,16 @@ pub(super) fn painted(data: &DataSet<f32>, count: usize, renderer: RendererName)
         Ok(Picture { stem: sample.stem.clone(), image: painter.paint(&truth, size)?, truth })
     };
     data.samples.iter().take(count).map(picture).collect()
+}
+
+/// Pairs of objects of one prototype and color whose centers are `gap` apart.
+pub(super) fn twins(gap: f32, count: u64) -> Result<Vec<Picture>> {
+    let (painter, size) = (Painter { renderer: RendererName::Triangles, ..Painter::default() }, square(TRAINED_SIDE)?);
+    let picture = |index| {
+        let truth = generate::twins(gap, index);
+        Ok(Picture { stem: format!("twins-{index:05}"), image: painter.paint(&truth, size)?, truth })
+    };
+    (0..count).map(picture).collect()
 }
 
 /// The first `count` scenes of a data set with these images.
