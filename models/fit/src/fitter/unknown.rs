@@ -10,7 +10,7 @@ use dvp_core::{Efd, Object, Real};
 use super::run::{Care, Found, FoundObject, Run};
 use crate::free::conic::ellipse_through;
 use crate::free::foot::{EdgeLanes, foot};
-use crate::free::grow::{Freedom, GrowSettings, Grown, grow, hold, hold_outside};
+use crate::free::grow::{Freedom, GrowSettings, Grown, Thrift, grow, hold, hold_outside};
 use crate::free::repeat::complete;
 use crate::free::sight::Sight;
 use crate::free::start::{shrink, trace};
@@ -161,6 +161,8 @@ impl<T: Real> Run<'_, T> {
             vertex_count: REFERENCE_VERTICES,
             max_harmonics,
             freedom,
+            // Pieces and the whole are compared alike.
+            thrift: if guess == Guess::Shortest { Thrift::Foretold } else { Thrift::Fitted },
             noise,
             prices: self.fitter.options.prices,
         };

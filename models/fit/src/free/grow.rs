@@ -11,6 +11,8 @@ use super::polygon_fit::{PolygonScratch, move_vertices, transform};
 use crate::price::{Prices, misfit_bits};
 use crate::segment::EdgeSample;
 
+/// Numbers of harmonics that a forecast chooses among, beside all of them.
+const FORECAST: [usize; 10] = [2, 3, 4, 6, 8, 10, 12, 16, 20, 24];
 /// Numbers of harmonics that are tried before all of them: steps of four, as a square gains at every fourth.
 const LADDER: [usize; 7] = [3, 6, 10, 14, 18, 22, 26];
 /// A number that is foretold to gain less than this share of what is missed is left out: more may gain it at once.
@@ -40,12 +42,23 @@ pub(crate) enum Freedom {
     None,
 }
 
+/// How [`grow`] finds out how many harmonics pay.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Thrift {
+    /// By fitting more and more of them.
+    Fitted,
+    /// By what vertices that stay where they are along the outline would miss: one fit, of more harmonics than are needed. For
+    /// comparing outlines: it asks for as many of a whole as of its pieces.
+    Foretold,
+}
+
 /// Settings of [`grow`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct GrowSettings<T> {
     pub(crate) vertex_count: usize,
     pub(crate) max_harmonics: usize,
     pub(crate) freedom: Freedom,
+    pub(crate) thrift: Thrift,
     /// Noise of a pixel value that the weights of the samples refer to.
     pub(crate) noise: T,
     pub(crate) prices: Prices,
@@ -72,7 +85,7 @@ pub(crate) fn grow<T: Real>(
     settings: GrowSettings<T>,
     scratch: &mut GrowScratch<T>,
 ) -> Option<Grown<T>> {
-    let GrowSettings { vertex_count, max_harmonics, freedom, noise, prices } = settings;
+    let GrowSettings { vertex_count, max_harmonics, freedom, thrift, noise, prices } = settings;
     let price = |harmonics| T::of(prices.equal_bits(harmonics));
     if freedom != Freedom::Full {
         let GrowScratch { polygon, vertices, .. } = scratch;
@@ -105,6 +118,17 @@ pub(crate) fn grow<T: Real>(
         move_vertices(vertices, samples, T::of(0.5), noise, POLYGON_STEPS, polygon);
         let outline = transform(vertices, basis, max_harmonics);
         let missed = cut_bits(&outline, samples, basis, &settings);
+        if thrift == Thrift::Foretold {
+            let numbers = FORECAST.into_iter().filter(|&harmonics| harmonics < max_harmonics);
+            let foretold = |harmonics: usize| price(harmonics) + missed[harmonics];
+            let cut = numbers.fold(max_harmonics, |a, b| if foretold(b) < foretold(a) { b } else { a });
+            let tried = fit(&outline, cut, &[0.5], outline_scratch);
+            if tried.bits < best.bits {
+                best = tried;
+            }
+            best.steps = steps + 2 + POLYGON_STEPS;
+            return Some(best);
+        }
         let (mut last, mut failures) = (1, 0);
         for harmonics in LADDER.into_iter().filter(|&harmonics| harmonics < max_harmonics) {
             let gain = missed[last] - missed[harmonics];

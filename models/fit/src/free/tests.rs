@@ -5,7 +5,7 @@ use dvp_core::contour::signed_area;
 
 use super::basis::Basis;
 use super::conic::ellipse_through;
-use super::grow::{Freedom, GrowScratch, GrowSettings, Grown, grow};
+use super::grow::{Freedom, GrowScratch, GrowSettings, Grown, Thrift, grow};
 use super::outline_fit::{FreeOutline, OutlineScratch, OutlineSettings, expand, gather};
 use super::repeat::complete;
 use crate::Completion;
@@ -94,6 +94,7 @@ fn grown(outline: &FreeOutline<f64>) -> Grown<f64> {
         vertex_count: VERTICES,
         max_harmonics: 31,
         freedom: Freedom::Full,
+        thrift: Thrift::Fitted,
         noise: 0.003,
         prices: Prices::default(),
     };

@@ -31,7 +31,7 @@ fn prototypes_cost_their_choice_and_shapes_their_harmonics() {
     assert!((spent.bits - (24.0 + 2.0 * 74.0)).abs() < 1e-9 && spent.harmonics.is_nan());
     let price = Price::of(&scene, square(128).unwrap(), 4).unwrap();
     let free = price.by(Law::Free);
-    assert!(free.harmonics >= 1.0 && free.harmonics < 31.0, "{free:?}");
+    assert!((1.0..=31.0).contains(&free.harmonics), "{free:?}");
     assert!(free.bits <= price.own_bits);
 }
 
