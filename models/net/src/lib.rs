@@ -21,6 +21,7 @@
 //! | [`detr`] | [`ConditionalDetr`](detr::ConditionalDetr): features to one latent per object slot |
 //! | [`model`] | [`Model`](model::Model): the whole, with its seven heads |
 //! | [`scene_steps`] | predicted scenes painted and judged by the core's differentiable steps |
+//! | `there` | which slots of a predicted scene are objects: where the model is in doubt, the picture decides |
 //! | [`optimize`] | OptZ and Rand-OptZ: scenes sought in the space of latents |
 //! | [`propose`] | [`Proposer`](propose::Proposer): a trained model that reads pictures of any size, on the host |
 //! | [`train`] | modes, steps of training, checkpoints |
@@ -41,5 +42,6 @@ pub mod model;
 pub mod optimize;
 pub mod propose;
 pub mod scene_steps;
+mod there;
 pub mod train;
 pub mod weights;

@@ -8,14 +8,12 @@
 //! |---|---|
 //! | `mod` | [`Proposer`] |
 //! | `square` | a picture on the square, and poses back to the units of the picture |
-//! | `there` | which slots of a scene are objects |
 //! | `built_in` | [`BUILT_IN`]: weights that come with the program |
 
 mod built_in;
 mod square;
 #[cfg(test)]
 mod tests;
-mod there;
 
 use dvp_core::render::EdgeProfile;
 use dvp_core::shape::PrototypeBank;
@@ -30,6 +28,7 @@ use crate::layers::Phase;
 use crate::model::{Latents, Model, ModelConfig};
 use crate::optimize::{OptZ, Optimum, random_latents};
 use crate::scene_steps::{SceneSteps, image_tensor};
+use crate::there::there;
 use crate::train::Checkpoint;
 use crate::weights::Weights;
 
@@ -106,7 +105,7 @@ impl Proposer {
     pub fn objects(&self, image: ImageView<'_, f32>) -> Result<Scene<f32>, NetError> {
         let (square, target) = Square::of(image, TRAINED_SIDE)?;
         let mut scene = self.scene(&self.latents(&target)?)?;
-        let slots = there::there(&scene, &target, &self.painter)?;
+        let slots = there(&scene, &target, &self.painter)?;
         scene.objects = slots.into_iter().map(|slot| self.as_object(&scene.objects[slot])).collect();
         Ok(square.to_picture(scene))
     }
@@ -120,7 +119,7 @@ impl Proposer {
         let (square, target) = Square::of(image, TRAINED_SIDE)?;
         let latents = self.latents(&target)?;
         let scene = self.scene(&latents)?;
-        let mut slots = there::there(&scene, &target, &self.painter)?;
+        let mut slots = there(&scene, &target, &self.painter)?;
         if slots.is_empty() {
             let confidence = |&slot: &usize| scene.objects[slot].confidence;
             slots.extend((0..scene.objects.len()).max_by(|a, b| confidence(a).total_cmp(&confidence(b))));

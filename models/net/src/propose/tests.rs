@@ -4,7 +4,6 @@ use dvp_core::tensor::HostDevice;
 use dvp_core::{Image, ImageSize, Object, Pose, Real, Scene};
 
 use super::square::Square;
-use super::there::there;
 use super::*;
 use crate::train::{Judge, Mode, Schedule, Trainer};
 

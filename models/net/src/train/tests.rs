@@ -5,6 +5,8 @@ use dvp_core::scene::{Object, Pose};
 use dvp_core::shape::mdshr_bank;
 use dvp_core::tensor::{Host, HostDevice, Parameters, Tensor};
 use dvp_core::{Image, ImageSize, Real, Scene};
+use rand::SeedableRng as _;
+use rand_chacha::ChaCha8Rng;
 
 use super::{Batch, Checkpoint, Judge, Mode, Schedule, Trainer};
 use crate::error::NetError;
@@ -66,6 +68,24 @@ fn a_few_scenes_are_learned_by_heart() {
     }
     let last = trainer.step(&batch).unwrap();
     assert!(last.loss < first / 4.0 && last.number == 82, "{first} -> {last:?}");
+}
+
+#[test]
+fn what_is_seen_twice_is_dreamed_once_and_what_the_picture_lacks_never() {
+    let Batch { images, scenes, .. } = batch::<f32>(1);
+    let judge = judge(Mode::TiTp, &ModelConfig::tiny());
+    let mut seen = scenes[0].clone();
+    let object = seen.objects[0].clone();
+    let aside = Pose { translation: [object.pose.translation[0] + 0.01, object.pose.translation[1]], ..object.pose };
+    let elsewhere = Pose { translation: [0.8, 0.2], ..object.pose };
+    seen.objects.push(Object { pose: aside, confidence: 0.97, ..object.clone() });
+    seen.objects.push(Object { pose: elsewhere, confidence: 0.6, ..object.clone() });
+    judge.dream(&mut seen, &images[0], &mut ChaCha8Rng::seed_from_u64(2)).unwrap();
+    assert_eq!(seen.objects.len(), 1);
+    let dreamed = &seen.objects[0];
+    assert_eq!(dreamed.pose.translation, object.pose.translation);
+    assert_ne!(dreamed.pose.rotation, object.pose.rotation);
+    assert_eq!(dreamed.prototype.map(|k| &judge.bank.prototypes()[k]), Some(&dreamed.efd));
 }
 
 #[test]

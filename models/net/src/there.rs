@@ -2,43 +2,44 @@
 //!
 //! The model says how sure it is of each; where it is in doubt, the picture decides: an object is there if painting it pays.
 
-use dvp_core::{Image, Object, Scene};
+use dvp_core::{Image, Object, Real, Scene};
 
 use crate::error::NetError;
 use crate::scene_steps::SceneSteps;
 
 /// Slots of a confidence between these are in doubt.
-const DOUBTFUL: [f32; 2] = [0.05, 0.95];
+const DOUBTFUL: [f64; 2] = [0.05, 0.95];
 /// An object pays if without it the squared error of the picture would be this many times as large.
 const PAYS: f64 = 1.03;
 /// Doubts are gone through at most so many times: what one object pays depends on the others.
 const ROUNDS: usize = 2;
 
 /// Two candidates stand for one thing if their centers are less than this apart, in units of the smaller scale...
-const SAME_PLACE: f32 = 0.35;
+const SAME_PLACE: f64 = 0.35;
 /// ... the larger scale is less than this many times the smaller ...
-const SAME_SCALE: f32 = 1.5;
+const SAME_SCALE: f64 = 1.5;
 /// ... and no channel of their colors differs by more than this.
-const SAME_COLOR: f32 = 0.15;
+const SAME_COLOR: f64 = 0.15;
 
 /// The slots of a scene that are objects of the picture `target`, in their order.
 ///
 /// # Errors
 /// As [`SceneSteps::paint`].
-pub(super) fn there(
-    scene: &Scene<f32>,
-    target: &Image<f32>,
-    painter: &SceneSteps<f32>,
+pub(crate) fn there<T: Real>(
+    scene: &Scene<T>,
+    target: &Image<T>,
+    painter: &SceneSteps<T>,
 ) -> Result<Vec<usize>, NetError> {
     let mut slots = without_doubles(&scene.objects);
-    slots.retain(|&slot| scene.objects[slot].confidence > DOUBTFUL[0]);
+    let sure = |slot: usize| scene.objects[slot].confidence.to_f64();
+    slots.retain(|&slot| sure(slot) > DOUBTFUL[0]);
     // Nothing is painted of an object without confidence.
     let opaque = |&slot: &usize| {
         let object = &scene.objects[slot];
-        Object { confidence: if object.confidence > 0.5 { 1.0 } else { 0.0 }, ..object.clone() }
+        Object { confidence: if sure(slot) > 0.5 { T::one() } else { T::zero() }, ..object.clone() }
     };
     let mut tried = Scene { objects: slots.iter().map(opaque).collect(), ..scene.clone() };
-    let confidence = |at: usize| scene.objects[slots[at]].confidence;
+    let confidence = |at: usize| sure(slots[at]);
     let mut doubts: Vec<usize> = (0..slots.len()).filter(|&at| confidence(at) < DOUBTFUL[1]).collect();
     // The least certain first.
     doubts.sort_by(|&a, &b| (confidence(a) - 0.5).abs().total_cmp(&(confidence(b) - 0.5).abs()));
@@ -47,9 +48,9 @@ pub(super) fn there(
         let mut changed = false;
         for &at in &doubts {
             let before = tried.objects[at].confidence;
-            tried.objects[at].confidence = 1.0 - before;
+            tried.objects[at].confidence = T::one() - before;
             let other = squared_error(&tried, target, painter)?;
-            let was_there = before > 0.5;
+            let was_there = before == T::one();
             let (with, without) = if was_there { (error, other) } else { (other, error) };
             if (without > PAYS * with) == was_there {
                 tried.objects[at].confidence = before;
@@ -61,18 +62,18 @@ pub(super) fn there(
             break;
         }
     }
-    Ok((0..slots.len()).filter(|&at| tried.objects[at].confidence > 0.5).map(|at| slots[at]).collect())
+    Ok((0..slots.len()).filter(|&at| tried.objects[at].confidence == T::one()).map(|at| slots[at]).collect())
 }
 
-fn squared_error(scene: &Scene<f32>, target: &Image<f32>, painter: &SceneSteps<f32>) -> Result<f64, NetError> {
+fn squared_error<T: Real>(scene: &Scene<T>, target: &Image<T>, painter: &SceneSteps<T>) -> Result<f64, NetError> {
     let painted = painter.paint(scene, target.size())?;
-    Ok(painted.data().iter().zip(target.data()).map(|(a, b)| f64::from(a - b).powi(2)).sum())
+    Ok(painted.data().iter().zip(target.data()).map(|(a, b)| (*a - *b).to_f64().powi(2)).sum())
 }
 
 /// Of candidates for one thing the most confident, the first of equals; in their order.
-fn without_doubles(objects: &[Object<f32>]) -> Vec<usize> {
+fn without_doubles<T: Real>(objects: &[Object<T>]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..objects.len()).collect();
-    order.sort_by(|&a, &b| objects[b].confidence.total_cmp(&objects[a].confidence));
+    order.sort_by(|&a, &b| objects[b].confidence.to_f64().total_cmp(&objects[a].confidence.to_f64()));
     let mut kept: Vec<usize> = Vec::with_capacity(order.len());
     for candidate in order {
         if !kept.iter().any(|&other| is_double(&objects[candidate], &objects[other])) {
@@ -83,12 +84,12 @@ fn without_doubles(objects: &[Object<f32>]) -> Vec<usize> {
     kept
 }
 
-fn is_double(one: &Object<f32>, other: &Object<f32>) -> bool {
+fn is_double<T: Real>(one: &Object<T>, other: &Object<T>) -> bool {
     let [a, b] = [one, other].map(|object| object.pose);
-    let apart = (a.translation[0] - b.translation[0]).hypot(a.translation[1] - b.translation[1]);
-    let (smaller, larger) = (a.scale.min(b.scale), a.scale.max(b.scale));
+    let apart = (a.translation[0] - b.translation[0]).hypot(a.translation[1] - b.translation[1]).to_f64();
+    let [smaller, larger] = [a.scale.min(b.scale), a.scale.max(b.scale)].map(T::to_f64);
     let colors = one.color.iter().zip(&other.color);
     apart < SAME_PLACE * smaller
         && larger < SAME_SCALE * smaller
-        && colors.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max) < SAME_COLOR
+        && colors.map(|(a, b)| (*a - *b).to_f64().abs()).fold(0.0, f64::max) < SAME_COLOR
 }
