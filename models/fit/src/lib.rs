@@ -46,7 +46,7 @@ mod verdict;
 
 use alloc::vec::Vec;
 
-use dvp_core::Scene;
+use dvp_core::{Drawing, ImageView, Real, Scene};
 
 pub use fitter::{FitScratch, Fitter, fit_image};
 pub use options::{Bank, FitError, FitOptions};
@@ -160,6 +160,28 @@ pub struct Fit<T> {
     pub noise: T,
     /// Description length of the scene and what it leaves unexplained, in bits.
     pub bits: f64,
+}
+
+impl<T: Real> Fit<T> {
+    /// A scene of any origin, drawn as `drawing` and painted as `painted` (planar, as long as the image's data): what it
+    /// leaves unexplained and what its objects buy. It knows neither loss (NaN) nor steps (0, at their limit), covariance,
+    /// ambiguity or description length (NaN).
+    #[must_use]
+    pub fn of_painted(scene: Scene<T>, drawing: &Drawing<T>, image: &ImageView<'_, T>, painted: &[T]) -> Self {
+        let Unexplained { share, noise, variance, .. } = Unexplained::of(image, painted);
+        Self {
+            loss: T::nan(),
+            steps: 0,
+            stop: StopReason::StepLimit,
+            covariance: Vec::new(),
+            ambiguity: Vec::new(),
+            unexplained: share,
+            buys: buys::buys(drawing, image, scene.compositing, variance),
+            noise,
+            bits: f64::NAN,
+            scene,
+        }
+    }
 }
 
 impl<T> Fit<T> {

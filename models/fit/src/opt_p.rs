@@ -1,13 +1,13 @@
 //! OptP: Adam on pose and color from a given start, the paper's refinement of a predicted scene.
 
-use alloc::vec::Vec;
+use alloc::vec;
 
 use dvp_core::render::{PixelLoss, Renderer};
 use dvp_core::{ImageView, Real, Scene};
 
+use crate::Fit;
 use crate::adam::descent::{Descent, DescentError, Outcome, Stage};
 use crate::parameters::Free;
-use crate::{Fit, StopReason, Unexplained};
 
 /// Settings of OptP; the defaults are the paper's.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,7 +56,7 @@ impl OptP {
     }
 }
 
-/// A fit that knows neither covariance nor ambiguity nor description length, but what it leaves unexplained.
+/// What a descent came to.
 pub(crate) fn fit_of<T: Real, R: Renderer<T>>(
     descent: &mut Descent<'_, T, R>,
     image: ImageView<'_, T>,
@@ -64,17 +64,7 @@ pub(crate) fn fit_of<T: Real, R: Renderer<T>>(
     outcome: Outcome<T>,
     steps: usize,
 ) -> Result<Fit<T>, DescentError> {
-    let Unexplained { share, noise, .. } = descent.unexplained(&scene, image)?;
-    Ok(Fit {
-        scene,
-        loss: outcome.loss,
-        steps,
-        stop: StopReason::StepLimit,
-        covariance: Vec::new(),
-        ambiguity: Vec::new(),
-        unexplained: share,
-        buys: Vec::new(),
-        noise,
-        bits: f64::NAN,
-    })
+    let mut painted = vec![T::zero(); image.data().len()];
+    descent.paint(&scene, image, &mut painted)?;
+    Ok(Fit { loss: outcome.loss, steps, ..Fit::of_painted(scene, descent.drawing(), &image, &painted) })
 }

@@ -139,6 +139,8 @@ pub struct Unexplained<T> {
     pub share: f64,
     /// Standard deviation of a channel that was taken for noise: at least the rounding of 8 bits.
     pub noise: T,
+    /// The picture's variance without that noise, as a sum of squares over all values.
+    pub variance: f64,
     /// Bits of what is left at that noise: half the squared largest channel difference of each pixel in units of the noise, in
     /// base 2, at most 24 per pixel.
     pub bits: f64,
@@ -151,7 +153,8 @@ impl<T: Real> Unexplained<T> {
         let noise = noise_level(image, &mut Vec::new()).max(T::of(PIXEL_NOISE));
         let mut residual = Residual::default();
         residual.measure(image, painted);
-        Self { share: Residual::unexplained(image, painted, noise).0, noise, bits: residual.bits(noise) }
+        let (share, variance) = Residual::unexplained(image, painted, noise);
+        Self { share, noise, variance, bits: residual.bits(noise) }
     }
 }
 

@@ -3,7 +3,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use dvp_core::render::{ContourRenderer, Renderer};
+use dvp_core::render::{Compositing, ContourRenderer, Renderer};
 use dvp_core::shape::OutlineBasis;
 use dvp_core::{Drawing, Efd, Image, ImageSize, Object, Pose, Scene};
 
@@ -182,6 +182,8 @@ fn faint_objects_are_objects() {
 fn doubts_by_hand() {
     let fit = fit_image(faint_disks(100.0).view(), &FitOptions::default()).unwrap();
     assert_eq!((fit.scene.objects.len(), fit.doubts()), (2, Doubts::default()));
+    let few = fit_image(faint_disks(4.0).view(), &FitOptions::default()).unwrap();
+    assert!(few.doubts().faint && !few.doubts().redundant);
     // A deviation of a tenth of the radius, 10 px of 64.
     let mut wide = fit.clone();
     wide.covariance[1][5] = (0.1_f64 * 10.0 / 64.0).powi(2);
@@ -197,4 +199,39 @@ fn doubts_by_hand() {
     assert!(
         Fit { unexplained: 0.02, ..fit.clone() }.doubts().any() && !Fit { unexplained: f64::NAN, ..fit }.doubts().any()
     );
+}
+
+#[test]
+fn objects_that_may_be_one_too_many_are_doubted() {
+    let fit = fit_image(faint_disks(100.0).view(), &FitOptions::default()).unwrap();
+    let redundant = |change: &dyn Fn(&mut Fit<f64>)| {
+        let mut changed = fit.clone();
+        change(&mut changed);
+        assert_eq!(changed.doubts(), Doubts { redundant: changed.doubts().redundant, ..Doubts::default() });
+        changed.doubts().redundant
+    };
+    assert!(!redundant(&|_| {}));
+    assert!(redundant(&|fit| fit.buys[1] = 9e-4));
+    assert!(redundant(&|fit| fit.buys[0] = -0.1));
+    // The second disk beside the first one, in its color or in another.
+    let moved = |fit: &mut Fit<f64>, apart: f64| {
+        let [x, y] = fit.scene.objects[0].pose.translation;
+        fit.scene.objects[1].pose.translation = [x + apart * fit.scene.objects[0].pose.scale, y];
+        fit.scene.objects[1].color = fit.scene.objects[0].color;
+    };
+    assert!(redundant(&|fit| moved(fit, 1.5)) && !redundant(&|fit| moved(fit, 4.0)));
+    assert!(!redundant(&|fit| {
+        moved(fit, 1.5);
+        fit.scene.objects[1].color[0] += 0.1;
+    }));
+    // A third one of the color that two others have where they overlap, if overlaps blend.
+    let third = |fit: &mut Fit<f64>, compositing| {
+        moved(fit, 1.5);
+        fit.scene.objects[1].color[0] += 0.2;
+        let mut between = fit.scene.objects[0].clone();
+        between.color[0] += 0.1;
+        fit.scene.objects.push(between);
+        fit.scene.compositing = compositing;
+    };
+    assert!(redundant(&|fit| third(fit, Compositing::Blend)) && !redundant(&|fit| third(fit, Compositing::Over)));
 }

@@ -1,9 +1,12 @@
-//! Whether a fit doubts itself: its covariance, ambiguities, stop reason and unexplained rest as yes or no.
+//! Whether a fit doubts itself: its covariance, ambiguities, stop reason, objects and unexplained rest as yes or no.
 
+use alloc::vec::Vec;
 use core::f64::consts::PI;
 
-use dvp_core::{Object, Real};
+use dvp_core::render::Compositing;
+use dvp_core::{Object, Real, Scene};
 
+use crate::segment::color::distance;
 use crate::{Ambiguity, Fit, StopReason};
 
 /// A standard deviation of the position, in radii of the object, or of the logarithm of its size, that is wide: either makes
@@ -13,6 +16,13 @@ const WIDE_SIZE: f64 = 0.05;
 
 /// Of a picture that a scene explains, less is left.
 const UNEXPLAINED: f64 = 0.01;
+
+/// An object that buys a smaller share of the picture's variance may as well not be there.
+const IDLE: f64 = 1e-3;
+/// Colors closer than this, in every channel, may be one.
+const ONE_COLOR: f64 = 0.02;
+/// Five steps of 8 bits: with less contrast, rounding hides what is wrong with an object from what is left unexplained.
+const FAINT: f64 = 5.0 / 255.0;
 
 /// What a fit says against itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -26,13 +36,31 @@ pub struct Doubts {
     pub stop: bool,
     /// More than a hundredth of the picture's variance is explained neither by the scene nor by noise.
     pub unexplained: bool,
+    /// There may be one object fewer: one buys less than a thousandth of the picture's variance, or touches another of its
+    /// color, or has the mean color of two others where overlaps blend.
+    pub redundant: bool,
+    /// The color of an object is less than five steps of 8 bits from that of the background.
+    pub faint: bool,
 }
 
 impl Doubts {
+    /// Every doubt with its name.
+    #[must_use]
+    pub fn named(self) -> [(&'static str, bool); 6] {
+        [
+            ("pose", self.pose),
+            ("ambiguity", self.ambiguity),
+            ("stop", self.stop),
+            ("unexplained", self.unexplained),
+            ("redundant", self.redundant),
+            ("faint", self.faint),
+        ]
+    }
+
     /// Whether there is one.
     #[must_use]
     pub fn any(self) -> bool {
-        self.pose || self.ambiguity || self.stop || self.unexplained
+        self.named().iter().any(|&(_, is)| is)
     }
 }
 
@@ -42,11 +70,10 @@ impl<T: Real> Fit<T> {
     pub fn doubts(&self) -> Doubts {
         let is_wide = |(block, object): (&[T; 16], &Object<T>)| {
             let [x, y, size] = [0, 5, 10].map(|k| block[k].as_f64().max(0.0));
-            let (scale, area) = (object.pose.scale.as_f64(), object.efd.signed_area().as_f64());
-            let squared_radius = scale * scale * area.abs() / PI;
-            x.max(y) > WIDE_POSITION * WIDE_POSITION * squared_radius || size > WIDE_SIZE * WIDE_SIZE
+            x.max(y) > WIDE_POSITION * WIDE_POSITION * squared_radius(object) || size > WIDE_SIZE * WIDE_SIZE
         };
         let is_open = |ambiguity: &Ambiguity| !matches!(ambiguity, Ambiguity::Symmetry { .. });
+        let is_faint = |object: &Object<T>| distance(object.color, self.scene.background) < T::of(FAINT);
         Doubts {
             pose: self.covariance.iter().zip(&self.scene.objects).any(is_wide),
             ambiguity: self.ambiguity.iter().any(is_open),
@@ -56,6 +83,34 @@ impl<T: Real> Fit<T> {
                 StopReason::Stalled | StopReason::NotFlat => true,
             },
             unexplained: self.unexplained > UNEXPLAINED,
+            redundant: self.buys.iter().any(|&share| share < IDLE) || may_be_fewer(&self.scene),
+            faint: self.scene.objects.iter().any(is_faint),
         }
     }
+}
+
+/// Squared radius of the disk that is as large as an object, scene units.
+fn squared_radius<T: Real>(object: &Object<T>) -> f64 {
+    let scale = object.pose.scale.as_f64();
+    scale * scale * object.efd.signed_area().as_f64().abs() / PI
+}
+
+/// Whether two objects may be one, or one what two others show where they overlap.
+fn may_be_fewer<T: Real>(scene: &Scene<T>) -> bool {
+    let objects = &scene.objects;
+    let radii: Vec<T> = objects.iter().map(|object| T::of(squared_radius(object)).sqrt()).collect();
+    let pairs = || (0..objects.len()).flat_map(|b| (0..b).map(move |a| (a, b)));
+    let touch = |a: usize, b: usize| {
+        let [p, q] = [a, b].map(|k| objects[k].pose.translation);
+        (p[0] - q[0]).hypot(p[1] - q[1]) < radii[a] + radii[b]
+    };
+    let is_like = |k: usize, color: [T; 3]| distance(objects[k].color, color) < T::of(ONE_COLOR);
+    let mean = |a: usize, b: usize| core::array::from_fn(|c| T::of(0.5) * (objects[a].color[c] + objects[b].color[c]));
+    let is_overlap = |a: usize, b: usize| {
+        let own = mean(a, b);
+        (0..objects.len()).any(|k| k != a && k != b && touch(a, k) && touch(k, b) && is_like(k, own))
+    };
+    pairs().any(|(a, b)| {
+        touch(a, b) && is_like(a, objects[b].color) || scene.compositing == Compositing::Blend && is_overlap(a, b)
+    })
 }

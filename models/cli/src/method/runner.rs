@@ -11,7 +11,7 @@ use dvp_fit::opt_iter::OptIter;
 use dvp_fit::opt_p::OptP;
 use dvp_fit::rand_opt_p::RandOptP;
 use dvp_fit::refine::{Refine, RefineScratch};
-use dvp_fit::{Bank, Fit, FitOptions, FitScratch, Fitter, StopReason, Unexplained};
+use dvp_fit::{Bank, Fit, FitOptions, FitScratch, Fitter};
 use dvp_net::optimize::{OptZ, Optimum};
 use dvp_net::propose::Proposer;
 use rand::SeedableRng as _;
@@ -254,19 +254,12 @@ pub fn timed<R>(work: impl FnOnce() -> Result<R>) -> Result<(R, Duration)> {
 
 /// A descent of latents, or a network alone, as a fit that doubts what it leaves unexplained; with the time it took.
 fn fit_of(image: ImageView<'_, f32>, (found, cpu): (Optimum<f32>, Duration)) -> Result<(Fit<f32>, Duration)> {
-    let painted = Painter::default().paint(&found.scene, image.size())?;
-    let Unexplained { share, noise, .. } = Unexplained::of(&image, painted.data());
+    let painter = Painter::default();
+    let (drawing, painted) = (painter.draw(&found.scene)?, painter.paint(&found.scene, image.size())?);
     let fit = Fit {
-        scene: found.scene,
         loss: f32::of(found.loss),
         steps: found.losses.len().saturating_sub(1),
-        stop: StopReason::StepLimit,
-        covariance: Vec::new(),
-        ambiguity: Vec::new(),
-        unexplained: share,
-        buys: Vec::new(),
-        noise,
-        bits: f64::NAN,
+        ..Fit::of_painted(found.scene, &drawing, &image, painted.data())
     };
     Ok((fit, cpu))
 }

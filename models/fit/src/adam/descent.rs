@@ -3,7 +3,6 @@
 //! In: a target image and a start. Out: the best scene met and its loss. One step is: draw, render with gradient, pull
 //! back, Adam, make admissible; nothing is allocated in it.
 
-use alloc::vec;
 use alloc::vec::Vec;
 
 use dvp_core::render::{PixelLoss, RenderError, Renderer};
@@ -13,7 +12,6 @@ use dvp_core::{Drawing, DrawingGrad, ImageView, Real, Scene, SceneGrad};
 use super::contour_length::mean_length_and_grad;
 use super::fixed_shapes::FixedShapes;
 use super::{Adam, AdamSettings};
-use crate::Unexplained;
 use crate::parameters::{Free, Parameters};
 use dvp_core::optim::{Plateau, PlateauSettings};
 
@@ -122,15 +120,9 @@ impl<'a, T: Real, R: Renderer<T>> Descent<'a, T, R> {
         Ok(self.renderer.render(&self.drawing, target.size(), &mut self.scratch, image)?)
     }
 
-    /// What `scene` leaves of `target`.
-    pub(crate) fn unexplained(
-        &mut self,
-        scene: &Scene<T>,
-        target: ImageView<'_, T>,
-    ) -> Result<Unexplained<T>, DescentError> {
-        let mut painted = vec![T::zero(); target.data().len()];
-        self.paint(scene, target, &mut painted)?;
-        Ok(Unexplained::of(&target, &painted))
+    /// The outlines last painted.
+    pub(crate) fn drawing(&self) -> &Drawing<T> {
+        &self.drawing
     }
 
     fn keep(&mut self) {

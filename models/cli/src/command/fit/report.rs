@@ -39,6 +39,8 @@ pub(super) struct FoundScene {
     buys: Vec<f64>,
     /// Objects, those that buy most first.
     ranking: Vec<usize>,
+    /// What the fit says against itself: `pose`, `ambiguity`, `stop`, `unexplained`, `redundant`, `faint`.
+    doubts: Vec<&'static str>,
     /// Standard deviation taken for noise; null for methods that do not estimate it.
     noise: Option<f32>,
     /// Description length; null for methods that do not count it.
@@ -105,6 +107,7 @@ impl FoundScene {
             unexplained: fit.unexplained.is_finite().then_some(fit.unexplained),
             buys: fit.buys.clone(),
             ranking: fit.ranking(),
+            doubts: fit.doubts().named().into_iter().filter_map(|(name, is)| is.then_some(name)).collect(),
             noise: fit.noise.is_finite().then_some(fit.noise),
             bits: fit.bits.is_finite().then_some(fit.bits),
             ambiguity: fit.ambiguity.iter().map(AmbiguityReport::of).collect(),

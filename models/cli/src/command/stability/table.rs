@@ -16,7 +16,7 @@ fn field(value: f64) -> String {
 
 /// The head of the table of runs.
 pub(super) const RUNS: &str = "sweep,level,method,picture,failure,iou,mae,ari,cpu_ms,stop,unexplained,\
-                               doubts_pose,doubts_ambiguity,doubts_stop,doubts_unexplained\n";
+                               doubts_pose,doubts_ambiguity,doubts_stop,doubts_unexplained,doubts_redundant,doubts_faint\n";
 
 /// The rows of a sweep in the table of runs.
 pub(super) fn runs(sweep: &Sweep, contenders: &[Contender], trials: &[Trial]) -> String {
@@ -27,7 +27,7 @@ pub(super) fn runs(sweep: &Sweep, contenders: &[Contender], trials: &[Trial]) ->
         let stop = own.stop.map_or_else(String::new, |stop| format!("{stop:?}"));
         let (level, method) = (sweep.levels[trial.level], &contenders[trial.contender].name);
         let numbers = [own.iou, own.mae, own.ari, own.cpu_ms].map(field).join(",");
-        let said = [doubts.pose, doubts.ambiguity, doubts.stop, doubts.unexplained].map(|v| u8::from(v).to_string());
+        let said = doubts.named().map(|(_, is)| u8::from(is).to_string());
         let _ = writeln!(
             text,
             "{},{level},{method},{},{failure},{numbers},{stop},{},{}",

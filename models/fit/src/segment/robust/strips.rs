@@ -98,6 +98,8 @@ fn is_between_any<T: Real>(zones: &[Zone<T>], at: usize, anchors: &[usize], tole
     pairs.any(|(a, b)| is_between(&zones[at], &zones[a], &zones[b], tolerance))
 }
 
+/// Rationale: however near the share is to 0 or 1. The tail of a soft edge has 2 % of the contrast, and noise of a step of 8
+/// bits lets it be a region.
 fn is_between<T: Real>(zone: &Zone<T>, a: &Zone<T>, b: &Zone<T>, tolerance: T) -> bool {
     let (share, off) = along(zone.color, a.color, b.color);
     let contrast = (0..3).map(|c| (b.color[c] - a.color[c]) * (b.color[c] - a.color[c])).sum::<T>().sqrt();
