@@ -31,7 +31,7 @@ pub(crate) fn there<T: Real>(
     painter: &SceneSteps<T>,
 ) -> Result<Vec<usize>, NetError> {
     let mut slots = without_doubles(&scene.objects);
-    let sure = |slot: usize| scene.objects[slot].confidence.to_f64();
+    let sure = |slot: usize| scene.objects[slot].confidence.as_f64();
     slots.retain(|&slot| sure(slot) > DOUBTFUL[0]);
     // Nothing is painted of an object without confidence.
     let opaque = |&slot: &usize| {
@@ -67,13 +67,13 @@ pub(crate) fn there<T: Real>(
 
 fn squared_error<T: Real>(scene: &Scene<T>, target: &Image<T>, painter: &SceneSteps<T>) -> Result<f64, NetError> {
     let painted = painter.paint(scene, target.size())?;
-    Ok(painted.data().iter().zip(target.data()).map(|(a, b)| (*a - *b).to_f64().powi(2)).sum())
+    Ok(painted.data().iter().zip(target.data()).map(|(a, b)| (*a - *b).as_f64().powi(2)).sum())
 }
 
 /// Of candidates for one thing the most confident, the first of equals; in their order.
 fn without_doubles<T: Real>(objects: &[Object<T>]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..objects.len()).collect();
-    order.sort_by(|&a, &b| objects[b].confidence.to_f64().total_cmp(&objects[a].confidence.to_f64()));
+    order.sort_by(|&a, &b| objects[b].confidence.as_f64().total_cmp(&objects[a].confidence.as_f64()));
     let mut kept: Vec<usize> = Vec::with_capacity(order.len());
     for candidate in order {
         if !kept.iter().any(|&other| is_double(&objects[candidate], &objects[other])) {
@@ -86,10 +86,10 @@ fn without_doubles<T: Real>(objects: &[Object<T>]) -> Vec<usize> {
 
 fn is_double<T: Real>(one: &Object<T>, other: &Object<T>) -> bool {
     let [a, b] = [one, other].map(|object| object.pose);
-    let apart = (a.translation[0] - b.translation[0]).hypot(a.translation[1] - b.translation[1]).to_f64();
-    let [smaller, larger] = [a.scale.min(b.scale), a.scale.max(b.scale)].map(T::to_f64);
+    let apart = (a.translation[0] - b.translation[0]).hypot(a.translation[1] - b.translation[1]).as_f64();
+    let [smaller, larger] = [a.scale.min(b.scale), a.scale.max(b.scale)].map(T::as_f64);
     let colors = one.color.iter().zip(&other.color);
     apart < SAME_PLACE * smaller
         && larger < SAME_SCALE * smaller
-        && colors.map(|(a, b)| (*a - *b).to_f64().abs()).fold(0.0, f64::max) < SAME_COLOR
+        && colors.map(|(a, b)| (*a - *b).as_f64().abs()).fold(0.0, f64::max) < SAME_COLOR
 }

@@ -103,5 +103,5 @@ fn is_between_any<T: Real>(zones: &[Zone<T>], at: usize, anchors: &[usize], tole
 fn is_between<T: Real>(zone: &Zone<T>, a: &Zone<T>, b: &Zone<T>, tolerance: T) -> bool {
     let (share, off) = along(zone.color, a.color, b.color);
     let contrast = (0..3).map(|c| (b.color[c] - a.color[c]) * (b.color[c] - a.color[c])).sum::<T>().sqrt();
-    share > T::of(0.03) && share < T::of(0.97) && off <= tolerance + T::of(0.1) * contrast
+    share > T::zero() && share < T::one() && off <= tolerance + T::of(0.1) * contrast
 }
