@@ -44,7 +44,7 @@ use crate::method::{Method, Tools, load_network};
 const PICTURES: u64 = 24;
 const QUICK_PICTURES: u64 = 4;
 /// Seconds that a run may take.
-const LIMIT: u64 = 60;
+const LIMIT: u64 = 180;
 const QUICK_LIMIT: u64 = 10;
 
 /// Methods that are tried unless others are asked for.
