@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Trains a model of the size `tiny` in every mode of the paper, the first steps of gp on two backends.
+# Trains a model of the size `cells` in every mode of the paper, on candle and on burn, and scores it.
 # Usage: tests/report/train_modes.sh DVP OUT    (DVP: the command, built with --features burn,candle)
 # A run that is there already goes on.
 set -euo pipefail
@@ -10,15 +10,21 @@ train() { # NAME OPTIONS...
     if [ -e "$out/$1/run.json" ]; then
         "$dvp" train --out "$out/$1" --resume
     else
-        "$dvp" train --out "$out/$1" --size tiny --learning-rate 0.002 --warm-up 200 --save-every 100 "${@:2}"
+        "$dvp" train --out "$out/$1" --size cells --rotation-weight 0.3 --scale-weight 5 --save-every 100 "${@:2}"
     fi
+    # The last weights: the best ones by the image error may be those of the start.
+    last=$(ls "$out/$1"/checkpoint-*.safetensors | tail -n 1)
+    "$dvp" evaluate --model "$last" --generated 256 --seed 4321
 }
 
-train gp-early --backend candle --mode gp --steps 500 --cosine false
-train gp --backend candle --mode gp --steps 1500
-train ti --backend candle --mode ti --steps 400
-train ti-plus --backend candle --mode ti+ --steps 400 --start "$out/gp-early/best.safetensors"
-train ti-tp --backend candle --mode ti-tp --steps 400 --start "$out/gp-early/best.safetensors"
-train tp --backend candle --mode tp --steps 400
-train gi --backend candle --mode gi --steps 400
-train gp-early-burn --backend burn --mode gp --steps 500 --cosine false
+nothing=(--learning-rate 0.0015 --warm-up 50)
+learned=(--learning-rate 0.0005 --warm-up 20 --steps 400 --seed 3 --start "$out/gp-candle/best.safetensors")
+for backend in candle burn; do
+    train gp-$backend --backend $backend --mode gp --steps 500 "${nothing[@]}"
+    for mode in ti gi tp; do
+        train $mode-$backend --backend $backend --mode $mode --steps 400 "${nothing[@]}"
+    done
+    for mode in gp ti+ ti-tp; do
+        train $mode-more-$backend --backend $backend --mode $mode "${learned[@]}"
+    done
+done

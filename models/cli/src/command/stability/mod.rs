@@ -45,7 +45,7 @@ const PICTURES: u64 = 24;
 const QUICK_PICTURES: u64 = 4;
 /// Seconds that a run may take.
 const LIMIT: u64 = 180;
-const QUICK_LIMIT: u64 = 10;
+const QUICK_LIMIT: u64 = 60;
 
 /// Methods that are tried unless others are asked for.
 const METHODS: [Method; 9] = [
