@@ -14,10 +14,8 @@ const PAYS: f64 = 1.03;
 /// Doubts are gone through at most so many times: what one object pays depends on the others.
 const ROUNDS: usize = 2;
 
-/// Two candidates stand for one thing if their centers are less than this apart, in units of the smaller scale...
-const SAME_PLACE: f64 = 0.35;
-/// ... the larger scale is less than this many times the smaller ...
-const SAME_SCALE: f64 = 1.5;
+/// Two candidates stand for one thing if their centers are less than this apart, in units of the sum of their scales...
+const SAME_PLACE: f64 = 0.7;
 /// ... and no channel of their colors differs by more than this.
 const SAME_COLOR: f64 = 0.15;
 
@@ -84,12 +82,13 @@ fn without_doubles<T: Real>(objects: &[Object<T>]) -> Vec<usize> {
     kept
 }
 
+/// Rationale: things of one color that overlap are rare, and look like one. Asking for nearly the same place and size as well
+/// leaves halves of one thing beside each other: of the weights that come with the program the exact count falls from .90 to
+/// .88, and what TI-TP dreams comes to hold twice as many objects as its pictures.
 fn is_double<T: Real>(one: &Object<T>, other: &Object<T>) -> bool {
     let [a, b] = [one, other].map(|object| object.pose);
-    let apart = (a.translation[0] - b.translation[0]).hypot(a.translation[1] - b.translation[1]).as_f64();
-    let [smaller, larger] = [a.scale.min(b.scale), a.scale.max(b.scale)].map(T::as_f64);
+    let apart = (a.translation[0] - b.translation[0]).hypot(a.translation[1] - b.translation[1]);
     let colors = one.color.iter().zip(&other.color);
-    apart < SAME_PLACE * smaller
-        && larger < SAME_SCALE * smaller
+    apart.as_f64() < SAME_PLACE * (a.scale + b.scale).as_f64()
         && colors.map(|(a, b)| (*a - *b).as_f64().abs()).fold(0.0, f64::max) < SAME_COLOR
 }

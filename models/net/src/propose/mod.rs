@@ -97,7 +97,7 @@ impl Proposer {
     }
 
     /// The objects of a picture: the slots that the model is sure of, and of the doubtful ones those that the picture is
-    /// painted better with, with confidence 1; of two that stand for one thing (nearly the same place, size and color) the
+    /// painted better with, with confidence 1; of two that stand for one thing (overlapping, of one color) the
     /// more confident; each with the shape of the prototype that weighs most in it, if shapes are mixed of prototypes.
     ///
     /// # Errors

@@ -138,16 +138,18 @@ fn one_thing_is_one_object() {
         object([0.50, 0.5], 0.20, red, 0.7),
         // The same thing: 0.02 beside, a fifth larger, hardly another color; more confident.
         object([0.52, 0.5], 0.24, [0.8, 0.25, 0.1], 0.97),
-        // Not the same: farther off, of another size, of another color.
-        object([0.60, 0.5], 0.20, red, 0.96),
-        object([0.52, 0.5], 0.10, red, 0.96),
+        // A half of it, and one beside it that it overlaps.
+        object([0.52, 0.4], 0.10, red, 0.96),
+        object([0.22, 0.5], 0.20, red, 0.96),
+        // Not the same: farther off, of another color.
+        object([0.20, 0.5], 0.20, red, 0.96),
         object([0.52, 0.5], 0.24, [0.8, 0.5, 0.1], 0.96),
         // Hardly there.
         object([0.1, 0.1], 0.2, red, 0.04),
     ];
     let scene = Scene { objects, ..Scene::empty([0.0; 3]) };
     // The model is sure: the picture is not asked.
-    assert_eq!(there(&scene, &Image::zeros(size(64, 64)), &painter()).unwrap(), [1, 2, 3, 4]);
+    assert_eq!(there(&scene, &Image::zeros(size(64, 64)), &painter()).unwrap(), [1, 4, 5]);
 }
 
 #[test]
