@@ -7,6 +7,7 @@ use std::path::Path;
 
 use dvp::format::mdshr_bank;
 use dvp::generate::{SceneSettings, sample_scene};
+use dvp::paint::{Painter, RendererName};
 use dvp_core::loss::ImagePair;
 use dvp_core::metric::{Ownership, Scores, Tally, visible_object_count};
 use dvp_core::render::{ContourRenderer, Renderer};
@@ -144,6 +145,20 @@ fn an_overlap_is_no_object() {
     let image = paint(&truth);
     let (scores, exact) = score(known(), &[(rounded(&image), image, truth)]);
     assert!(exact == 1 && scores.mae <= 1e-3, "{scores:?}");
+}
+
+/// An ellipse and a heart of which an overlap leaves a sliver: the color of so few pixels is not quite that of the object.
+#[test]
+fn a_sliver_is_no_object() {
+    let fitter = Fitter::new(FitOptions::default()).unwrap();
+    let size = ImageSize::new(SIDE, SIDE).unwrap();
+    let painter = Painter { renderer: RendererName::Triangles, ..Painter::default() };
+    for index in [110, 201] {
+        let truth = sample_scene(&SceneSettings::mds_hr(), &mdshr_bank(), size, 4321, index);
+        let image = painter.paint(&truth, size).unwrap();
+        let fit = fitter.fit(image.view(), &mut FitScratch::default()).unwrap();
+        assert_eq!(fit.scene.objects.len(), visible_object_count(&truth), "{index}");
+    }
 }
 
 #[test]

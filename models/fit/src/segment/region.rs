@@ -14,11 +14,16 @@ const NOISY_SAMPLES: usize = 4095;
 /// Standard deviation of a median in units of that of a mean.
 const MEDIAN_SPREAD: f64 = 1.25;
 
+/// Regions of fewer pixels have no core in which neighbors agree: their colors are those of pixels that edges reach.
+const CORE_PIXELS: usize = 32;
+/// How far edges move the color of a region that is all rim, by the number of its pixels.
+const RIM_COLOR: f64 = 0.08;
+
 /// A connected region of flat pixels.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Region<T> {
     pub(crate) color: [T; 3],
-    /// Standard deviation of each channel of the color that noise makes; 0 without noise.
+    /// Standard deviation of each channel of the color that noise makes, or edges nearby; 0 for large regions without noise.
     pub(crate) doubt: T,
     pub(crate) pixels: usize,
     /// Sums over pixel centers: x, y, xx, xy, yy (px).
@@ -92,6 +97,10 @@ pub(crate) fn measure<T: Real>(
         for c in 0..3 {
             region.color[c] = median_by(samples, |color| color[c]).unwrap_or_default();
         }
-        region.doubt = noise * T::of(MEDIAN_SPREAD) / T::of_usize(samples.len().max(1)).sqrt();
+        region.doubt = if noise > T::zero() || region.pixels >= CORE_PIXELS {
+            noise * T::of(MEDIAN_SPREAD) / T::of_usize(samples.len().max(1)).sqrt()
+        } else {
+            T::of(RIM_COLOR) / T::of_usize(region.pixels.max(1))
+        };
     }
 }
