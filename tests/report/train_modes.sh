@@ -1,16 +1,16 @@
 #!/usr/bin/env bash
-# Trains a model of the size `cells` in every mode of the paper, on candle and on burn, and scores it.
-# Usage: tests/report/train_modes.sh DVP OUT    (DVP: the command, built with --features burn,candle)
+# Trains a model in every mode of the paper, on candle and on burn, and scores it.
+# Usage: tests/report/train_modes.sh DVP OUT [SIZE]    (DVP: the command, built with --features burn,candle; SIZE: cells)
 # A run that is there already goes on.
 set -euo pipefail
-dvp=$1 out=$2
+dvp=$1 out=$2 size=${3:-cells}
 export RAYON_NUM_THREADS=1
 
 train() { # NAME OPTIONS...
     if [ -e "$out/$1/run.json" ]; then
         "$dvp" train --out "$out/$1" --resume
     else
-        "$dvp" train --out "$out/$1" --size cells --rotation-weight 0.3 --scale-weight 5 --save-every 100 "${@:2}"
+        "$dvp" train --out "$out/$1" --size "$size" --rotation-weight 0.3 --scale-weight 5 --save-every 100 "${@:2}"
     fi
     # The last weights: the best ones by the image error may be those of the start.
     last=$(ls "$out/$1"/checkpoint-*.safetensors | tail -n 1)

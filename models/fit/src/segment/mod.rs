@@ -49,7 +49,7 @@ pub(crate) const PIXEL_NOISE: f64 = 0.003;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Segment<T> {
     pub(crate) color: [T; 3],
-    /// Standard deviation of each channel of the color that noise makes; 0 without noise.
+    /// Standard deviation of each channel of the color, that of its surest region.
     pub(crate) doubt: T,
     /// Below 1 for translucent objects.
     pub(crate) confidence: T,

@@ -16,7 +16,8 @@ fn field(value: f64) -> String {
 
 /// The head of the table of runs.
 pub(super) const RUNS: &str = "sweep,level,method,picture,failure,iou,mae,ari,cpu_ms,stop,unexplained,\
-                               doubts_pose,doubts_ambiguity,doubts_stop,doubts_unexplained,doubts_redundant,doubts_faint\n";
+                               doubts_pose,doubts_ambiguity,doubts_stop,doubts_unexplained,\
+                               doubts_redundant,doubts_faint\n";
 
 /// The rows of a sweep in the table of runs.
 pub(super) fn runs(sweep: &Sweep, contenders: &[Contender], trials: &[Trial]) -> String {
