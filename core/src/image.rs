@@ -9,6 +9,7 @@ use core::fmt;
 
 use crate::dims::ImageSize;
 use crate::real::Real;
+use crate::simd;
 
 /// Color channels of every image.
 pub const CHANNELS: usize = 3;
@@ -100,8 +101,8 @@ impl<'a, T: Real> ImageView<'a, T> {
         if data.len() != expected {
             return Err(ImageError::Length { expected, len: data.len() });
         }
-        // The sum of v * 0 is 0 exactly if all are finite; one pass that vectorizes, then the search for the culprit.
-        if data.iter().map(|&v| v * T::zero()).sum::<T>().is_nan()
+        // A sum is finite only if all of it are: one pass that vectorizes. One that overflowed is looked through as well.
+        if !simd::sum(data).is_finite()
             && let Some(index) = data.iter().position(|v| !v.is_finite())
         {
             return Err(ImageError::NotFinite { index });

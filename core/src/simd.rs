@@ -83,3 +83,34 @@ pub fn lanes<T: Copy + Default, const N: usize>(f: impl Fn(usize) -> T) -> [T; N
     }
     lanes
 }
+
+/// Sums `values` in 16 parts side by side: a sum in order waits for each addition, and its rounding grows faster.
+///
+/// For use inside kernels and outside: it vectorizes for the instruction set of its caller.
+#[inline(always)]
+pub fn sum<T: crate::Real>(values: &[T]) -> T {
+    const LANES: usize = 16;
+    let (parts, rest) = values.as_chunks::<LANES>();
+    let mut sums = [T::zero(); LANES];
+    for part in parts {
+        sums = lanes(|i| sums[i] + part[i]);
+    }
+    let rest: T = rest.iter().copied().sum();
+    sums.into_iter().sum::<T>() + rest
+}
+
+#[cfg(test)]
+mod tests {
+    use alloc::vec::Vec;
+
+    use super::sum;
+
+    #[test]
+    fn a_sum_takes_every_value_once() {
+        for count in [0_u16, 1, 15, 16, 17, 100] {
+            let values: Vec<f32> = (1..=count).map(f32::from).collect();
+            let expected = f32::from(count) * f32::from(count + 1) / 2.0;
+            assert!((sum(&values) - expected).abs() < 1e-6, "{count}");
+        }
+    }
+}

@@ -52,6 +52,9 @@ pub trait Real:
     fn as_f32(self) -> f32;
     /// The value without its fraction; 0 for NaN and below 0, 2^31 - 1 (above any number of pixels) above it.
     fn to_count(self) -> usize;
+    /// The nearest whole number (of two as near, the even one) to one in [0, 2^22], without branches or calls, so that
+    /// loops over it vectorize; for all others some number or other.
+    fn round_lanes(self) -> u32;
     /// Numbers of this type as numbers of a type chosen at run time.
     fn into_values(values: Vec<Self>) -> Values;
     /// The way back; none if they are of the other type.
@@ -101,6 +104,11 @@ impl Real for f32 {
     #[inline(always)]
     fn to_count(self) -> usize {
         (self as i32).max(0) as usize
+    }
+    #[inline(always)]
+    fn round_lanes(self) -> u32 {
+        // Beside 2^23 the last bit of the fraction is worth 1.
+        (self + 8_388_608.0).to_bits() & 0x007f_ffff
     }
     fn into_values(values: Vec<Self>) -> Values {
         Values::F32(values)
@@ -167,6 +175,12 @@ impl Real for f64 {
     #[inline(always)]
     fn to_count(self) -> usize {
         (self as i32).max(0) as usize
+    }
+    #[expect(clippy::cast_possible_truncation, reason = "the number is in the lower bits")]
+    #[inline(always)]
+    fn round_lanes(self) -> u32 {
+        // As for f32, beside 2^52.
+        (self + 4_503_599_627_370_496.0).to_bits() as u32
     }
     fn into_values(values: Vec<Self>) -> Values {
         Values::F64(values)
@@ -237,5 +251,20 @@ mod tests {
             let exact = libm::exp(f64::from(y));
             assert!((f64::from(y.exp_lanes::<FUSED>()) - exact).abs() <= 3e-7 * exact, "f32 at {x}");
         }
+    }
+
+    #[test]
+    fn round_lanes_rounds() {
+        for whole in [1_u32, 2, 63, 64, 4095] {
+            for off in [-0.49, 0.0, 0.49] {
+                let x = f64::from(whole) + off;
+                assert_eq!((x.round_lanes(), f32::of(x).round_lanes()), (whole, whole), "{x}");
+            }
+        }
+        assert_eq!(
+            (0.0_f64.round_lanes(), 4_194_304.0_f64.round_lanes(), 4_194_304.0_f32.round_lanes()),
+            (0, 1 << 22, 1 << 22)
+        );
+        assert_eq!((0.49_f32.round_lanes(), 2.5_f64.round_lanes(), 3.5_f32.round_lanes()), (0, 2, 4));
     }
 }

@@ -8,11 +8,12 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use dvp_core::render::Compositing;
-use dvp_core::{Drawing, ImageView, Real};
+use dvp_core::{Drawing, ImageSize, ImageView, Real, simd};
 
-/// Where a row enters or leaves an object.
-#[derive(Clone, Copy, Debug)]
+/// Where a row enters or leaves an object: its first pixel with a center beyond the crossing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct Cut {
+    row: usize,
     column: usize,
     object: usize,
 }
@@ -37,21 +38,14 @@ pub(crate) fn squared_errors<T: Real>(
     compositing: Compositing,
 ) -> Vec<f64> {
     let size = image.size();
-    let unit = T::of_usize(size.unit_px());
-    let count = drawing.object_count();
-    let mut out = vec![0.0; count];
-    let rows: Vec<[usize; 2]> = (0..count).map(|k| rows_of(drawing.outline(k), unit, size.height())).collect();
-    let (mut cuts, mut active, mut crossings) = (Vec::new(), Vec::new(), Vec::new());
-    for y in 0..size.height() {
-        cuts.clear();
-        for (object, &[first, last]) in rows.iter().enumerate() {
-            if (first..last).contains(&y) {
-                crossings.clear();
-                cross(drawing.outline(object), unit, y, size.width(), &mut crossings);
-                cuts.extend(crossings.iter().map(|&column| Cut { column, object }));
-            }
-        }
-        cuts.sort_unstable_by_key(|cut| cut.column);
+    let mut out = vec![0.0; drawing.object_count()];
+    let mut cuts = Vec::new();
+    for object in 0..out.len() {
+        cut(drawing.outline(object), object, size, &mut cuts);
+    }
+    cuts.sort_unstable();
+    let mut active = Vec::new();
+    for cuts in cuts.chunk_by(|a, b| a.row == b.row) {
         active.clear();
         for (i, cut) in cuts.iter().enumerate() {
             // An object is left where it was entered.
@@ -65,8 +59,9 @@ pub(crate) fn squared_errors<T: Real>(
             if active.is_empty() || end <= cut.column {
                 continue;
             }
-            let pixels = y * size.width() + cut.column..y * size.width() + end;
-            let sums = [0, 1, 2].map(|c| image.channel(c)[pixels.clone()].iter().copied().sum::<T>().as_f64());
+            let line = cut.row * size.width();
+            let pixels = line + cut.column..line + end;
+            let sums = [0, 1, 2].map(|c| simd::sum(&image.channel(c)[pixels.clone()]).as_f64());
             let n = f64::of_usize(pixels.len());
             let shown = color(drawing, compositing, &active, None);
             for &object in &active {
@@ -88,23 +83,20 @@ pub(crate) fn ranking(values: &[f64]) -> Vec<usize> {
     ranked
 }
 
-/// First row whose centers an outline (scene units) may cover, and the last one plus 1.
-fn rows_of<T: Real>(outline: &[[T; 2]], unit: T, height: usize) -> [usize; 2] {
-    let (low, high) = outline
-        .iter()
-        .fold((T::infinity(), T::neg_infinity()), |(low, high), v| (low.min(v[1] * unit), high.max(v[1] * unit)));
-    [low.floor(), high.ceil()].map(|v| v.max(T::zero()).min(T::of_usize(height)).to_count())
-}
-
-/// First columns with their centers beyond each crossing of the outline with the middle of row `y`; an even number.
-fn cross<T: Real>(outline: &[[T; 2]], unit: T, y: usize, width: usize, crossings: &mut Vec<usize>) {
-    let half = T::of(0.5);
-    let middle = (T::of_usize(y) + half) / unit;
+/// Adds the crossings of a closed outline (scene units) with the middles of rows; an even number in each row.
+fn cut<T: Real>(outline: &[[T; 2]], object: usize, size: ImageSize, cuts: &mut Vec<Cut>) {
+    let (unit, half) = (T::of_usize(size.unit_px()), T::of(0.5));
     let ends = outline.iter().skip(1).chain(outline.first());
     for (&[px, py], &[qx, qy]) in outline.iter().zip(ends) {
-        if (py > middle) != (qy > middle) {
-            let x = (px + (middle - py) / (qy - py) * (qx - px)) * unit;
-            crossings.push((x - half).ceil().max(T::zero()).min(T::of_usize(width)).to_count());
+        let (low, high) = (py.min(qy), py.max(qy));
+        let last = (high * unit + half).ceil().to_count().min(size.height());
+        for row in (low * unit - half).floor().to_count()..last {
+            let middle = (T::of_usize(row) + half) / unit;
+            if low <= middle && middle < high {
+                let x = (px + (middle - py) / (qy - py) * (qx - px)) * unit;
+                let column = (x - half).ceil().max(T::zero()).min(T::of_usize(size.width())).to_count();
+                cuts.push(Cut { row, column, object });
+            }
         }
     }
 }

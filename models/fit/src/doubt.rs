@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 
 use dvp_core::contour::contains;
-use dvp_core::{ImageSize, Real};
+use dvp_core::{ImageSize, Real, simd};
 
 use crate::free::foot::EdgeLanes;
 use crate::segment::EdgeSample;
@@ -29,43 +29,66 @@ pub(crate) fn covariance<T: Real>(
     lanes: &mut EdgeLanes<T>,
 ) -> [T; 16] {
     lanes.set(outline_px);
-    let mut information = [[T::zero(); 4]; 4];
     let noise = T::one() / (pixel_noise * pixel_noise);
-    let (mut misfit, mut count) = (T::zero(), 0);
-    for sample in samples {
-        let at = lanes.closest(sample.point);
-        let (a, b) = (outline_px[at], outline_px[at + 1]);
-        let (x, y) = (b[0] - a[0], b[1] - a[1]);
-        let length = (x * x + y * y).sqrt();
-        if length <= T::of(1e-6) {
-            continue;
-        }
-        let n = [y / length, -x / length];
-        // Where the outline is hidden by another of its color, the samples nearest to it are that one's.
-        let across = (n[0] * (sample.point[0] - a[0]) + n[1] * (sample.point[1] - a[1])).abs();
-        let off = across - sample.distance.abs();
-        if off.abs() > T::of(ASTRAY_PX) {
-            continue;
-        }
-        let arm = [sample.point[0] - center_px[0], sample.point[1] - center_px[1]];
-        // The outline moves across itself by n for a shift (in scene units: times the unit), n.arm for a growth, and
-        // n x arm for a turn.
-        let row = [n[0] * unit_px, n[1] * unit_px, n[0] * arm[0] + n[1] * arm[1], n[1] * arm[0] - n[0] * arm[1]];
-        let weight = sample.weight * sample.weight * noise;
-        misfit += weight * off * off;
-        count += 1;
-        for i in 0..4 {
-            for j in 0..4 {
-                information[i][j] += weight * row[i] * row[j];
-            }
-        }
-    }
+    let (mut information, misfit, count) =
+        simd::dispatch(Information { outline_px, center_px, samples, unit_px, noise, lanes });
     let factor = (misfit / T::of_usize(count.max(1))).max(T::one());
     information.iter_mut().flatten().for_each(|value| *value /= factor);
     for (i, &variance) in PRIOR_VARIANCE.iter().enumerate() {
         information[i][i] += T::of(1.0 / variance);
     }
     inverse4(information)
+}
+
+/// Makes the normal equations of a pose in scene units, the sum of its squared misfits, and the number of samples in them.
+struct Information<'a, T> {
+    outline_px: &'a [[T; 2]],
+    center_px: [T; 2],
+    samples: &'a [EdgeSample<T>],
+    unit_px: T,
+    /// Inverse variance of a channel.
+    noise: T,
+    lanes: &'a EdgeLanes<T>,
+}
+
+impl<T: Real> simd::Kernel for Information<'_, T> {
+    type Output = ([[T; 4]; 4], T, usize);
+
+    #[inline(always)]
+    fn run(self) -> Self::Output {
+        let Self { outline_px, center_px, samples, unit_px, noise, lanes } = self;
+        let mut information = [[T::zero(); 4]; 4];
+        let (mut misfit, mut count) = (T::zero(), 0);
+        for sample in samples {
+            let at = lanes.closest(sample.point);
+            let (a, b) = (outline_px[at], outline_px[at + 1]);
+            let (x, y) = (b[0] - a[0], b[1] - a[1]);
+            let length = (x * x + y * y).sqrt();
+            if length <= T::of(1e-6) {
+                continue;
+            }
+            let n = [y / length, -x / length];
+            // Where the outline is hidden by another of its color, the samples nearest to it are that one's.
+            let across = (n[0] * (sample.point[0] - a[0]) + n[1] * (sample.point[1] - a[1])).abs();
+            let off = across - sample.distance.abs();
+            if off.abs() > T::of(ASTRAY_PX) {
+                continue;
+            }
+            let arm = [sample.point[0] - center_px[0], sample.point[1] - center_px[1]];
+            // The outline moves across itself by n for a shift (in scene units: times the unit), n.arm for a growth, and
+            // n x arm for a turn.
+            let row = [n[0] * unit_px, n[1] * unit_px, n[0] * arm[0] + n[1] * arm[1], n[1] * arm[0] - n[0] * arm[1]];
+            let weight = sample.weight * sample.weight * noise;
+            misfit += weight * off * off;
+            count += 1;
+            for i in 0..4 {
+                for j in 0..4 {
+                    information[i][j] += weight * row[i] * row[j];
+                }
+            }
+        }
+        (information, misfit, count)
+    }
 }
 
 /// Inverse of a symmetric positive definite matrix, row-major, by Gauss-Jordan with scaled rows.

@@ -37,7 +37,7 @@ pub struct Doubts {
     /// More than a hundredth of the picture's variance is explained neither by the scene nor by noise.
     pub unexplained: bool,
     /// There may be one object fewer: one buys less than a thousandth of the picture's variance, or touches another of its
-    /// color, or has the mean color of two others where overlaps blend.
+    /// color, or, where overlaps blend, has the mean color of two that it touches and that touch each other.
     pub redundant: bool,
     /// The color of an object is less than five steps of 8 bits from that of the background.
     pub faint: bool,
@@ -111,6 +111,6 @@ fn may_be_fewer<T: Real>(scene: &Scene<T>) -> bool {
         (0..objects.len()).any(|k| k != a && k != b && touch(a, k) && touch(k, b) && is_like(k, own))
     };
     pairs().any(|(a, b)| {
-        touch(a, b) && is_like(a, objects[b].color) || scene.compositing == Compositing::Blend && is_overlap(a, b)
+        touch(a, b) && (is_like(a, objects[b].color) || scene.compositing == Compositing::Blend && is_overlap(a, b))
     })
 }

@@ -2,16 +2,18 @@
 
 use alloc::vec::Vec;
 
-use dvp_core::Real;
 use dvp_core::contour::signed_area;
+use dvp_core::{Real, simd};
 
-/// Edges of a closed polygon as lanes: start, step, inverse squared length, and room for squared distances.
+/// Edges looked at together.
+const LANES: usize = 16;
+
+/// Edges of a closed polygon as lanes: start, step and inverse squared length; filled up with edges that are near to nothing.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct EdgeLanes<T> {
     start: [Vec<T>; 2],
     step: [Vec<T>; 2],
     inverse: Vec<T>,
-    squared: Vec<T>,
     /// 1 if the outline runs counterclockwise in (x, y), else -1.
     pub(crate) orientation: T,
 }
@@ -20,7 +22,7 @@ impl<T: Real> EdgeLanes<T> {
     /// Takes the edges of `vertices`, the last of which repeats the first.
     #[inline(always)]
     pub(crate) fn set(&mut self, vertices: &[[T; 2]]) {
-        for lane in self.start.iter_mut().chain(&mut self.step).chain([&mut self.inverse, &mut self.squared]) {
+        for lane in self.start.iter_mut().chain(&mut self.step).chain([&mut self.inverse]) {
             lane.clear();
         }
         self.orientation = if signed_area(vertices) > T::zero() { T::one() } else { -T::one() };
@@ -31,29 +33,46 @@ impl<T: Real> EdgeLanes<T> {
                 self.step[c].push(step[c]);
             }
             self.inverse.push(T::one() / (step[0] * step[0] + step[1] * step[1]).max(T::of(1e-9)));
-            self.squared.push(T::zero());
         }
+        let filled = self.inverse.len().next_multiple_of(LANES);
+        self.start.iter_mut().for_each(|lane| lane.resize(filled, T::infinity()));
+        self.step.iter_mut().chain([&mut self.inverse]).for_each(|lane| lane.resize(filled, T::zero()));
     }
 
-    /// The edge closest to `point`.
+    /// The edge closest to `point`, the first of several.
     #[inline(always)]
-    pub(crate) fn closest(&mut self, point: [T; 2]) -> usize {
-        let n = self.squared.len();
-        let (ax, ay, sx, sy) = (&self.start[0][..n], &self.start[1][..n], &self.step[0][..n], &self.step[1][..n]);
-        let (inverse, squared) = (&self.inverse[..n], &mut self.squared[..n]);
-        for i in 0..n {
-            let (dx, dy) = (point[0] - ax[i], point[1] - ay[i]);
-            let u = ((dx * sx[i] + dy * sy[i]) * inverse[i]).max(T::zero()).min(T::one());
-            let (ex, ey) = (dx - u * sx[i], dy - u * sy[i]);
-            squared[i] = ex * ex + ey * ey;
+    pub(crate) fn closest(&self, point: [T; 2]) -> usize {
+        let [ax, ay, sx, sy, inverse] = [&self.start[0], &self.start[1], &self.step[0], &self.step[1], &self.inverse]
+            .map(|lane| lane.as_chunks::<LANES>().0);
+        let (mut least, mut nearest) = ([T::infinity(); LANES], [T::zero(); LANES]);
+        for (block, ((ax, ay), ((sx, sy), inverse))) in
+            ax.iter().zip(ay).zip(sx.iter().zip(sy).zip(inverse)).enumerate()
+        {
+            let dx: [T; LANES] = simd::lanes(|i| point[0] - ax[i]);
+            let dy: [T; LANES] = simd::lanes(|i| point[1] - ay[i]);
+            let u: [T; LANES] = simd::lanes(|i| (dx[i] * sx[i] + dy[i] * sy[i]) * inverse[i]);
+            let u: [T; LANES] = simd::lanes(|i| if u[i] > T::zero() { u[i] } else { T::zero() });
+            let u: [T; LANES] = simd::lanes(|i| if u[i] < T::one() { u[i] } else { T::one() });
+            let ex: [T; LANES] = simd::lanes(|i| dx[i] - u[i] * sx[i]);
+            let ey: [T; LANES] = simd::lanes(|i| dy[i] - u[i] * sy[i]);
+            let squared: [T; LANES] = simd::lanes(|i| ex[i] * ex[i] + ey[i] * ey[i]);
+            let number = T::of_usize(block);
+            nearest = simd::lanes(|i| if squared[i] < least[i] { number } else { nearest[i] });
+            least = simd::lanes(|i| if squared[i] < least[i] { squared[i] } else { least[i] });
         }
-        let mut best = (T::infinity(), 0);
-        for (i, &value) in squared.iter().enumerate() {
-            if value < best.0 {
-                best = (value, i);
+        // Blocks become edges; then the nearer of two halves, the first of those as near, until one lane is left.
+        let width = T::of_usize(LANES);
+        let mut nearest: [T; LANES] = simd::lanes(|i| nearest[i] * width + T::of_usize(i));
+        let mut half = LANES / 2;
+        while half > 0 {
+            for i in 0..half {
+                let (a, b) = ((least[i], nearest[i]), (least[i + half], nearest[i + half]));
+                let upper = b.0 < a.0 || b.0 <= a.0 && b.1 < a.1;
+                (least[i], nearest[i]) = if upper { b } else { a };
             }
+            half /= 2;
         }
-        best.1
+        nearest[0].round_lanes() as usize
     }
 }
 
@@ -71,7 +90,7 @@ pub(crate) struct Foot<T> {
 
 /// Finds the nearest point of the closed polygon `vertices` (the last repeats the first), which `lanes` were set to.
 #[inline(always)]
-pub(crate) fn foot<T: Real>(vertices: &[[T; 2]], lanes: &mut EdgeLanes<T>, point: [T; 2]) -> Foot<T> {
+pub(crate) fn foot<T: Real>(vertices: &[[T; 2]], lanes: &EdgeLanes<T>, point: [T; 2]) -> Foot<T> {
     let edges = vertices.len() - 1;
     let at = lanes.closest(point);
     let (a, b) = (vertices[at], vertices[at + 1]);

@@ -5,6 +5,7 @@ use dvp_core::contour::signed_area;
 
 use super::basis::Basis;
 use super::conic::ellipse_through;
+use super::foot::EdgeLanes;
 use super::grow::{Freedom, GrowScratch, GrowSettings, Grown, Thrift, grow};
 use super::outline_fit::{FreeOutline, OutlineScratch, OutlineSettings, expand, gather};
 use super::repeat::complete;
@@ -38,6 +39,30 @@ fn samples(outline: &FreeOutline<f64>, basis: &Basis<f64>) -> Vec<EdgeSample<f64
         }
     }
     out
+}
+
+#[test]
+fn no_edge_is_nearer_than_the_closest() {
+    let (basis, mut vertices, mut lanes) = (Basis::new(VERTICES, 3), Vec::new(), EdgeLanes::default());
+    outline().write_vertices(&basis, VERTICES, &mut vertices);
+    // As many edges as fill the lanes, fewer, and more.
+    for used in [64, 33, 5] {
+        vertices.truncate(used);
+        vertices[used - 1] = vertices[0];
+        lanes.set(&vertices);
+        for i in 0..400 {
+            let point = [f64::from(i % 20) * 3.0 + 0.3, f64::from(i / 20) * 3.0 + 0.7];
+            let distance = |pair: &[[f64; 2]]| {
+                let (step, arm) = ([0, 1].map(|c| pair[1][c] - pair[0][c]), [0, 1].map(|c| point[c] - pair[0][c]));
+                let share = (arm[0] * step[0] + arm[1] * step[1]) / (step[0] * step[0] + step[1] * step[1]);
+                (arm[0] - share.clamp(0.0, 1.0) * step[0]).hypot(arm[1] - share.clamp(0.0, 1.0) * step[1])
+            };
+            let distances: Vec<f64> = vertices.windows(2).map(distance).collect();
+            let least = distances.iter().copied().fold(f64::INFINITY, f64::min);
+            let closest = lanes.closest(point);
+            assert!(distances[closest] - least < 1e-9, "edge {closest} of {used} at {point:?}");
+        }
+    }
 }
 
 #[test]

@@ -1,9 +1,14 @@
 //! Gauss-Newton on the four parameters of a pose: the outline shall lie at the sampled distances.
 
-use dvp_core::{Pose, Real};
+use dvp_core::{Pose, Real, simd};
 
+use super::equations::{Normal, Robustness, SampleLanes};
 use super::field::OutlineField;
-use crate::segment::EdgeSample;
+
+/// A step that gains less than this share of the cost is the last one: where distances are exact, and where more steps with
+/// exact ones follow.
+pub(crate) const LEAST_GAIN: f64 = 1e-4;
+const ROUGH_GAIN: f64 = 1e-2;
 
 /// A pose in pixels: v' = e^log_scale R(rotation) v + translation.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -11,26 +16,6 @@ pub(crate) struct PosePx<T> {
     pub(crate) translation: [T; 2],
     pub(crate) log_scale: T,
     pub(crate) rotation: T,
-}
-
-/// How residuals count.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Robustness<T> {
-    /// Residual (px) at which a sample loses most of its say (Geman-McClure).
-    pub(crate) width_px: T,
-    /// Whether samples count by their slope (final) or all alike (search).
-    pub(crate) weighted: bool,
-    /// Every how many samples one is used.
-    pub(crate) stride: usize,
-}
-
-/// Normal equations of one pose.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Normal<T> {
-    pub(crate) hessian: [[T; 4]; 4],
-    pub(crate) gradient: [T; 4],
-    /// Robust mean of squared residuals (px^2), at most the squared width.
-    pub(crate) cost: T,
 }
 
 /// What is left of an angle beyond whole periods, from minus half of one to half of one.
@@ -45,95 +30,26 @@ impl<T: Real> PosePx<T> {
         Pose { translation, scale: self.log_scale.exp() / unit_px, rotation: self.rotation }
     }
 
-    /// Residuals of the samples, robustly summed into a mean; no derivatives.
-    pub(crate) fn cost(&self, field: &OutlineField<T>, samples: &[EdgeSample<T>], robustness: Robustness<T>) -> T {
-        let frame = Frame::new(self);
-        let (mut cost, mut total) = (T::zero(), T::zero());
-        let inverse = T::one() / (robustness.width_px * robustness.width_px);
-        for sample in samples.iter().step_by(robustness.stride.max(1)) {
-            let (distance, _) = field.distance(frame.to_unit(sample.point));
-            let residual = frame.scale * distance - sample.distance;
-            let squared = residual * residual;
-            let base = if robustness.weighted { sample.weight * sample.weight } else { T::one() };
-            cost += base * squared / (T::one() + squared * inverse);
-            total += base;
-        }
-        if total > T::zero() { cost / total } else { T::infinity() }
-    }
-
-    /// Normal equations at this pose in (x, y, log scale, rotation).
-    pub(crate) fn normal(
-        &self,
-        field: &OutlineField<T>,
-        samples: &[EdgeSample<T>],
-        robustness: Robustness<T>,
-    ) -> Normal<T> {
-        let inverse = T::one() / (robustness.width_px * robustness.width_px);
-        self.normal_by(field, samples, robustness, |_| inverse)
-    }
-
-    /// As [`Self::normal`], with the inverse squared width of each residual from `inverse_squared_width`.
-    #[inline(always)]
-    pub(crate) fn normal_by(
-        &self,
-        field: &OutlineField<T>,
-        samples: &[EdgeSample<T>],
-        robustness: Robustness<T>,
-        inverse_squared_width: impl Fn(T) -> T,
-    ) -> Normal<T> {
-        let frame = Frame::new(self);
-        let zero = T::zero();
-        let mut normal = Normal { hessian: [[zero; 4]; 4], gradient: [zero; 4], cost: T::infinity() };
-        let (mut cost, mut total) = (zero, zero);
-        for sample in samples.iter().step_by(robustness.stride.max(1)) {
-            let u = frame.to_unit(sample.point);
-            let (distance, n) = field.distance(u);
-            let residual = frame.scale * distance - sample.distance;
-            let squared = residual * residual;
-            let base = if robustness.weighted { sample.weight * sample.weight } else { T::one() };
-            let falloff = T::one() / (T::one() + squared * inverse_squared_width(residual));
-            cost += base * squared * falloff;
-            total += base;
-            let weight = base * falloff * falloff;
-            let row = [
-                -(frame.cos * n[0] - frame.sin * n[1]),
-                -(frame.sin * n[0] + frame.cos * n[1]),
-                frame.scale * (distance - n[0] * u[0] - n[1] * u[1]),
-                frame.scale * (n[0] * u[1] - n[1] * u[0]),
-            ];
-            for i in 0..4 {
-                let scaled = weight * row[i];
-                normal.gradient[i] += scaled * residual;
-                for j in 0..=i {
-                    normal.hessian[i][j] += scaled * row[j];
-                }
-            }
-        }
-        for i in 0..4 {
-            for j in 0..i {
-                normal.hessian[j][i] = normal.hessian[i][j];
-            }
-        }
-        if total > zero {
-            normal.cost = cost / total;
-        }
-        normal
-    }
-
     /// Damped Gauss-Newton steps; returns the pose, its cost and the steps taken.
     pub(crate) fn refine(
         self,
         field: &OutlineField<T>,
-        samples: &[EdgeSample<T>],
+        samples: &SampleLanes<T>,
         robustness: Robustness<T>,
         max_steps: usize,
     ) -> (Self, T, usize) {
-        self.descend(max_steps, |pose| pose.normal(field, samples, robustness))
+        let least_gain = T::of(if robustness.rough { ROUGH_GAIN } else { LEAST_GAIN });
+        self.descend(max_steps, least_gain, |pose| pose.normal(field, samples, robustness))
     }
 
     /// Damped Gauss-Newton steps on any normal equations of a pose; returns as [`Self::refine`].
     #[inline(always)]
-    pub(crate) fn descend(self, max_steps: usize, normal_at: impl Fn(&Self) -> Normal<T>) -> (Self, T, usize) {
+    pub(crate) fn descend(
+        self,
+        max_steps: usize,
+        least_gain: T,
+        normal_at: impl Fn(&Self) -> Normal<T>,
+    ) -> (Self, T, usize) {
         let mut pose = self;
         let mut normal = normal_at(&pose);
         let mut damping = T::of(1e-3);
@@ -147,7 +63,7 @@ impl<T: Real> PosePx<T> {
             if next.cost <= normal.cost {
                 let gain = normal.cost - next.cost;
                 pose = tried;
-                let done = gain <= T::of(1e-4) * normal.cost;
+                let done = gain <= least_gain * normal.cost;
                 normal = next;
                 damping *= T::of(0.2);
                 if done {
@@ -197,6 +113,14 @@ impl<T: Real> Frame<T> {
         let x = (point[0] - self.translation[0]) * self.inverse_scale;
         let y = (point[1] - self.translation[1]) * self.inverse_scale;
         [self.cos * x + self.sin * y, self.cos * y - self.sin * x]
+    }
+
+    /// As [`Self::to_unit`], for several points: their columns, their rows.
+    #[inline(always)]
+    pub(crate) fn to_units<const N: usize>(self, points: &[[T; N]; 2]) -> [[T; N]; 2] {
+        let x: [T; N] = simd::lanes(|i| (points[0][i] - self.translation[0]) * self.inverse_scale);
+        let y: [T; N] = simd::lanes(|i| (points[1][i] - self.translation[1]) * self.inverse_scale);
+        [simd::lanes(|i| self.cos * x[i] + self.sin * y[i]), simd::lanes(|i| self.cos * y[i] - self.sin * x[i])]
     }
 
     /// From the unit frame of the outline to pixels.

@@ -5,8 +5,9 @@ use alloc::vec::Vec;
 use dvp_core::shape::{OutlineBasis, SYMMETRY_TOLERANCE, ShapeError, Symmetry};
 use dvp_core::{Efd, ImageSize, Real};
 
+use super::equations::{Robustness, SampleLanes};
 use super::field::OutlineField;
-use super::gauss_newton::{Frame, PosePx, Robustness};
+use super::gauss_newton::{Frame, PosePx};
 use crate::segment::{Segment, Segmentation};
 
 /// Samples used while searching; all are used at the end.
@@ -28,7 +29,7 @@ const HOPELESS: f64 = 16.0;
 
 /// How residuals count in the last steps.
 fn fine<T: Real>() -> Robustness<T> {
-    Robustness { width_px: T::of(0.3), weighted: true, stride: 1 }
+    Robustness { width_px: T::of(0.3), rough: false }
 }
 
 /// What a search tries.
@@ -111,28 +112,34 @@ pub(crate) fn search<T: Real>(
         (Effort::Usual, true) => Plan { sizes: &CROPPED_SIZES, starts: FULL_TURN_STARTS, keep: 3, steps: [4, 5] },
         (Effort::Wide, _) => Plan { sizes: &WIDE_SIZES, starts: 3 * FULL_TURN_STARTS, keep: MOST_KEPT, steps: [12, 8] },
     };
+    let samples = &segment.samples;
+    let few = SampleLanes::new(samples, 1 + samples.len() / SEARCH_SAMPLES, false);
     for (index, prototype) in prototypes.iter().enumerate() {
-        rough(segment, prototype, index, size, plan, out);
+        rough(segment, &few, prototype, index, size, plan, out);
     }
     // The best of the rough ones are worth all samples.
     sort(out);
     let Some(best) = out.first().map(|candidate| candidate.cost) else { return };
     let worth = if effort == Effort::Wide { T::of(0.4) } else { T::of(0.01) };
     out.retain(|candidate| candidate.cost <= T::of(8.0) * best + worth);
+    let [most, all] = [1 + samples.len() / FINISH_SAMPLES, 1].map(|stride| SampleLanes::new(samples, stride, true));
     let mut kept = 0;
     let mut leader = T::infinity();
     for i in 0..out.len() {
-        // The rough poses are nearly right: what misses all samples by far now is not worth the last steps.
+        // Two starts that ended in one pose are one candidate, now or at the end.
+        if out[..kept].iter().any(|c| same(c, &out[i])) {
+            continue;
+        }
+        // The rough poses are nearly right: what misses samples by far now is not worth the last steps.
         let shape = &prototypes[out[i].prototype];
-        let now = out[i].pose.cost(&shape.field, &segment.samples, fine());
+        let now = out[i].pose.cost(&shape.field, &most, fine());
         let hopeless = effort == Effort::Usual && now > T::of(HOPELESS) * leader + T::of(1e-3);
         let refined = if hopeless {
             Candidate { cost: now, ..out[i] }
         } else {
-            finish(out[i], object, prototypes, size, segmentation)
+            finish(out[i], [&most, &all], object, prototypes, size, segmentation)
         };
         leader = leader.min(refined.cost);
-        // Two starts that ended in one pose are one candidate.
         let twin = out[..kept].iter().any(|c| same(c, &refined));
         if !twin {
             out[kept] = refined;
@@ -159,14 +166,14 @@ fn same<T: Real>(a: &Candidate<T>, b: &Candidate<T>) -> bool {
 /// Adds up to `keep` refined starts of one prototype.
 fn rough<T: Real>(
     segment: &Segment<T>,
+    samples: &SampleLanes<T>,
     prototype: &Prototype<T>,
     index: usize,
     size: ImageSize,
     plan: Plan,
     out: &mut Vec<Candidate<T>>,
 ) {
-    let stride = 1 + segment.samples.len() / SEARCH_SAMPLES;
-    let wide = Robustness { width_px: T::of(3.0), weighted: false, stride };
+    let wide = Robustness { width_px: T::of(3.0), rough: true };
     let turns = prototype.symmetry.max(1);
     let starts = if prototype.symmetry == 0 { 1 } else { plan.starts.div_ceil(turns).max(3) };
     let range = T::of(2.0 * core::f64::consts::PI) / T::of_usize(turns);
@@ -176,18 +183,18 @@ fn rough<T: Real>(
         for i in 0..starts {
             let rotation = range * T::of_usize(i) / T::of_usize(starts);
             let pose = start(segment, field, size, T::of(enlarged), rotation);
-            insert(&mut best[..plan.keep], pose.cost(field, &segment.samples, wide), pose);
+            insert(&mut best[..plan.keep], pose.cost(field, samples, wide), pose);
         }
     }
     // Starts that stay far behind the best so far are left at that.
     let mut leader = out.iter().fold(T::infinity(), |least, candidate| least.min(candidate.cost));
     for (_, pose) in best.into_iter().flatten() {
-        let narrow = Robustness { width_px: T::of(1.5), weighted: false, stride };
-        let (pose, wide_cost, first) = pose.refine(field, &segment.samples, wide, plan.steps[0]);
+        let narrow = Robustness { width_px: T::of(1.5), rough: true };
+        let (pose, wide_cost, first) = pose.refine(field, samples, wide, plan.steps[0]);
         if wide_cost > T::of(HOPELESS) * leader + T::of(0.1) {
             continue;
         }
-        let (pose, cost, second) = pose.refine(field, &segment.samples, narrow, plan.steps[1]);
+        let (pose, cost, second) = pose.refine(field, samples, narrow, plan.steps[1]);
         leader = leader.min(cost);
         out.push(Candidate { prototype: index, pose, cost, steps: first + second });
     }
@@ -243,31 +250,30 @@ fn start<T: Real>(
 /// exactly symmetric.
 fn finish<T: Real>(
     candidate: Candidate<T>,
+    [most, all]: [&SampleLanes<T>; 2],
     object: u32,
     prototypes: &[Prototype<T>],
     size: ImageSize,
     segmentation: &Segmentation<T>,
 ) -> Candidate<T> {
-    let segment = &segmentation.segments()[object as usize];
     let prototype = &prototypes[candidate.prototype];
     let field = &prototype.field;
-    // A part of the samples brings the pose within reach of the last two steps.
-    let part = Robustness { stride: 1 + segment.samples.len() / FINISH_SAMPLES, ..fine() };
-    let (pose, _, first) = candidate.pose.refine(field, &segment.samples, part, 6);
-    let (mut pose, mut cost, second) = pose.refine(field, &segment.samples, fine(), 3);
+    // A part of the samples, roughly compared, brings the pose within reach of the last two steps.
+    let (pose, _, first) = candidate.pose.refine(field, most, Robustness { rough: true, ..fine() }, 6);
+    let (mut pose, mut cost, second) = pose.refine(field, all, fine(), 3);
     let mut steps = first + second;
     let turn = T::of(2.0 * core::f64::consts::PI) / T::of_usize(prototype.symmetry.max(1));
     let base = pose;
     let mut turned = false;
     for i in 1..prototype.symmetry {
         let twin = PosePx { rotation: base.rotation + turn * T::of_usize(i), ..base };
-        let twin_cost = twin.cost(field, &segment.samples, fine());
+        let twin_cost = twin.cost(field, all, fine());
         if twin_cost < cost {
             (pose, cost, turned) = (twin, twin_cost, true);
         }
     }
     if turned {
-        let (refined, refined_cost, more) = pose.refine(field, &segment.samples, fine(), 4);
+        let (refined, refined_cost, more) = pose.refine(field, all, fine(), 4);
         (pose, cost, steps) = (refined, refined_cost, steps + more);
     }
     let surplus = outline_over_flat(&pose, prototype, object, size, segmentation);

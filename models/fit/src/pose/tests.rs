@@ -1,7 +1,8 @@
 use alloc::vec::Vec;
 
+use super::equations::{Robustness, SampleLanes};
 use super::field::OutlineField;
-use super::gauss_newton::{PosePx, Robustness, solve4};
+use super::gauss_newton::{PosePx, solve4};
 use crate::segment::EdgeSample;
 
 /// Numbers in [0, 1) from a linear congruential generator (Knuth's MMIX).
@@ -68,6 +69,24 @@ fn field_is_the_distance_to_the_nearest_edge() {
 }
 
 #[test]
+fn rough_distances_are_right_to_first_order() {
+    // A circle of radius 1 in a grid of cells of 1/16: the middle of a cell is at most 0.045 away, where the distance from a
+    // circle leaves its tangent plane by 0.045^2 / 2.
+    let circle: Vec<[f64; 2]> =
+        (0..=512).map(|i| (f64::from(i % 512) * core::f64::consts::TAU / 512.0).sin_cos().into()).collect();
+    let (field, mut numbers) = (OutlineField::new(&circle).unwrap(), Numbers(11));
+    for _ in 0..2000 {
+        let (angle, radius) = (core::f64::consts::TAU * numbers.next(), 0.7 + 0.6 * numbers.next());
+        let [x, y] = [radius * angle.cos(), radius * angle.sin()];
+        let rough = field.rough(&[[x], [y]]);
+        assert!((rough.distance[0] - (radius - 1.0)).abs() < 0.0015 / radius, "{rough:?} at {radius}, {angle}");
+        // The slope is that of the middle of the cell, at most 0.045 / radius off.
+        let across = rough.gradient[0][0] * angle.cos() + rough.gradient[1][0] * angle.sin();
+        assert!(across > 0.995, "{rough:?} at {radius}, {angle}");
+    }
+}
+
+#[test]
 fn area_and_centroid_of_a_rectangle() {
     // 2 x 1 with its center at (1.5, 0.5); the farthest corner is (2.5, 1).
     let field = OutlineField::new(&[[0.5_f64, 0.0], [2.5, 0.0], [2.5, 1.0], [0.5, 1.0], [0.5, 0.0]]).unwrap();
@@ -102,9 +121,10 @@ const POSE: PosePx<f64> = PosePx { translation: [31.3, 27.9], log_scale: 2.6, ro
 fn normal_equations_hold_half_the_gradient_of_the_cost() {
     let field = OutlineField::new(&star()).unwrap();
     let samples = samples(&field, &POSE);
-    for weighted in [false, true] {
-        let robustness = Robustness { width_px: 0.4, weighted, stride: 1 };
+    for (weighted, rough) in [(false, false), (true, false), (true, true)] {
+        let robustness = Robustness { width_px: 0.4, rough };
         let total: f64 = samples.iter().map(|s| if weighted { s.weight * s.weight } else { 1.0 }).sum();
+        let samples = SampleLanes::new(&samples, 1, weighted);
         let normal = POSE.normal(&field, &samples, robustness);
         assert!((normal.cost - POSE.cost(&field, &samples, robustness)).abs() < 1e-14);
         let cost = |lane: usize, by: f64| {
@@ -134,8 +154,9 @@ fn refinement_finds_the_pose_of_exact_samples() {
         let (x, y) = (sample.point[0] - POSE.translation[0], sample.point[1] - POSE.translation[1]);
         sample.distance = scale * field.distance([(cos * x + sin * y) / scale, (cos * y - sin * x) / scale]).0;
     }
+    let samples = SampleLanes::new(&samples, 1, false);
     let start = PosePx { translation: [33.0, 26.5], log_scale: 2.5, rotation: 0.85 };
-    let (found, cost, _) = start.refine(&field, &samples, Robustness { width_px: 3.0, weighted: false, stride: 1 }, 30);
+    let (found, cost, _) = start.refine(&field, &samples, Robustness { width_px: 3.0, rough: false }, 30);
     assert!(cost < 1e-10, "{cost}");
     assert!((found.translation[0] - 31.3).abs() < 1e-4 && (found.translation[1] - 27.9).abs() < 1e-4, "{found:?}");
     assert!((found.log_scale - 2.6).abs() < 1e-5 && (found.rotation - 0.7).abs() < 1e-5, "{found:?}");

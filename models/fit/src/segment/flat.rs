@@ -115,26 +115,22 @@ impl FlatMap {
         let (mut above, mut above_next) = (0usize, 0usize);
         for row in 0..height {
             self.mark_soft(row, width, height);
-            let mut start = None;
-            for x in 0..=width {
-                let flat = self.soft[x] == 0;
-                match (flat, start) {
-                    (true, None) => start = Some(x),
-                    (false, Some(s)) => {
-                        let id = self.sets.push();
-                        self.runs.push(Run { row: row as u32, start: s as u32, end: x as u32, label: id });
-                        start = None;
-                        // Runs of the row above that overlap this one are the same region.
-                        while above < above_next && self.runs[above].end <= s as u32 {
-                            above += 1;
-                        }
-                        let mut other = above;
-                        while other < above_next && self.runs[other].start < x as u32 {
-                            self.sets.unite(other as u32, id);
-                            other += 1;
-                        }
-                    }
-                    _ => {}
+            // Behind the end of a row stands a soft pixel.
+            let mut next = 0;
+            while let Some(length) = self.soft[next..].iter().position(|&soft| soft == 0) {
+                let start = next + length;
+                let end = start + self.soft[start..].iter().position(|&soft| soft != 0).unwrap_or(0);
+                next = end;
+                let id = self.sets.push();
+                self.runs.push(Run { row: row as u32, start: start as u32, end: end as u32, label: id });
+                // Runs of the row above that overlap this one are the same region.
+                while above < above_next && self.runs[above].end <= start as u32 {
+                    above += 1;
+                }
+                let mut other = above;
+                while other < above_next && self.runs[other].start < end as u32 {
+                    self.sets.unite(other as u32, id);
+                    other += 1;
                 }
             }
             above = self.runs.partition_point(|run| (run.row as usize) < row);

@@ -5,8 +5,9 @@ use alloc::vec::Vec;
 use dvp_core::Real;
 
 use super::{CROSSING_PX, Part, PartSet};
+use crate::pose::equations::{Robustness, SampleLanes};
 use crate::pose::field::OutlineField;
-use crate::pose::gauss_newton::{Frame, Robustness};
+use crate::pose::gauss_newton::Frame;
 use crate::pose::search::Prototype;
 use crate::segment::EdgeSample;
 
@@ -35,9 +36,10 @@ pub(super) fn refine<T: Real>(
     let mut own: Vec<Vec<EdgeSample<T>>> = alloc::vec![Vec::new(); parts.len()];
     for width in WIDTHS {
         assign(&parts, samples, prototypes, &mut own);
-        let robustness = Robustness { width_px: T::of(width), weighted: true, stride: 1 };
+        let robustness = Robustness { width_px: T::of(width), rough: false };
         for (part, own) in parts.iter_mut().zip(&own) {
-            let (pose, _, _) = part.pose.refine(&prototypes[part.prototype].field, own, robustness, STEPS);
+            let own = SampleLanes::new(own, 1, true);
+            let (pose, _, _) = part.pose.refine(&prototypes[part.prototype].field, &own, robustness, STEPS);
             part.pose = pose;
         }
     }

@@ -8,8 +8,9 @@ use alloc::vec::Vec;
 
 use dvp_core::Real;
 
+use crate::pose::equations::{Robustness, SampleLanes};
 use crate::pose::field::OutlineField;
-use crate::pose::gauss_newton::{Frame, PosePx, Robustness, wrapped};
+use crate::pose::gauss_newton::{Frame, PosePx, wrapped};
 use crate::segment::EdgeSample;
 
 /// Points of the outline that starts are made of.
@@ -106,11 +107,12 @@ pub(super) fn search<T: Real>(contour: &[[T; 2]], field: &OutlineField<T>) -> Ve
     }
     let samples: Vec<EdgeSample<T>> =
         contour.iter().map(|&point| EdgeSample { point, distance: T::zero(), weight: T::one() }).collect();
+    let samples = SampleLanes::new(&samples, 1, false);
     let mut found: Vec<(T, PosePx<T>)> = Vec::new();
     for (_, start) in kept {
         let mut pose = start;
         for width in WIDTHS {
-            let robustness = Robustness { width_px: T::of(width), weighted: false, stride: 1 };
+            let robustness = Robustness { width_px: T::of(width), rough: false };
             pose = pose.refine(field, &samples, robustness, STEPS).0;
         }
         let merit = merit(&pose, &anchors, field, T::of(INSIDE));

@@ -8,8 +8,9 @@ use alloc::vec::Vec;
 use dvp_core::Real;
 
 use super::{EXPLAINED_PX, Part};
+use crate::pose::equations::{Normal, Robustness, SampleLanes};
 use crate::pose::field::OutlineField;
-use crate::pose::gauss_newton::{Normal, PosePx, Robustness, wrapped};
+use crate::pose::gauss_newton::{LEAST_GAIN, PosePx, wrapped};
 use crate::pose::search::{Prototype, insert};
 use crate::segment::{EdgeSample, Segment};
 
@@ -129,8 +130,7 @@ fn starts<T: Real>(
     point: [T; 2],
     outward: [T; 2],
 ) -> [Option<(T, PosePx<T>)>; KEPT] {
-    let samples = &segment.samples;
-    let stride = 1 + samples.len() / START_SAMPLES;
+    let samples = SampleLanes::new(&segment.samples, 1 + segment.samples.len() / START_SAMPLES, false);
     let mut best = [None; KEPT];
     let vertices = prototype.outline.len() - 1;
     // Symmetric vertices give symmetric poses; a disk needs one vertex.
@@ -149,7 +149,7 @@ fn starts<T: Real>(
             let turned = [cos * middle[0] - sin * middle[1], sin * middle[0] + cos * middle[1]];
             let translation = [point[0] - scale * turned[0], point[1] - scale * turned[1]];
             let pose = PosePx { translation, log_scale: scale.ln(), rotation };
-            let cost = lopsided(&pose, &prototype.field, samples, T::of(STAGES[0].0), stride).cost;
+            let cost = lopsided(&pose, &prototype.field, &samples, T::of(STAGES[0].0)).cost;
             insert(&mut best, cost, pose);
         }
     }
@@ -158,24 +158,19 @@ fn starts<T: Real>(
 
 /// Normal equations of a pose that may lie behind the samples: residuals beyond `width_px` stop counting there, and only
 /// beyond [`STANDING_OUT`] in front.
-fn lopsided<T: Real>(
-    pose: &PosePx<T>,
-    field: &OutlineField<T>,
-    samples: &[EdgeSample<T>],
-    width_px: T,
-    stride: usize,
-) -> Normal<T> {
+fn lopsided<T: Real>(pose: &PosePx<T>, field: &OutlineField<T>, samples: &SampleLanes<T>, width_px: T) -> Normal<T> {
     let one = T::one();
     let behind = one / (width_px * width_px);
     let before = T::of(1.0 / (STANDING_OUT * STANDING_OUT));
-    let robustness = Robustness { width_px, weighted: false, stride };
+    let robustness = Robustness { width_px, rough: false };
     pose.normal_by(field, samples, robustness, |residual| if residual < T::zero() { before } else { behind })
 }
 
 fn settle<T: Real>(mut pose: PosePx<T>, field: &OutlineField<T>, samples: &[EdgeSample<T>]) -> PosePx<T> {
-    let stride = 1 + samples.len() / REFINE_SAMPLES;
+    let samples = SampleLanes::new(samples, 1 + samples.len() / REFINE_SAMPLES, false);
     for (width, steps) in STAGES {
-        let (moved, _, _) = pose.descend(steps, |pose| lopsided(pose, field, samples, T::of(width), stride));
+        let (moved, _, _) =
+            pose.descend(steps, T::of(LEAST_GAIN), |pose| lopsided(pose, field, &samples, T::of(width)));
         pose = moved;
     }
     pose

@@ -8,8 +8,9 @@ use alloc::vec::Vec;
 use dvp_core::Real;
 
 use crate::free::foot::EdgeLanes;
+use crate::pose::equations::{Robustness, SampleLanes};
 use crate::pose::field::OutlineField;
-use crate::pose::gauss_newton::{Frame, PosePx, Robustness};
+use crate::pose::gauss_newton::{Frame, PosePx};
 use crate::segment::EdgeSample;
 
 /// Rotational symmetries looked for, the highest first.
@@ -76,9 +77,10 @@ impl<T: Real> Carry<T> {
         let sign = if self.reflected { -T::one() } else { T::one() };
         let turned: Vec<EdgeSample<T>> =
             samples.iter().map(|s| EdgeSample { point: [s.point[0], sign * s.point[1]], ..*s }).collect();
+        let turned = SampleLanes::new(&turned, 1, false);
         let mut pose = self.pose;
         for width in [2.0, 0.7] {
-            let robustness = Robustness { width_px: T::of(width), weighted: false, stride: 1 };
+            let robustness = Robustness { width_px: T::of(width), rough: false };
             pose = PosePx { log_scale: T::zero(), ..pose.refine(field, &turned, robustness, 5).0 };
         }
         Self { pose, ..self }

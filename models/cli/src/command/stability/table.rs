@@ -3,6 +3,7 @@
 use core::fmt::Write as _;
 
 use comfy_table::{Table, presets};
+use dvp_fit::Doubts;
 
 use super::calibration::PARAMETERS;
 use super::summary::{MethodSummary, SweepSummary, label};
@@ -15,9 +16,10 @@ fn field(value: f64) -> String {
 }
 
 /// The head of the table of runs.
-pub(super) const RUNS: &str = "sweep,level,method,picture,failure,iou,mae,ari,cpu_ms,stop,unexplained,\
-                               doubts_pose,doubts_ambiguity,doubts_stop,doubts_unexplained,\
-                               doubts_redundant,doubts_faint\n";
+pub(super) fn runs_head() -> String {
+    let doubts = Doubts::default().named().map(|(name, _)| format!("doubts_{name}")).join(",");
+    format!("sweep,level,method,picture,failure,iou,mae,ari,cpu_ms,stop,unexplained,{doubts}\n")
+}
 
 /// The rows of a sweep in the table of runs.
 pub(super) fn runs(sweep: &Sweep, contenders: &[Contender], trials: &[Trial]) -> String {
