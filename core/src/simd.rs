@@ -95,8 +95,21 @@ pub fn sum<T: crate::Real>(values: &[T]) -> T {
     for part in parts {
         sums = lanes(|i| sums[i] + part[i]);
     }
-    let rest: T = rest.iter().copied().sum();
-    sums.into_iter().sum::<T>() + rest
+    total(sums) + rest.iter().copied().sum::<T>()
+}
+
+/// The sum of the lanes, a power of two of them, by halves so that it vectorizes.
+#[inline(always)]
+pub fn total<T: crate::Real, const N: usize>(mut lanes: [T; N]) -> T {
+    let mut half = N / 2;
+    while half > 0 {
+        for i in 0..half {
+            let upper = lanes[i + half];
+            lanes[i] += upper;
+        }
+        half /= 2;
+    }
+    lanes[0]
 }
 
 #[cfg(test)]

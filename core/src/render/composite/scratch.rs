@@ -8,6 +8,7 @@ use crate::real::Real;
 use crate::render::Compositing;
 use crate::render::tile::{LANES, Lanes};
 use crate::scene::{Drawing, DrawingGrad};
+use crate::simd::total;
 
 /// Memory of the pass, kept between calls.
 #[derive(Debug)]
@@ -80,15 +81,15 @@ impl<T: Real> CompositeScratch<T> {
     /// Adds the gradient of background, colors and confidences.
     pub(in crate::render) fn add_grad(&self, drawing: &Drawing<T>, grad: &mut DrawingGrad<T>) {
         for channel in 0..CHANNELS {
-            grad.background[channel] += total(&self.background[channel]);
+            grad.background[channel] += total(self.background[channel]);
         }
         for (k, sums) in self.objects.iter().enumerate() {
             let f = drawing.confidences[k];
-            grad.confidences[k] += total(&sums.confidence);
+            grad.confidences[k] += total(sums.confidence);
             for channel in 0..CHANNELS {
-                let covered = total(&sums.covered[channel]);
+                let covered = total(sums.covered[channel]);
                 grad.background[channel] -= f * covered;
-                grad.colors[k][channel] += f * covered + total(&sums.color[channel]);
+                grad.colors[k][channel] += f * covered + total(sums.color[channel]);
                 grad.confidences[k] += (drawing.colors[k][channel] - drawing.background[channel]) * covered;
             }
         }
@@ -97,9 +98,4 @@ impl<T: Real> CompositeScratch<T> {
 
 fn zeros<T: Real>() -> [Lanes<T>; CHANNELS] {
     [[T::zero(); LANES]; CHANNELS]
-}
-
-/// The sum of the lanes.
-fn total<T: Real>(lanes: &Lanes<T>) -> T {
-    lanes.iter().copied().sum()
 }

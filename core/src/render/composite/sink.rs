@@ -6,7 +6,7 @@ use super::Place;
 use crate::image::CHANNELS;
 use crate::real::Real;
 use crate::render::tile::{LANES, Lanes};
-use crate::simd::lanes;
+use crate::simd::{lanes, total};
 
 /// Takes pixels, and gives back the gradient of the scalar with respect to them.
 pub(in crate::render) trait PixelSink<T: Real> {
@@ -195,18 +195,4 @@ fn load<T: Real>(planes: &[T], channel: usize, place: Place, beyond: &Lanes<T>) 
         lanes[..place.len].copy_from_slice(&planes[start..start + place.len]);
     }
     lanes
-}
-
-/// The sum of the lanes, by halves so that it vectorizes.
-#[inline(always)]
-pub(super) fn total<T: Real>(mut lanes: Lanes<T>) -> T {
-    let mut half = LANES / 2;
-    while half > 0 {
-        for i in 0..half {
-            let other = lanes[i + half];
-            lanes[i] += other;
-        }
-        half /= 2;
-    }
-    lanes[0]
 }

@@ -187,9 +187,9 @@ impl<T: Real, W: Fn(T) -> T> simd::Kernel for Equations<'_, T, W> {
         let mut normal = Normal { hessian: [[zero; 4]; 4], gradient: [zero; 4], cost: mean(cost, total) };
         let mut entry = 0;
         for a in 0..4 {
-            normal.gradient[a] = sum(gradient[a]);
+            normal.gradient[a] = simd::total(gradient[a]);
             for b in 0..=a {
-                let value = sum(hessian[entry]);
+                let value = simd::total(hessian[entry]);
                 (normal.hessian[a][b], normal.hessian[b][a]) = (value, value);
                 entry += 1;
             }
@@ -198,22 +198,9 @@ impl<T: Real, W: Fn(T) -> T> simd::Kernel for Equations<'_, T, W> {
     }
 }
 
+/// The weighted mean; infinite without samples.
 #[inline(always)]
 fn mean<T: Real>(cost: [T; LANES], total: [T; LANES]) -> T {
-    let total = sum(total);
-    if total > T::zero() { sum(cost) / total } else { T::infinity() }
-}
-
-/// Adds halves until one lane is left.
-#[inline(always)]
-fn sum<T: Real>(mut lanes: [T; LANES]) -> T {
-    let mut half = LANES / 2;
-    while half > 0 {
-        for i in 0..half {
-            let upper = lanes[i + half];
-            lanes[i] += upper;
-        }
-        half /= 2;
-    }
-    lanes[0]
+    let total = simd::total(total);
+    if total > T::zero() { simd::total(cost) / total } else { T::infinity() }
 }
