@@ -213,5 +213,5 @@ fn is_near<T: Real>(outline: &[[T; 2]], other: &[[T; 2]]) -> bool {
     let mut lanes = EdgeLanes::default();
     let closed: Vec<[T; 2]> = other.iter().chain(other.first()).copied().collect();
     lanes.set(&closed);
-    outline.iter().all(|&point| foot(&closed, &mut lanes, point).distance.abs() < T::of(SAME_PX))
+    outline.iter().all(|&point| foot(&closed, &lanes, point).distance.abs() < T::of(SAME_PX))
 }

@@ -103,7 +103,7 @@ impl<T: Real> Pool<T> {
         let (mut sum, mut count) = (0.0, 0.0);
         for sample in segment.samples.iter().step_by(stride) {
             let sample = to_frame(&scratch.restore_sample(sample), object, unit);
-            let off = foot(&self.outlines[k], &mut self.lanes, sample.point).distance - sample.distance;
+            let off = foot(&self.outlines[k], &self.lanes, sample.point).distance - sample.distance;
             sum += off * off;
             count += 1.0;
         }
