@@ -165,22 +165,25 @@ impl<T: Real> OutlineField<T> {
         }
         let (zero, one) = (T::zero(), T::one());
         let (mut squared, mut share, mut offset, mut at) = ([T::infinity(); N], [zero; N], [[zero; N]; 2], [zero; N]);
-        for k in 0..3 {
-            let (mut start, mut step, mut inverse) = ([[zero; N]; 2], [[zero; N]; 2], [zero; N]);
-            for i in 0..N {
-                if let Some(edge) = self.edges.get(before[i] as usize + k) {
-                    (start[0][i], start[1][i]) = (edge.start[0], edge.start[1]);
-                    (step[0][i], step[1][i]) = (edge.step[0], edge.step[1]);
-                    inverse[i] = edge.inverse_length_squared;
+        // Of each edge where it starts, its step, and its inverse squared length.
+        let mut fans = [[[zero; N]; 5]; 3];
+        for i in 0..N {
+            if let Some(edges) = self.edges.get(before[i] as usize..).and_then(|edges| edges.first_chunk::<3>()) {
+                for k in 0..3 {
+                    let Edge { start, step, inverse_length_squared, .. } = edges[k];
+                    (fans[k][0][i], fans[k][1][i]) = (start[0], start[1]);
+                    (fans[k][2][i], fans[k][3][i]) = (step[0], step[1]);
+                    fans[k][4][i] = inverse_length_squared;
                 }
             }
-            let arm: [[T; N]; 2] =
-                [simd::lanes(|i| points[0][i] - start[0][i]), simd::lanes(|i| points[1][i] - start[1][i])];
-            let u: [T; N] = simd::lanes(|i| (arm[0][i] * step[0][i] + arm[1][i] * step[1][i]) * inverse[i]);
+        }
+        for (k, [ax, ay, sx, sy, inverse]) in fans.iter().enumerate() {
+            let arm: [[T; N]; 2] = [simd::lanes(|i| points[0][i] - ax[i]), simd::lanes(|i| points[1][i] - ay[i])];
+            let u: [T; N] = simd::lanes(|i| (arm[0][i] * sx[i] + arm[1][i] * sy[i]) * inverse[i]);
             let u: [T; N] = simd::lanes(|i| if u[i] > zero { u[i] } else { zero });
             let u: [T; N] = simd::lanes(|i| if u[i] < one { u[i] } else { one });
             let to: [[T; N]; 2] =
-                [simd::lanes(|i| arm[0][i] - u[i] * step[0][i]), simd::lanes(|i| arm[1][i] - u[i] * step[1][i])];
+                [simd::lanes(|i| arm[0][i] - u[i] * sx[i]), simd::lanes(|i| arm[1][i] - u[i] * sy[i])];
             let length: [T; N] = simd::lanes(|i| to[0][i] * to[0][i] + to[1][i] * to[1][i]);
             share = simd::lanes(|i| if length[i] < squared[i] { u[i] } else { share[i] });
             offset[0] = simd::lanes(|i| if length[i] < squared[i] { to[0][i] } else { offset[0][i] });

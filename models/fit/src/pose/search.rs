@@ -43,6 +43,9 @@ struct Plan {
     keep: usize,
     /// Steps with wide and with narrow residuals.
     steps: [usize; 2],
+    /// Whether distances to first order, which starts are compared by, will do for refining until the last steps: for objects
+    /// that show their whole outline. Of others, what is seen tells poses apart by too little.
+    rough: bool,
 }
 
 /// A shape ready to be searched for.
@@ -107,10 +110,14 @@ pub(crate) fn search<T: Real>(
         return;
     }
     let cropped = segment.border > 0;
+    let shown = effort == Effort::Usual && !cropped && !segmentation.may_go_on(object);
+    let (starts, steps) = (FULL_TURN_STARTS, [4, 5]);
     let plan = match (effort, cropped) {
-        (Effort::Usual, false) => Plan { sizes: &CROPPED_SIZES[..1], starts: FULL_TURN_STARTS, keep: 2, steps: [4, 5] },
-        (Effort::Usual, true) => Plan { sizes: &CROPPED_SIZES, starts: FULL_TURN_STARTS, keep: 3, steps: [4, 5] },
-        (Effort::Wide, _) => Plan { sizes: &WIDE_SIZES, starts: 3 * FULL_TURN_STARTS, keep: MOST_KEPT, steps: [12, 8] },
+        (Effort::Usual, false) => Plan { sizes: &CROPPED_SIZES[..1], starts, keep: 2, steps, rough: shown },
+        (Effort::Usual, true) => Plan { sizes: &CROPPED_SIZES, starts, keep: 3, steps, rough: shown },
+        (Effort::Wide, _) => {
+            Plan { sizes: &WIDE_SIZES, starts: 3 * starts, keep: MOST_KEPT, steps: [12, 8], rough: shown }
+        }
     };
     let samples = &segment.samples;
     let few = SampleLanes::new(samples, 1 + samples.len() / SEARCH_SAMPLES, false);
@@ -137,7 +144,7 @@ pub(crate) fn search<T: Real>(
         let refined = if hopeless {
             Candidate { cost: now, ..out[i] }
         } else {
-            finish(out[i], [&most, &all], object, prototypes, size, segmentation)
+            finish(out[i], (&most, plan.rough), &all, object, prototypes, size, segmentation)
         };
         leader = leader.min(refined.cost);
         let twin = out[..kept].iter().any(|c| same(c, &refined));
@@ -173,7 +180,7 @@ fn rough<T: Real>(
     plan: Plan,
     out: &mut Vec<Candidate<T>>,
 ) {
-    let wide = Robustness { width_px: T::of(3.0), rough: true };
+    let wide = Robustness { width_px: T::of(3.0), rough: plan.rough };
     let turns = prototype.symmetry.max(1);
     let starts = if prototype.symmetry == 0 { 1 } else { plan.starts.div_ceil(turns).max(3) };
     let range = T::of(2.0 * core::f64::consts::PI) / T::of_usize(turns);
@@ -183,13 +190,13 @@ fn rough<T: Real>(
         for i in 0..starts {
             let rotation = range * T::of_usize(i) / T::of_usize(starts);
             let pose = start(segment, field, size, T::of(enlarged), rotation);
-            insert(&mut best[..plan.keep], pose.cost(field, samples, wide), pose);
+            insert(&mut best[..plan.keep], pose.cost(field, samples, Robustness { rough: true, ..wide }), pose);
         }
     }
     // Starts that stay far behind the best so far are left at that.
     let mut leader = out.iter().fold(T::infinity(), |least, candidate| least.min(candidate.cost));
     for (_, pose) in best.into_iter().flatten() {
-        let narrow = Robustness { width_px: T::of(1.5), rough: true };
+        let narrow = Robustness { width_px: T::of(1.5), rough: plan.rough };
         let (pose, wide_cost, first) = pose.refine(field, samples, wide, plan.steps[0]);
         if wide_cost > T::of(HOPELESS) * leader + T::of(0.1) {
             continue;
@@ -250,7 +257,8 @@ fn start<T: Real>(
 /// exactly symmetric.
 fn finish<T: Real>(
     candidate: Candidate<T>,
-    [most, all]: [&SampleLanes<T>; 2],
+    (most, rough): (&SampleLanes<T>, bool),
+    all: &SampleLanes<T>,
     object: u32,
     prototypes: &[Prototype<T>],
     size: ImageSize,
@@ -258,8 +266,8 @@ fn finish<T: Real>(
 ) -> Candidate<T> {
     let prototype = &prototypes[candidate.prototype];
     let field = &prototype.field;
-    // A part of the samples, roughly compared, brings the pose within reach of the last two steps.
-    let (pose, _, first) = candidate.pose.refine(field, most, Robustness { rough: true, ..fine() }, 6);
+    // A part of the samples brings the pose within reach of the last two steps.
+    let (pose, _, first) = candidate.pose.refine(field, most, Robustness { rough, ..fine() }, 6);
     let (mut pose, mut cost, second) = pose.refine(field, all, fine(), 3);
     let mut steps = first + second;
     let turn = T::of(2.0 * core::f64::consts::PI) / T::of_usize(prototype.symmetry.max(1));
