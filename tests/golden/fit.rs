@@ -147,6 +147,28 @@ fn an_overlap_is_no_object() {
     assert!(exact == 1 && scores.mae <= 1e-3, "{scores:?}");
 }
 
+/// Of objects that leave the image, what is seen tells poses apart by so little that a search by rough distances fails.
+#[test]
+fn cropped_objects_are_where_they_are() {
+    let (fitter, mut scratch) = (Fitter::new(known()).unwrap(), FitScratch::default());
+    let size = ImageSize::new(SIDE, SIDE).unwrap();
+    let painter = Painter { renderer: RendererName::Triangles, ..Painter::default() };
+    for index in [27, 195, 245] {
+        let truth = sample_scene(&SceneSettings::mds_hr(), &mdshr_bank(), size, 77, index);
+        let image = rounded(&painter.paint(&truth, size).unwrap());
+        let found = fitter.fit(image.view(), &mut scratch).unwrap().scene.objects;
+        assert_eq!(found.len(), truth.objects.len(), "{index}");
+        for Object { pose, .. } in &truth.objects {
+            let off = |other: &Object<f32>| {
+                let [x, y] = [0, 1].map(|c| other.pose.translation[c] - pose.translation[c]);
+                x.hypot(y) + (other.pose.scale - pose.scale).abs()
+            };
+            let least = found.iter().map(off).fold(f32::INFINITY, f32::min);
+            assert!(least < 2e-3, "{index}: {pose:?} is {least} from the nearest");
+        }
+    }
+}
+
 /// An ellipse and a heart of which an overlap leaves a sliver: the color of so few pixels is not quite that of the object.
 #[test]
 fn a_sliver_is_no_object() {
