@@ -117,9 +117,10 @@ impl FlatMap {
             self.mark_soft(row, width, height);
             // Behind the end of a row stands a soft pixel.
             let mut next = 0;
-            while let Some(length) = self.soft[next..].iter().position(|&soft| soft == 0) {
-                let start = next + length;
-                let end = start + self.soft[start..].iter().position(|&soft| soft != 0).unwrap_or(0);
+            while let Some(skipped) = self.soft[next..].iter().position(|&soft| soft == 0) {
+                let start = next + skipped;
+                let length = self.soft[start..].iter().position(|&soft| soft != 0);
+                let end = length.map_or(width, |length| start + length);
                 next = end;
                 let id = self.sets.push();
                 self.runs.push(Run { row: row as u32, start: start as u32, end: end as u32, label: id });
