@@ -6,6 +6,8 @@
 //! calls in a hot loop must be `#[inline(always)]`: a function that stays a call is compiled for the compile-time
 //! target only.
 
+use core::ops::Add;
+
 /// A piece of work to compile for several instruction sets.
 pub trait Kernel {
     /// What [`Self::run`] returns.
@@ -88,24 +90,23 @@ pub fn lanes<T: Copy + Default, const N: usize>(f: impl Fn(usize) -> T) -> [T; N
 ///
 /// For use inside kernels and outside: it vectorizes for the instruction set of its caller.
 #[inline(always)]
-pub fn sum<T: crate::Real>(values: &[T]) -> T {
+pub fn sum<T: Copy + Default + Add<Output = T>>(values: &[T]) -> T {
     const LANES: usize = 16;
     let (parts, rest) = values.as_chunks::<LANES>();
-    let mut sums = [T::zero(); LANES];
+    let mut sums = [T::default(); LANES];
     for part in parts {
         sums = lanes(|i| sums[i] + part[i]);
     }
-    total(sums) + rest.iter().copied().sum::<T>()
+    rest.iter().fold(total(sums), |sum, &value| sum + value)
 }
 
 /// The sum of the lanes, a power of two of them, by halves so that it vectorizes.
 #[inline(always)]
-pub fn total<T: crate::Real, const N: usize>(mut lanes: [T; N]) -> T {
+pub fn total<T: Copy + Add<Output = T>, const N: usize>(mut lanes: [T; N]) -> T {
     let mut half = N / 2;
     while half > 0 {
         for i in 0..half {
-            let upper = lanes[i + half];
-            lanes[i] += upper;
+            lanes[i] = lanes[i] + lanes[i + half];
         }
         half /= 2;
     }
@@ -116,7 +117,7 @@ pub fn total<T: crate::Real, const N: usize>(mut lanes: [T; N]) -> T {
 mod tests {
     use alloc::vec::Vec;
 
-    use super::sum;
+    use crate::simd::sum;
 
     #[test]
     fn a_sum_takes_every_value_once() {
