@@ -87,7 +87,7 @@ pub(super) struct Arguments {
     /// Number of the first picture
     #[arg(long, default_value_t = 1, value_name = "N")]
     seed: u64,
-    /// Seconds after which a run counts as endless [default: 60, with --quick 10]
+    /// Seconds after which a run counts as endless [default: 180, with --quick 60]
     #[arg(long, value_name = "S", value_parser = clap::value_parser!(u64).range(1..))]
     limit: Option<u64>,
     /// What the page says of the machine
