@@ -6,9 +6,9 @@ use alloc::vec::Vec;
 
 use dvp_core::{Real, simd};
 
-/// Cells per side of the grid, as a count and as a part of an index in lanes.
-const CELLS: usize = 64;
+/// Cells per side of the grid, as a part of an index in lanes and as a count.
 const CELLS_LANES: u32 = 64;
+const CELLS: usize = CELLS_LANES as usize;
 /// Edges shorter than this (squared, in units of the outline) are points that two vertices share.
 const SHORTEST_EDGE: f64 = 1e-12;
 
