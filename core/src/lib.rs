@@ -10,6 +10,7 @@
 //! |---|---|---|
 //! | [`real`] | f32 or f64 | one trait for both |
 //! | [`dims`] | numbers of pixels, extents of arrays | a checked size |
+//! | [`geometry`] | points | distances, boxes, the one vocabulary of the plane |
 //! | [`optim`] | losses of steps | the next learning rate |
 //! | [`diff_op`] | the inputs of a step, on slices | its output and, backward, gradients |
 //! | [`tensor`] | values and extents | arrays of any framework, and networks on them |
@@ -44,6 +45,7 @@ extern crate std;
 pub mod contour;
 pub mod diff_op;
 pub mod dims;
+pub mod geometry;
 pub mod image;
 pub mod loss;
 pub mod matching;
@@ -57,7 +59,8 @@ pub mod simd;
 pub mod tensor;
 
 pub use dims::ImageSize;
+pub use geometry::Vec2;
 pub use image::{Image, ImageView};
 pub use real::Real;
-pub use scene::{Drawing, DrawingGrad, Object, Pose, Scene, SceneGrad};
-pub use shape::Efd;
+pub use scene::{Drawing, DrawingGrad, Object, Paint, Pose, Scene, SceneGrad};
+pub use shape::{AnyShape, Efd, Outline, Shape};

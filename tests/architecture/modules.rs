@@ -1,11 +1,11 @@
-//! Inside core: `real, dims, simd, optim -> diff_op -> tensor, image -> contour -> shape -> scene -> render, matching -> loss -> metric`.
+//! Inside core: `real, dims, simd, optim -> geometry, diff_op -> tensor, image -> contour -> shape -> scene -> render, matching -> loss -> metric`.
 
 use crate::source::{code_lines, rust_sources};
 
 /// Modules in the order in which they may use each other: only earlier rows, never their own.
 const ORDER: [&[&str]; 9] = [
     &["real", "dims", "simd", "optim"],
-    &["diff_op"],
+    &["geometry", "diff_op"],
     &["tensor", "image"],
     &["contour"],
     &["shape"],

@@ -26,7 +26,7 @@ impl<T: Real> ContourLength<T> {
 
 impl<T: Real> Loss<T> for ContourLength<T> {
     type Input<'a> = &'a [Object<T>];
-    /// One per object; only `efd` is written, which must have as many rows as the object's.
+    /// One per object; only `numbers` is written, which must have room for the object's descriptors.
     type Grad = [ObjectGrad<T>];
     /// The vertices of one outline and their gradient.
     type Scratch = [Vec<[T; 2]>; 2];
@@ -35,7 +35,7 @@ impl<T: Real> Loss<T> for ContourLength<T> {
         vertices.resize(self.basis.vertex_count(), [T::zero(); 2]);
         let mut sum = T::zero();
         for object in objects {
-            self.basis.outline(object.efd.rows(), vertices)?;
+            self.basis.outline(object.shape.descriptors()?.rows(), vertices)?;
             sum += outline_length(vertices);
         }
         Ok(sum / T::of_usize(objects.len().max(1)))
@@ -53,12 +53,13 @@ impl<T: Real> Loss<T> for ContourLength<T> {
         vertices.resize(self.basis.vertex_count(), zero);
         let mut sum = T::zero();
         for (object, grad) in objects.iter().zip(grad) {
-            check_length("gradient of the descriptors", &grad.efd, object.efd.harmonic_count())?;
-            self.basis.outline(object.efd.rows(), vertices)?;
+            let descriptors = object.shape.descriptors()?;
+            check_length("gradient of the descriptors", grad.efd_rows(), descriptors.harmonic_count())?;
+            self.basis.outline(descriptors.rows(), vertices)?;
             grad_vertices.clear();
             grad_vertices.resize(vertices.len(), zero);
             sum += outline_length_vjp(vertices, cotangent / count, grad_vertices);
-            self.basis.outline_vjp(grad_vertices, &mut grad.efd)?;
+            self.basis.outline_vjp(grad_vertices, grad.efd_rows_mut())?;
         }
         Ok(sum / count)
     }

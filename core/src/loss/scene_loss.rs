@@ -137,8 +137,8 @@ impl<T: Real> SceneLoss<T> {
             sums.translation += mean_square(object.pose.translation, other.pose.translation);
             sums.scale += mean_square([object.pose.scale], [other.pose.scale]);
             sums.rotation += self.rotation.price(&found, objects, &scratch.orders)[0];
-            sums.color += mean_square(object.color, other.color);
-            self.outline_difference(&object.efd, &other.efd, scratch)?;
+            sums.color += mean_square(object.color(), other.color());
+            self.outline_difference(object.shape.descriptors()?, other.shape.descriptors()?, scratch)?;
             let squares: T = scratch.vertices.iter().map(|&[x, y]| x * x + y * y).sum();
             sums.shape += squares / T::of_usize(2 * scratch.vertices.len());
         }

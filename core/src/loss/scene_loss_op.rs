@@ -50,13 +50,9 @@ impl<T: Real> SceneLossOp<T> {
         let shapes = rows.as_chunks::<4>().0.chunks_exact(harmonics);
         for (k, shape) in shapes.enumerate() {
             let translation = [translations[2 * k], translations[2 * k + 1]];
-            scene.objects.push(Object {
-                pose: Pose { translation, scale: scales[k], rotation: rotations[k] },
-                color: [colors[3 * k], colors[3 * k + 1], colors[3 * k + 2]],
-                confidence: confidences[k],
-                efd: Efd::new(shape.to_vec()),
-                prototype: None,
-            });
+            let pose = Pose { translation, scale: scales[k], rotation: rotations[k] };
+            let color = [colors[3 * k], colors[3 * k + 1], colors[3 * k + 2]];
+            scene.objects.push(Object::of_efd(pose, color, confidences[k], Efd::new(shape.to_vec()), None));
         }
         scene
     }
@@ -72,7 +68,7 @@ impl<T: Real> SceneLossOp<T> {
             add_scaled(&mut rotations[k..], &[object.rotation], T::one());
             add_scaled(&mut colors[3 * k..], &object.color, T::one());
             add_scaled(&mut confidences[k..], &[object.confidence], T::one());
-            add_scaled(&mut rows[4 * harmonics * k..], object.efd.as_flattened(), T::one());
+            add_scaled(&mut rows[4 * harmonics * k..], &object.numbers, T::one());
         }
     }
 }

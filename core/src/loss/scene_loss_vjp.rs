@@ -36,15 +36,16 @@ pub(super) fn scene_loss_vjp<T: Real>(
             let grad = &mut grad.objects[found.prediction];
             let translation = each * weights.translation;
             mean_square_vjp(translation, object.pose.translation, other.pose.translation, &mut grad.translation);
-            mean_square_vjp(each * weights.color, object.color, other.color, &mut grad.color);
+            mean_square_vjp(each * weights.color, object.color(), other.color(), &mut grad.color);
             grad.scale += each * weights.scale * T::of(2.0) * (object.pose.scale - other.pose.scale);
             // The turn is the true angle minus the predicted one.
             grad.rotation -= each * weights.rotation * loss.rotation.price(&found, objects, &scratch.orders)[1];
-            check_length("gradient of the descriptors", &grad.efd, object.efd.harmonic_count())?;
-            loss.outline_difference(&object.efd, &other.efd, scratch)?;
+            let descriptors = object.shape.descriptors()?;
+            check_length("gradient of the descriptors", grad.efd_rows(), descriptors.harmonic_count())?;
+            loss.outline_difference(descriptors, other.shape.descriptors()?, scratch)?;
             let factor = each * weights.shape / T::of_usize(scratch.vertices.len());
             scratch.vertices.iter_mut().flatten().for_each(|value| *value *= factor);
-            loss.basis.outline_vjp(&scratch.vertices, &mut grad.efd)?;
+            loss.basis.outline_vjp(&scratch.vertices, grad.efd_rows_mut())?;
         }
     }
     Ok(())

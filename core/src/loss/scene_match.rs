@@ -75,7 +75,8 @@ impl<T: Real> SceneLossScratch<T> {
                 let Some(slot) = *slot else { continue };
                 let turn = object.pose.rotation - prediction.objects[slot].pose.rotation;
                 let order = object
-                    .efd
+                    .shape
+                    .descriptors()?
                     .reference_symmetry_order(REFERENCE_SYMMETRY_HARMONICS, T::of(REFERENCE_SYMMETRY_THRESHOLD));
                 self.matches.push(Match { pair, truth, prediction: slot, turn, order });
                 match self.orders.iter_mut().find(|entry| (entry.objects, entry.order) == (objects, order)) {

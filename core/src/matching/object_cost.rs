@@ -35,7 +35,8 @@ impl<T: Real> MatchingCost<T> {
     #[must_use]
     pub fn between(&self, a: &Object<T>, b: &Object<T>) -> T {
         let [x, y] = [0, 1].map(|i| a.pose.translation[i] - b.pose.translation[i]);
-        let rgb = [0, 1, 2].map(|i| a.color[i] - b.color[i]);
+        let (a_rgb, b_rgb) = (a.color(), b.color());
+        let rgb = [0, 1, 2].map(|i| a_rgb[i] - b_rgb[i]);
         let color = rgb.iter().map(|&v| v * v).sum::<T>().sqrt();
         self.translation * (x * x + y * y).sqrt()
             + self.color * color

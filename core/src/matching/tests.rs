@@ -56,13 +56,9 @@ fn bad_numbers_are_named_by_position() {
 
 #[test]
 fn object_cost_follows_the_formula() {
-    let object = |translation, color, confidence| Object {
-        pose: Pose { translation, scale: 1.0, rotation: 0.0 },
-        color,
-        confidence,
-        efd: Efd::default(),
-        prototype: None,
-    };
+    let pose = |translation| Pose { translation, scale: 1.0, rotation: 0.0 };
+    let object =
+        |translation, color, confidence| Object::of_efd(pose(translation), color, confidence, Efd::default(), None);
     let a = [object([0.0, 0.0], [0.0, 0.0, 0.0], 1.0)];
     let b = [object([0.3, 0.4], [0.2, 0.1, 0.2], 0.5), object([0.0, 0.0], [0.0, 0.0, 0.0], 1.0)];
     let mut costs = vec![];

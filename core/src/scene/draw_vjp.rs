@@ -2,38 +2,66 @@
 
 use super::{DrawingGrad, Object, ObjectGrad, Scene, SceneGrad};
 use crate::real::Real;
-use crate::shape::{OutlineBasis, ShapeError};
+use crate::shape::{AnyShape, Efd, Flattening, Outline, OutlineBasis, Prototype, Shape as _, ShapeError};
 
 /// Harmonics pulled back at a time, on the stack.
 const ROWS: usize = 32;
 
 impl<T: Real> Scene<T> {
-    /// Adds to `grad` the gradient of the scene, given that of its drawing; allocates nothing.
+    /// Adds to `grad` the gradient of the scene, given that of its drawing. Allocates nothing for scenes of descriptors;
+    /// the rings of other shapes are worked out again.
     ///
-    /// *Dimensions*: `grad_drawing` as [`Scene::draw`] laid the drawing out, `grad` as [`SceneGrad::reset`] lays it out.
+    /// *Dimensions*: `grad_drawing` as [`Scene::draw`] laid the drawing out, with the same `how`; `grad` as
+    /// [`SceneGrad::reset`] lays it out.
     ///
     /// # Errors
-    /// [`ShapeError::Length`] if a layout differs, [`ShapeError::TooManyHarmonics`] as in [`Scene::draw`].
-    pub fn draw_vjp(
+    /// [`ShapeError::Length`] if a layout differs, others as in [`Scene::draw`].
+    pub fn draw_vjp<'a>(
         &self,
-        basis: &OutlineBasis<T>,
+        how: impl Into<Flattening<'a, T>>,
         grad_drawing: &DrawingGrad<T>,
         grad: &mut SceneGrad<T>,
     ) -> Result<(), ShapeError> {
-        self.check_layout(basis, grad_drawing, grad)?;
+        let how = how.into();
+        self.check_layout(how.basis, grad_drawing, grad)?;
         for (value, &g) in grad.background.iter_mut().zip(&grad_drawing.background) {
             *value += g;
         }
-        let outlines = grad_drawing.vertices.chunks_exact(basis.vertex_count());
-        for ((k, object), grad_outline) in self.objects.iter().enumerate().zip(outlines) {
-            let grad_object = &mut grad.objects[k];
+        let mut unit = Outline::default();
+        let mut rest = &grad_drawing.vertices[..];
+        for ((k, object), grad_object) in self.objects.iter().enumerate().zip(&mut grad.objects) {
             for (value, &g) in grad_object.color.iter_mut().zip(&grad_drawing.colors[k]) {
                 *value += g;
             }
             grad_object.confidence += grad_drawing.confidences[k];
-            pull_back_outline(basis, object, grad_outline, grad_object);
+            let what = "gradient of the vertices";
+            let mut take = |expected: usize| {
+                let (own, others) =
+                    rest.split_at_checked(expected).ok_or(ShapeError::Length { what, expected, len: rest.len() })?;
+                rest = others;
+                Ok(own)
+            };
+            match &object.shape {
+                AnyShape::Efd(efd) | AnyShape::Prototype(Prototype { efd, .. }) => {
+                    pull_back_descriptors(how.basis, object, efd, take(how.basis.vertex_count())?, grad_object);
+                }
+                #[expect(unreachable_patterns, reason = "kinds are being added")]
+                shape => {
+                    let how = how.magnified(object.pose.scale);
+                    unit.clear();
+                    shape.flatten(&how, &mut unit)?;
+                    let grad_outline = take(unit.vertices.len())?;
+                    pull_back_pose(object, &mut unit.vertices, grad_outline, grad_object);
+                    shape.flatten_vjp(&how, &unit.vertices, &mut grad_object.numbers)?;
+                }
+            }
         }
-        Ok(())
+        if rest.is_empty() {
+            Ok(())
+        } else {
+            let len = grad_drawing.vertices.len();
+            Err(ShapeError::Length { what: "gradient of the vertices", expected: len - rest.len(), len })
+        }
     }
 
     fn check_layout(
@@ -44,7 +72,6 @@ impl<T: Real> Scene<T> {
     ) -> Result<(), ShapeError> {
         let count = self.objects.len();
         let lengths = [
-            ("gradient of the vertices", count * basis.vertex_count(), grad_drawing.vertices.len()),
             ("gradient of the colors", count, grad_drawing.colors.len()),
             ("gradient of the confidences", count, grad_drawing.confidences.len()),
             ("gradient of the objects", count, grad.objects.len()),
@@ -55,15 +82,32 @@ impl<T: Real> Scene<T> {
             }
         }
         for (object, grad_object) in self.objects.iter().zip(&grad.objects) {
-            let (expected, len) = (object.efd.harmonic_count(), grad_object.efd.len());
+            let (expected, len) = (object.shape.number_count(), grad_object.numbers.len());
             if len != expected {
-                return Err(ShapeError::Length { what: "gradient of the EFD", expected, len });
+                return Err(ShapeError::Length { what: "gradient of the numbers", expected, len });
             }
-            if expected > basis.harmonic_count() {
-                return Err(ShapeError::TooManyHarmonics { harmonic_count: expected, limit: basis.harmonic_count() });
+            let harmonic_count = object.efd_rows().len();
+            if harmonic_count > basis.harmonic_count() {
+                return Err(ShapeError::TooManyHarmonics { harmonic_count, limit: basis.harmonic_count() });
             }
         }
         Ok(())
+    }
+}
+
+/// Gradients of the pose; `unit`, the outline in the frame of the shape, becomes the gradient with respect to itself:
+/// scale R^T g.
+fn pull_back_pose<T: Real>(object: &Object<T>, unit: &mut [[T; 2]], grad_outline: &[[T; 2]], grad: &mut ObjectGrad<T>) {
+    let scale = object.pose.scale;
+    let (sin, cos) = object.pose.rotation.sin_cos();
+    for (vertex, &[gx, gy]) in unit.iter_mut().zip(grad_outline) {
+        grad.translation[0] += gx;
+        grad.translation[1] += gy;
+        let [x, y] = *vertex;
+        let [hx, hy] = [cos * gx + sin * gy, cos * gy - sin * gx];
+        grad.scale += hx * x + hy * y;
+        grad.rotation += scale * (hy * x - hx * y);
+        *vertex = [scale * hx, scale * hy];
     }
 }
 
@@ -72,9 +116,10 @@ impl<T: Real> Scene<T> {
 /// The outline is linear in the descriptors and rotation mixes only x with y, so that the unit outline is not needed:
 /// with F the descriptors' gradient as if the pose were the identity, and H = R^T F (rows (a, b) with (c, d)),
 /// the gradient is scale H for the descriptors E, <H, E> for the scale and scale <H, J E> for the angle, J a quarter turn.
-fn pull_back_outline<T: Real>(
+fn pull_back_descriptors<T: Real>(
     basis: &OutlineBasis<T>,
     object: &Object<T>,
+    efd: &Efd<T>,
     grad_outline: &[[T; 2]],
     grad: &mut ObjectGrad<T>,
 ) {
@@ -84,7 +129,7 @@ fn pull_back_outline<T: Real>(
     }
     let scale = object.pose.scale;
     let (sin, cos) = object.pose.rotation.sin_cos();
-    let chunks = object.efd.rows().chunks(ROWS).zip(grad.efd.chunks_mut(ROWS));
+    let chunks = efd.rows().chunks(ROWS).zip(grad.numbers.as_chunks_mut::<4>().0.chunks_mut(ROWS));
     for (chunk, (rows, grad_rows)) in chunks.enumerate() {
         let mut plain = [[T::zero(); 4]; ROWS];
         basis.pull_back(chunk * ROWS, grad_outline, &mut plain[..rows.len()]);

@@ -21,7 +21,7 @@ mod tests;
 use alloc::vec::Vec;
 
 use crate::real::Real;
-use crate::shape::Efd;
+use crate::shape::{AnyShape, Efd, Rings, Shape as _};
 
 pub use compositing::Compositing;
 pub use edge::{EdgeLaw, EdgeProfile, PixelProfile};
@@ -40,26 +40,34 @@ pub struct Pose<T> {
     pub rotation: T,
 }
 
-/// One flat object.
+/// What an object is filled with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Paint<T> {
+    /// One color everywhere, RGB, [0, 1].
+    Flat([T; 3]),
+}
+
+/// One object: a shape, where it stands, what it is filled with.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Object<T> {
+    /// What it encloses, in its own frame.
+    pub shape: AnyShape<T>,
     /// Position, size and angle.
     pub pose: Pose<T>,
-    /// RGB, [0, 1].
-    pub color: [T; 3],
+    /// What it is filled with.
+    pub paint: Paint<T>,
     /// Probability of being there, and opacity; [0, 1].
     pub confidence: T,
-    /// Shape of the unit outline.
-    pub efd: Efd<T>,
-    /// Index into the bank the shape was taken from.
-    pub prototype: Option<usize>,
 }
 
 /// A background, objects, and how they are painted.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene<T> {
-    /// RGB, [0, 1].
+    /// RGB, [0, 1]. Of a transparent scene: what it is shown on where an image has no alpha.
     pub background: [T; 3],
+    /// Whether there is nothing behind the objects: images with alpha are clear there.
+    pub transparent: bool,
     /// Under `over` compositing later objects hide earlier ones; under `blend` the order has no effect.
     pub objects: Vec<Object<T>>,
     /// How coverage falls off at an outline.
@@ -77,12 +85,12 @@ pub struct ObjectGrad<T> {
     pub scale: T,
     /// With respect to `pose.rotation`, per radian.
     pub rotation: T,
-    /// With respect to `color`.
+    /// With respect to the color of `paint`.
     pub color: [T; 3],
     /// With respect to `confidence`.
     pub confidence: T,
-    /// With respect to `efd`, row by row.
-    pub efd: Vec<[T; 4]>,
+    /// With respect to the numbers of `shape`; of descriptors a_1, b_1, c_1, d_1, a_2, ...
+    pub numbers: Vec<T>,
 }
 
 /// Gradient of a scalar with respect to a [`Scene`].
@@ -103,6 +111,9 @@ pub struct Drawing<T> {
     pub vertices: Vec<[T; 2]>,
     /// Object k owns `vertices[starts[k]..starts[k + 1]]`; one longer than the number of objects (empty: no objects).
     pub starts: Vec<usize>,
+    /// Where rings begin that are not the first of their object, rising: what an object encloses is what lies inside
+    /// of an odd number of its rings.
+    pub breaks: Vec<usize>,
     /// RGB per object.
     pub colors: Vec<[T; 3]>,
     /// Per object, [0, 1].
@@ -122,11 +133,73 @@ pub struct DrawingGrad<T> {
     pub confidences: Vec<T>,
 }
 
+impl<T> From<[T; 3]> for Paint<T> {
+    fn from(color: [T; 3]) -> Self {
+        Self::Flat(color)
+    }
+}
+
+impl<T: Real> Object<T> {
+    /// An object made of descriptors, those of a bank's prototype if `prototype` names one.
+    #[must_use]
+    pub fn of_efd(pose: Pose<T>, color: [T; 3], confidence: T, efd: Efd<T>, prototype: Option<usize>) -> Self {
+        Self { shape: AnyShape::of_efd(efd, prototype), pose, paint: Paint::Flat(color), confidence }
+    }
+
+    /// RGB, [0, 1].
+    #[inline]
+    #[must_use]
+    pub fn color(&self) -> [T; 3] {
+        let Paint::Flat(color) = self.paint;
+        color
+    }
+
+    /// The color to write to.
+    #[inline]
+    #[must_use]
+    pub fn color_mut(&mut self) -> &mut [T; 3] {
+        let Paint::Flat(color) = &mut self.paint;
+        color
+    }
+
+    /// Rows (a_n, b_n, c_n, d_n) of the descriptors that the shape is made of; none for shapes of other kinds.
+    #[must_use]
+    pub fn efd_rows(&self) -> &[[T; 4]] {
+        self.shape.efd().map_or(&[], Efd::rows)
+    }
+
+    /// Index into the bank that the shape was taken from.
+    #[must_use]
+    pub fn prototype(&self) -> Option<usize> {
+        self.shape.prototype()
+    }
+}
+
+impl<T> ObjectGrad<T> {
+    /// The gradient of descriptors, row by row.
+    #[must_use]
+    pub fn efd_rows(&self) -> &[[T; 4]] {
+        self.numbers.as_chunks().0
+    }
+
+    /// The gradient of descriptors, to write to.
+    #[must_use]
+    pub fn efd_rows_mut(&mut self) -> &mut [[T; 4]] {
+        self.numbers.as_chunks_mut().0
+    }
+}
+
 impl<T: Real> Scene<T> {
     /// A background without objects, in the reference system's edge profile and compositing.
     #[must_use]
     pub fn empty(background: [T; 3]) -> Self {
-        Self { background, objects: Vec::new(), edge: EdgeProfile::reference(), compositing: Compositing::default() }
+        Self {
+            background,
+            transparent: false,
+            objects: Vec::new(),
+            edge: EdgeProfile::reference(),
+            compositing: Compositing::default(),
+        }
     }
 
     /// Rounds confidences: objects of more than 1/2 are there, the others are taken out.
@@ -143,10 +216,10 @@ impl<T: Real> SceneGrad<T> {
         self.background = [zero; 3];
         self.objects.resize(scene.objects.len(), ObjectGrad::default());
         for (grad, object) in self.objects.iter_mut().zip(&scene.objects) {
-            let mut efd = core::mem::take(&mut grad.efd);
-            efd.clear();
-            efd.resize(object.efd.harmonic_count(), [zero; 4]);
-            *grad = ObjectGrad { efd, ..ObjectGrad::default() };
+            let mut numbers = core::mem::take(&mut grad.numbers);
+            numbers.clear();
+            numbers.resize(object.shape.number_count(), zero);
+            *grad = ObjectGrad { numbers, ..ObjectGrad::default() };
         }
     }
 }
@@ -158,7 +231,7 @@ impl<T: Real> Drawing<T> {
         self.colors.len()
     }
 
-    /// The outline of object `k`, scene units.
+    /// The vertices of object `k`, of all its rings, scene units.
     ///
     /// # Panics
     /// If there is no object `k`.
@@ -167,22 +240,42 @@ impl<T: Real> Drawing<T> {
         &self.vertices[self.starts[k]..self.starts[k + 1]]
     }
 
+    /// The rings of object `k`, scene units.
+    ///
+    /// # Panics
+    /// If there is no object `k`.
+    #[must_use]
+    pub fn rings(&self, k: usize) -> Rings<'_, T> {
+        let (first, end) = (self.starts[k], self.starts[k + 1]);
+        let from = self.breaks.partition_point(|&start| start <= first);
+        let until = from + self.breaks[from..].partition_point(|&start| start < end);
+        Rings { vertices: &self.vertices[first..end], breaks: &self.breaks[from..until], first }
+    }
+
     /// Removes everything, keeps the memory.
     pub fn clear(&mut self) {
         self.background = [T::zero(); 3];
         self.vertices.clear();
         self.starts.clear();
         self.starts.push(0);
+        self.breaks.clear();
         self.colors.clear();
         self.confidences.clear();
     }
 
-    /// Appends an object.
+    /// Appends an object of one ring.
     pub fn push(&mut self, outline: &[[T; 2]], color: [T; 3], confidence: T) {
+        self.push_rings(Rings::one(outline), color, confidence);
+    }
+
+    /// Appends an object of several rings.
+    pub fn push_rings(&mut self, rings: Rings<'_, T>, color: [T; 3], confidence: T) {
         if self.starts.is_empty() {
             self.starts.push(0);
         }
-        self.vertices.extend_from_slice(outline);
+        let first = self.vertices.len();
+        self.vertices.extend_from_slice(rings.vertices);
+        self.breaks.extend(rings.breaks.iter().map(|&start| first + start - rings.first));
         self.starts.push(self.vertices.len());
         self.colors.push(color);
         self.confidences.push(confidence);

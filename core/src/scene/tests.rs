@@ -6,13 +6,9 @@ use super::*;
 use crate::shape::{OutlineBasis, ShapeError};
 
 fn scene() -> Scene<f64> {
-    let object = |harmonics: usize| Object {
-        pose: Pose { translation: [0.25, 0.5], scale: 0.5, rotation: core::f64::consts::FRAC_PI_2 },
-        color: [0.1, 0.2, 0.3],
-        confidence: 0.75,
-        efd: Efd::new(vec![[1.0, 0.0, 0.0, -1.0]]).resized(harmonics),
-        prototype: None,
-    };
+    let pose = Pose { translation: [0.25, 0.5], scale: 0.5, rotation: core::f64::consts::FRAC_PI_2 };
+    let ellipse = |harmonics| Efd::new(vec![[1.0, 0.0, 0.0, -1.0]]).resized(harmonics);
+    let object = |harmonics| Object::of_efd(pose, [0.1, 0.2, 0.3], 0.75, ellipse(harmonics), None);
     Scene { objects: vec![object(1), object(3)], ..Scene::empty([1.0, 0.5, 0.0]) }
 }
 
@@ -59,10 +55,10 @@ fn a_second_drawing_reuses_the_memory() {
     let (mut drawing, mut grad) = (Drawing::default(), SceneGrad::default());
     scene().draw(&basis, &mut drawing).unwrap();
     grad.reset(&scene());
-    let before = (drawing.vertices.as_ptr(), drawing.starts.as_ptr(), grad.objects[1].efd.as_ptr());
+    let before = (drawing.vertices.as_ptr(), drawing.starts.as_ptr(), grad.objects[1].numbers.as_ptr());
     scene().draw(&basis, &mut drawing).unwrap();
     grad.reset(&scene());
-    assert_eq!(before, (drawing.vertices.as_ptr(), drawing.starts.as_ptr(), grad.objects[1].efd.as_ptr()));
+    assert_eq!(before, (drawing.vertices.as_ptr(), drawing.starts.as_ptr(), grad.objects[1].numbers.as_ptr()));
 }
 
 #[test]
@@ -74,7 +70,7 @@ fn a_gradient_of_another_layout_is_refused() {
     let refused = scene.draw_vjp(&basis, &grad_drawing, &mut grad);
     assert_eq!(refused, Err(ShapeError::Length { what: "gradient of the objects", expected: 2, len: 0 }));
     grad.reset(&scene);
-    grad.objects[1].efd.pop();
+    grad.objects[1].numbers.pop();
     let refused = scene.draw_vjp(&basis, &grad_drawing, &mut grad);
-    assert_eq!(refused, Err(ShapeError::Length { what: "gradient of the EFD", expected: 3, len: 2 }));
+    assert_eq!(refused, Err(ShapeError::Length { what: "gradient of the numbers", expected: 12, len: 11 }));
 }

@@ -8,16 +8,16 @@
 //! | `efd_model` | [`EfdModel`], descriptors as a [`ShapeModel`] | same file |
 //! | `bank` | weights to a mixture of prototypes, [`PrototypeBank`], [`PrototypeModel`] | same file |
 //! | `mdshr` | the built-in bank, [`mdshr_bank`] | |
-//! | `disk`, `polygon`, `bezier` | the other models: [`Disk`], [`Polygon`], [`CubicBezier`] | same files |
+//! | `any` | every kind of shape behind one trait: [`Shape`], [`AnyShape`] | same file |
+//! | `outline` | the polygons that renderers paint, [`Outline`], [`Rings`], and how curves become them, [`Flattening`] | |
 //! | `fourier` | closed polygon to descriptors, [`Efd::from_contour`] | none: data, not parameters |
 //! | `normalize` | descriptors to their normal form, [`Efd::normalize`] | `normalize_vjp` |
 //! | `outline_op`, `normalize_op` | any model's outlines, mixtures and normal forms as steps of a batch | same files |
 //! | `measure` | area, perimeter, truncation error | |
 //! | `symmetry` | which turns map an outline on itself, [`Efd::symmetry`] | |
 
+mod any;
 mod bank;
-mod bezier;
-mod disk;
 mod efd;
 mod efd_model;
 mod efd_vjp;
@@ -27,8 +27,8 @@ mod measure;
 mod normalize;
 mod normalize_op;
 mod normalize_vjp;
+mod outline;
 mod outline_op;
-mod polygon;
 mod symmetry;
 #[cfg(test)]
 mod tests;
@@ -38,16 +38,15 @@ use alloc::vec::Vec;
 
 use crate::real::Real;
 
+pub use any::{AnyShape, PoseFreedom, Prototype, Shape};
 pub use bank::{PrototypeBank, PrototypeModel};
-pub use bezier::CubicBezier;
-pub use disk::Disk;
 pub use efd::OutlineBasis;
 pub use efd_model::EfdModel;
 pub use mdshr::{MDSHR_NAMES, mdshr_bank};
 pub use normalize::Normalized;
 pub use normalize_op::NormalizeOp;
+pub use outline::{Flattening, Outline, Rings};
 pub use outline_op::{MixOp, OutlineOp};
-pub use polygon::Polygon;
 pub use symmetry::{REFERENCE_SYMMETRY_HARMONICS, REFERENCE_SYMMETRY_THRESHOLD, SYMMETRY_TOLERANCE, Symmetry};
 
 /// Vertices of an outline in the reference system: 64 parameters t = i / 63, both end points included.
@@ -100,7 +99,8 @@ impl<T: Real> Efd<T> {
     }
 }
 
-/// A family of unit outlines: parameters in, vertices out, and the way back for gradients.
+/// A decoder of unit outlines, for batches of tensors: parameters in, always as many vertices out, and the way back for
+/// gradients. One shape with its numbers is a [`Shape`].
 pub trait ShapeModel<T: Real> {
     /// Length of the parameter slice.
     fn parameter_count(&self) -> usize;
@@ -178,6 +178,11 @@ pub enum ShapeError {
     },
     /// Coordinates so large that lengths overflow.
     TooLarge,
+    /// Descriptors are needed, and the shape is not made of them.
+    NoDescriptors {
+        /// The kind of the shape.
+        kind: &'static str,
+    },
     /// The first harmonic vanishes, so that there is no size to normalize by.
     Degenerate,
 }
@@ -196,6 +201,9 @@ impl core::fmt::Display for ShapeError {
                 )
             }
             Self::TooLarge => write!(f, "the contour's lengths overflow: scale its coordinates down"),
+            Self::NoDescriptors { kind } => {
+                write!(f, "a {kind} is not made of descriptors; take those of its outline (`Shape::efd`)")
+            }
             Self::Degenerate => write!(f, "the first harmonic is zero: the shape has no size to normalize by"),
         }
     }

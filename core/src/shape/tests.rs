@@ -123,23 +123,6 @@ fn mixing_and_choosing() {
 }
 
 #[test]
-fn a_bezier_segment_by_hand() {
-    // Two segments of two samples; the middle of the first: (p + 3 q + 3 r + s) / 8 = (0 + 0 + 6 + 2, 0 + 6 + 6 + 0) / 8.
-    let model = CubicBezier::new(2, 2).unwrap();
-    let path = [0.0, 0.0, 0.0, 2.0, 2.0, 2.0, 2.0, 0.0, 2.0, -2.0, 0.0, -2.0];
-    let mut outline = [[0.0; 2]; 4];
-    model.outline(&path, &mut outline).unwrap();
-    assert_eq!(outline, [[0.0, 0.0], [1.0, 1.5], [2.0, 0.0], [1.0, -1.5]]);
-}
-
-#[test]
-fn models_refuse_fewer_than_three_vertices() {
-    assert_eq!(Disk::<f64>::new(2), Err(ShapeError::TooFewPoints { len: 2 }));
-    assert_eq!(Polygon::new(2), Err(ShapeError::TooFewPoints { len: 2 }));
-    assert_eq!(CubicBezier::<f64>::new(1, 2), Err(ShapeError::TooFewPoints { len: 2 }));
-}
-
-#[test]
 fn normal_forms_of_tiny_and_huge_shapes() {
     // Squares of these numbers leave the range of f32.
     for scale in [1e-30_f32, 1.0, 1e30] {
