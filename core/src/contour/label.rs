@@ -5,6 +5,7 @@ use alloc::vec::Vec;
 
 use super::{Connectivity, ContourError};
 use crate::dims::ImageSize;
+use crate::geometry::DisjointSets;
 
 /// The connected components of a mask.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -36,64 +37,54 @@ pub fn label(mask: &[bool], size: ImageSize, connectivity: Connectivity) -> Resu
     if len != expected {
         return Err(ContourError::Length { expected, len });
     }
-    let width = size.width();
+    Ok(label_by(size, connectivity, |i| mask[i], |_, _| true))
+}
+
+/// Labels the connected components of the pixels that are `inside`, where neighbors are in one piece only if they are
+/// `alike`; both are told the indices of pixels, row by row.
+#[must_use]
+pub fn label_by(
+    size: ImageSize,
+    connectivity: Connectivity,
+    inside: impl Fn(usize) -> bool,
+    alike: impl Fn(usize, usize) -> bool,
+) -> Components {
+    let (width, len) = (size.width(), size.pixels());
+    let eight = connectivity == Connectivity::Eight;
+    // The number of a pixel's set, from 1; 0 is the outside.
     let mut labels = vec![0_u32; len];
-    // Provisional label k has the parent parents[k], itself if it is a root; 0 is the outside.
-    let mut parents = vec![0_u32];
-    for (index, _) in mask.iter().enumerate().filter(|(_, inside)| **inside) {
-        let (row, column) = (index / width, index % width);
-        let (first_row, first, last) = (row == 0, column == 0, column + 1 == width);
-        let eight = connectivity == Connectivity::Eight;
-        let neighbors = [
-            if first { 0 } else { labels[index - 1] },
-            if first_row { 0 } else { labels[index - width] },
-            if first_row || first || !eight { 0 } else { labels[index - width - 1] },
-            if first_row || last || !eight { 0 } else { labels[index - width + 1] },
+    let mut sets = DisjointSets::default();
+    sets.reset(1);
+    for index in (0..len).filter(|&index| inside(index)) {
+        let (column, below_first) = (index % width, index >= width);
+        let before = [
+            (column > 0).then(|| index - 1),
+            below_first.then(|| index - width),
+            (below_first && eight && column > 0).then(|| index - width - 1),
+            (below_first && eight && column + 1 < width).then(|| index - width + 1),
         ];
-        let mut joined = 0;
-        for neighbor in neighbors.into_iter().filter(|&neighbor| neighbor > 0) {
-            joined = if joined == 0 { find(&mut parents, neighbor) } else { join(&mut parents, joined, neighbor) };
+        let mut set = 0;
+        for neighbor in before.into_iter().flatten().filter(|&neighbor| labels[neighbor] > 0 && alike(index, neighbor))
+        {
+            set = if set == 0 { sets.root(labels[neighbor]) } else { sets.unite(set, labels[neighbor]) };
         }
-        if joined == 0 {
-            // At most MAX_PIXELS = 2^28 labels.
-            joined = u32::try_from(parents.len()).unwrap_or(u32::MAX);
-            parents.push(joined);
-        }
-        labels[index] = joined;
+        labels[index] = if set == 0 { sets.push() } else { set };
     }
-    // Roots are the smallest of their set, so that a parent is numbered before its children.
+    // Roots are the lowest of their set, so that a root is numbered before the others.
     let mut sizes = Vec::new();
-    let mut numbers = vec![0_u32; parents.len()];
-    for k in 1..parents.len() {
-        let parent = parents[k] as usize;
-        if parent == k {
+    let mut numbers = vec![0_u32; sets.len()];
+    for k in (1_u32..).take(sets.len() - 1) {
+        let root = sets.root(k);
+        if root == k {
             sizes.push(0);
-            numbers[k] = u32::try_from(sizes.len()).unwrap_or(u32::MAX);
+            numbers[k as usize] = u32::try_from(sizes.len()).unwrap_or(u32::MAX);
         } else {
-            numbers[k] = numbers[parent];
+            numbers[k as usize] = numbers[root as usize];
         }
     }
     for label in labels.iter_mut().filter(|label| **label > 0) {
         *label = numbers[*label as usize];
         sizes[*label as usize - 1] += 1;
     }
-    Ok(Components { labels, sizes })
-}
-
-/// The root of a label; halves the path to it.
-fn find(parents: &mut [u32], mut label: u32) -> u32 {
-    while parents[label as usize] != label {
-        let grandparent = parents[parents[label as usize] as usize];
-        parents[label as usize] = grandparent;
-        label = grandparent;
-    }
-    label
-}
-
-/// Joins two sets; the smaller root stays and comes out.
-fn join(parents: &mut [u32], a: u32, b: u32) -> u32 {
-    let (a, b) = (find(parents, a), find(parents, b));
-    let (low, high) = (a.min(b), a.max(b));
-    parents[high as usize] = low;
-    low
+    Components { labels, sizes }
 }

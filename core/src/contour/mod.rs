@@ -2,7 +2,7 @@
 //!
 //! | file | comes in | goes out |
 //! |---|---|---|
-//! | `label` | a mask | its connected components, [`label`] |
+//! | `label` | a mask, or what neighbors have in common | connected components, [`label`], [`label_by`] |
 //! | `walk` | a yes or no per pixel | the cracks between yes and no, loop by loop |
 //! | `trace` | a mask, or a field and a level | closed polygons, [`trace_mask`], [`trace_level`] |
 //! | `polygon` | a polygon | area, perimeter, inside or not, points at equal distances |
@@ -18,7 +18,7 @@ mod tests;
 mod trace;
 mod walk;
 
-pub use label::{Components, label};
+pub use label::{Components, label, label_by};
 pub use polygon::{contains, perimeter, resample, signed_area};
 pub use trace::{trace_level, trace_mask};
 

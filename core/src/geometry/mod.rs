@@ -1,13 +1,28 @@
-//! The plane: the one vocabulary of points and directions that shapes, scenes and fits share.
+//! The plane: the one vocabulary of points, distances and maps that shapes, scenes and fits share.
 //!
 //! | file | holds |
 //! |---|---|
 //! | `vec2` | [`Vec2`], points and directions |
+//! | `px` | [`Px`], pixels told apart from scene units |
+//! | `segment` | [`Segment`], and the point of it that is nearest to a given point |
+//! | `similarity` | [`Similarity`]: turns, growth, shifts, reflections |
+//! | `hull` | [`convex_hull`] |
+//! | `disjoint` | [`DisjointSets`]: union-find |
 //!
-//! Proved by `tests.rs` in this folder.
+//! Proved by `tests.rs` in this folder and `tests/property/geometry.rs`.
 
+mod disjoint;
+mod hull;
+mod px;
+mod segment;
+mod similarity;
 #[cfg(test)]
 mod tests;
 mod vec2;
 
+pub use disjoint::DisjointSets;
+pub use hull::{convex_hull, push_turning};
+pub use px::Px;
+pub use segment::{Nearest, Segment};
+pub use similarity::Similarity;
 pub use vec2::Vec2;

@@ -1,6 +1,7 @@
 //! Poses: a unit outline in, the outline of an object out, in scene units.
 
 use super::Pose;
+use crate::geometry::{Similarity, Vec2};
 use crate::real::Real;
 
 impl<T: Real> Pose<T> {
@@ -13,7 +14,7 @@ impl<T: Real> Pose<T> {
     /// Where a point of the unit outline goes: scale R(rotation) point + translation.
     #[must_use]
     pub fn transform_point(&self, point: T::Vec2) -> T::Vec2 {
-        let [x, y] = self.apply(self.columns(), T::xy(point));
+        let Vec2 { x, y } = self.similarity().point(T::xy(point).into());
         T::vec2(x, y)
     }
 
@@ -30,12 +31,18 @@ impl<T: Real> Pose<T> {
         Some(Self { translation, scale, rotation: -self.rotation })
     }
 
+    /// The pose as a map of the plane.
+    #[must_use]
+    pub fn similarity(&self) -> Similarity<T> {
+        Similarity { turn: Vec2::from(self.columns()), translation: self.translation.into(), reflected: false }
+    }
+
     /// Moves the points of a unit outline to their place, in place. *Derivative*:
     /// [`transform_vjp`](Self::transform_vjp).
     pub fn transform(&self, outline: &mut [[T; 2]]) {
-        let columns = self.columns();
+        let map = self.similarity();
         for point in outline {
-            *point = self.apply(columns, *point);
+            *point = map.point(Vec2::from(*point)).to_array();
         }
     }
 
@@ -43,11 +50,6 @@ impl<T: Real> Pose<T> {
     fn columns(&self) -> [T; 2] {
         let (sin, cos) = self.rotation.sin_cos();
         [self.scale * cos, self.scale * sin]
-    }
-
-    #[inline(always)]
-    fn apply(&self, [cos, sin]: [T; 2], [x, y]: [T; 2]) -> [T; 2] {
-        [cos * x - sin * y + self.translation[0], sin * x + cos * y + self.translation[1]]
     }
 }
 
