@@ -24,7 +24,7 @@ fn batch(judge: &Judge<f64>) -> Batch<f64> {
     let object = |place: f64, shape: usize| {
         let pose = Pose { translation: [place, 0.9 - place], scale: 0.14, rotation: 2.0 * place };
         let efd = bank.prototypes()[shape].clone();
-        Object { pose, color: [0.9, place, 0.3], confidence: 1.0, efd, prototype: Some(shape) }
+        Object::of_efd(pose, [0.9, place, 0.3], 1.0, efd, Some(shape))
     };
     let scene = |objects| Scene { objects, ..Scene::empty([0.2, 0.5, 0.8]) };
     let scenes = vec![scene(vec![object(0.3, 0)]), scene(vec![object(0.6, 1), object(0.25, 2)])];

@@ -133,12 +133,15 @@ fn scenes(activated: &Activated<Host>, descriptors: &Tensor<Host>) -> Result<Vec
     .map(Tensor::to_f64);
     let (background, colors, rotations, scales, translations, rows) =
         (background?, colors?, rotations?, scales?, translations?, rows?);
-    let object = |k: usize| Object {
-        pose: Pose { translation: translations.as_chunks().0[k], scale: scales[k], rotation: rotations[k] },
-        color: colors.as_chunks().0[k],
-        confidence: 1.0,
-        efd: Efd::new(rows.as_chunks().0[k * HARMONICS..][..HARMONICS].to_vec()),
-        prototype: None,
+    let object = |k: usize| {
+        let pose = Pose { translation: translations.as_chunks().0[k], scale: scales[k], rotation: rotations[k] };
+        Object::of_efd(
+            pose,
+            colors.as_chunks().0[k],
+            1.0,
+            Efd::new(rows.as_chunks().0[k * HARMONICS..][..HARMONICS].to_vec()),
+            None,
+        )
     };
     let scene = |item: usize| Scene {
         objects: (item * OBJECTS..(item + 1) * OBJECTS).map(object).collect(),

@@ -27,16 +27,19 @@ fn scene<T: Real>(jitter: f64) -> Scene<T> {
         ([0.35, 0.72], 0.25, 2.0, [0.3, 0.3, 0.9], &ellipse),
         ([0.68, 0.62], 0.16, -0.7, [0.8, 0.8, 0.1], &heart),
     ];
-    let objects = objects.map(|([x, y], scale, rotation, color, shape)| Object {
-        pose: Pose {
+    let objects = objects.map(|([x, y], scale, rotation, color, shape)| {
+        let pose = Pose {
             translation: [T::of(x + jitter), T::of(y - jitter)],
             scale: T::of(scale * (1.0 + jitter)),
             rotation: T::of(rotation + jitter),
-        },
-        color: color.map(|c| T::of(c - jitter)),
-        confidence: T::one(),
-        efd: Efd::new((1..=HARMONICS).map(|n| shape(n).map(T::of)).collect()),
-        prototype: None,
+        };
+        Object::of_efd(
+            pose,
+            color.map(|c| T::of(c - jitter)),
+            T::one(),
+            Efd::new((1..=HARMONICS).map(|n| shape(n).map(T::of)).collect()),
+            None,
+        )
     });
     Scene { objects: objects.into(), ..Scene::empty([T::of(0.4); 3]) }
 }

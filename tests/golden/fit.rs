@@ -83,16 +83,19 @@ fn truths(shared: &Path, count: usize) -> Vec<Scene<f32>> {
         objects: scene
             .objects
             .iter()
-            .map(|object| Object {
-                pose: Pose {
+            .map(|object| {
+                let pose = Pose {
                     translation: object.pose.translation.map(|v| v.as_f32()),
                     scale: object.pose.scale.as_f32(),
                     rotation: object.pose.rotation.as_f32(),
-                },
-                color: object.color.map(|v| v.as_f32()),
-                confidence: object.confidence.as_f32(),
-                efd: Efd::new(object.efd.rows().iter().map(|row| row.map(|v| v.as_f32())).collect()),
-                prototype: object.prototype,
+                };
+                Object::of_efd(
+                    pose,
+                    object.color.map(|v| v.as_f32()),
+                    object.confidence.as_f32(),
+                    Efd::new(object.efd.rows().iter().map(|row| row.map(|v| v.as_f32())).collect()),
+                    object.prototype,
+                )
             })
             .collect(),
         ..Scene::empty(scene.background.map(|v| v.as_f32()))

@@ -27,7 +27,7 @@ fn reference_committed() {
     for Excerpt { prototype, translation, scale, rotation_vec, vertices } in excerpts {
         let pose = Pose { translation, scale, rotation: rotation_from_pair(rotation_vec) };
         let efd = bank.prototypes()[prototype].clone();
-        let object = Object { pose, color: [0.0; 3], confidence: 1.0, efd, prototype: Some(prototype) };
+        let object = Object::of_efd(pose, [0.0; 3], 1.0, efd, Some(prototype));
         let scene = Scene { objects: vec![object], ..Scene::empty([1.0; 3]) };
         let mut drawing = Drawing::default();
         scene.draw(&OutlineBasis::new(64, 64).unwrap(), &mut drawing).unwrap();

@@ -27,16 +27,13 @@ pub(crate) struct SceneRecord {
 
 impl SceneRecord {
     pub(crate) fn scene(&self) -> Scene<f64> {
-        let object = |record: &ObjectRecord| Object {
-            pose: Pose {
+        let object = |record: &ObjectRecord| {
+            let pose = Pose {
                 translation: record.translation,
                 scale: record.scale,
                 rotation: rotation_from_pair(record.rotation_vec),
-            },
-            color: record.color,
-            confidence: record.confidence,
-            efd: Efd::new(record.efd.clone()),
-            prototype: None,
+            };
+            Object::of_efd(pose, record.color, record.confidence, Efd::new(record.efd.clone()), None)
         };
         Scene { objects: self.objects.iter().map(object).collect(), ..Scene::empty(self.background) }
     }

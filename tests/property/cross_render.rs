@@ -28,12 +28,9 @@ fn scene() -> Drawing<f64> {
         ([0.95, 0.20], 0.20, 0.0, [0.8, 0.8, 0.1], 1.0, circle),
         ([0.25, 0.80], 0.22, 2.5, [0.2, 0.9, 0.4], 0.8, bean),
     ];
-    let objects = objects.map(|(translation, scale, rotation, color, confidence, rows)| Object {
-        pose: Pose { translation, scale, rotation },
-        color,
-        confidence,
-        efd: Efd::new(rows),
-        prototype: None,
+    let objects = objects.map(|(translation, scale, rotation, color, confidence, rows)| {
+        let pose = Pose { translation, scale, rotation };
+        Object::of_efd(pose, color, confidence, Efd::new(rows), None)
     });
     let mut drawing = Drawing::default();
     let scene = Scene { objects: objects.into(), ..Scene::empty([0.3, 0.3, 0.35]) };

@@ -50,12 +50,15 @@ fn apart() -> impl Strategy<Value = Scene<f64>> {
         .prop_map(|(slots, background)| {
             let color = |levels: [u8; 3]| levels.map(|level| 0.06 + 0.21 * f64::from(level));
             let objects = slots.into_iter().zip([[0.27, 0.27], [0.73, 0.27], [0.27, 0.73], [0.73, 0.73]]);
-            let objects = objects.map(|(((prototype, shift, scale, rotation), levels), center)| Object {
-                pose: Pose { translation: [center[0] + shift[0], center[1] + shift[1]], scale, rotation },
-                color: color(levels),
-                confidence: 1.0,
-                efd: mdshr_bank(HARMONICS).prototypes()[prototype].clone(),
-                prototype: Some(prototype),
+            let objects = objects.map(|(((prototype, shift, scale, rotation), levels), center)| {
+                let pose = Pose { translation: [center[0] + shift[0], center[1] + shift[1]], scale, rotation };
+                Object::of_efd(
+                    pose,
+                    color(levels),
+                    1.0,
+                    mdshr_bank(HARMONICS).prototypes()[prototype].clone(),
+                    Some(prototype),
+                )
             });
             Scene { objects: objects.collect(), ..Scene::empty(color(background)) }
         })
@@ -97,16 +100,19 @@ fn agrees<T: Real>(fit: &Fit<T>, truth: &Scene<f64>) -> Result<(), TestCaseError
 }
 
 fn to_f32(scene: &Scene<f64>) -> Scene<f32> {
-    let objects = scene.objects.iter().map(|object| Object {
-        pose: Pose {
+    let objects = scene.objects.iter().map(|object| {
+        let pose = Pose {
             translation: object.pose.translation.map(|v| v.as_f32()),
             scale: object.pose.scale.as_f32(),
             rotation: object.pose.rotation.as_f32(),
-        },
-        color: object.color.map(|v| v.as_f32()),
-        confidence: 1.0,
-        efd: mdshr_bank(HARMONICS).prototypes()[object.prototype.unwrap()].clone(),
-        prototype: object.prototype,
+        };
+        Object::of_efd(
+            pose,
+            object.color.map(|v| v.as_f32()),
+            1.0,
+            mdshr_bank(HARMONICS).prototypes()[object.prototype.unwrap()].clone(),
+            object.prototype,
+        )
     });
     Scene { objects: objects.collect(), ..Scene::empty(scene.background.map(|v| v.as_f32())) }
 }
@@ -264,7 +270,7 @@ proptest! {
 fn the_edge_profile_is_told_from_few_distances() {
     let pose = Pose { translation: [0.27, 0.27], scale: 0.140_684_555_482_555_57, rotation: -2.370_352_172_958_677 };
     let efd = mdshr_bank(HARMONICS).prototypes()[1].clone();
-    let object = Object { pose, color: [0.06; 3], confidence: 1.0, efd, prototype: Some(1) };
+    let object = Object::of_efd(pose, [0.06; 3], 1.0, efd, Some(1));
     let scene = Scene { objects: vec![object], ..Scene::empty([0.06, 0.06, 0.27]) };
     let fit = known().fit(paint(&scene, square_size()).view(), &mut FitScratch::default()).unwrap();
     agrees(&fit, &scene).unwrap();
@@ -275,7 +281,7 @@ fn fractions_of_a_step_of_color_do_not_speak_against_the_edge() {
     let pose = Pose { translation: [0.428_589_4, 0.857_140_66], scale: 0.129_943_25, rotation: 1.264_529_2 };
     let efd = mdshr_bank(HARMONICS).prototypes()[2].clone();
     let color = [0.933_562_04, 0.814_987_54, 0.332_457_6];
-    let object = Object { pose, color, confidence: 1.0, efd, prototype: Some(2) };
+    let object = Object::of_efd(pose, color, 1.0, efd, Some(2));
     // The last channel of the background is 0.43 steps above what 8 bits show.
     let scene = Scene { objects: vec![object], ..Scene::empty([0.526_051_16, 0.924_945_3, 0.997_761_13]) };
     let painter = Painter { renderer: RendererName::Triangles, ..Painter::default() };

@@ -31,7 +31,7 @@ fn paint(scene: &Scene<f32>, side: usize) -> Image<f32> {
 
 fn ellipse(translation: [f32; 2], color: [f32; 3]) -> Object<f32> {
     let pose = Pose { translation, scale: 0.2, rotation: 0.4 };
-    Object { pose, color, confidence: 1.0, efd: Efd::new(vec![[1.0, 0.0, 0.0, -0.5]]), prototype: None }
+    Object::of_efd(pose, color, 1.0, Efd::new(vec![[1.0, 0.0, 0.0, -0.5]]), None)
 }
 
 fn two_ellipses() -> Scene<f32> {

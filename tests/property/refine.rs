@@ -33,7 +33,7 @@ fn scene(rng: &mut ChaCha8Rng) -> Scene<f32> {
         };
         let color = core::array::from_fn(|_| rng.random_range(0.0..1.0));
         let efd = bank.prototypes()[prototype].clone();
-        Object { pose, color, confidence: 1.0, efd, prototype: Some(prototype) }
+        Object::of_efd(pose, color, 1.0, efd, Some(prototype))
     });
     Scene { objects: objects.collect(), ..Scene::empty([0.5, 0.45, 0.55]) }
 }

@@ -33,12 +33,15 @@ fn union() -> impl Strategy<Value = Scene<f64>> {
     (object(), object(), place)
         .prop_map(|(first, second, (middle, direction, apart))| {
             let way = [direction.cos(), direction.sin()].map(|v| 0.5 * apart * (first.1 + second.1) * v);
-            let object = |(prototype, scale, rotation): (usize, f64, f64), sign: f64| Object {
-                pose: Pose { translation: [0, 1].map(|c| middle[c] + sign * way[c]), scale, rotation },
-                color: [0.8, 0.35, 0.2],
-                confidence: 1.0,
-                efd: mdshr_bank(HARMONICS).prototypes()[prototype].clone(),
-                prototype: Some(prototype),
+            let object = |(prototype, scale, rotation): (usize, f64, f64), sign: f64| {
+                let pose = Pose { translation: [0, 1].map(|c| middle[c] + sign * way[c]), scale, rotation };
+                Object::of_efd(
+                    pose,
+                    [0.8, 0.35, 0.2],
+                    1.0,
+                    mdshr_bank(HARMONICS).prototypes()[prototype].clone(),
+                    Some(prototype),
+                )
             };
             Scene { objects: vec![object(first, -1.0), object(second, 1.0)], ..Scene::empty([0.2, 0.4, 0.5]) }
         })

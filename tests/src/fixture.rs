@@ -65,16 +65,19 @@ impl FixtureScene {
     /// The scene in the reference's edge profile and compositing; `tables` are the shapes of `mdshr`.
     #[must_use]
     pub fn to_scene(&self, tables: &[Vec<[f64; 4]>]) -> Scene<f64> {
-        let objects = self.objects.iter().map(|object| Object {
-            pose: Pose {
+        let objects = self.objects.iter().map(|object| {
+            let pose = Pose {
                 translation: object.translation,
                 scale: object.scale,
                 rotation: rotation_from_pair(object.rotation_vec),
-            },
-            color: object.color,
-            confidence: object.confidence,
-            efd: Efd::new(object.shape.map_or_else(|| object.efd.clone(), |shape| tables[shape].clone())),
-            prototype: object.shape,
+            };
+            Object::of_efd(
+                pose,
+                object.color,
+                object.confidence,
+                Efd::new(object.shape.map_or_else(|| object.efd.clone(), |shape| tables[shape].clone())),
+                object.shape,
+            )
         });
         Scene { objects: objects.collect(), ..Scene::empty(self.background) }
     }

@@ -24,16 +24,13 @@ pub fn twins(gap: f32, index: u64) -> Scene<f32> {
     let prototype = rng.random_range(0..bank.prototypes.len());
     let angle = rng.random_range(0.0..core::f32::consts::TAU);
     let middle = [rng.random_range(0.25..0.75), rng.random_range(0.25..0.75)];
-    let objects = [0.5, -0.5].map(|side| Object {
-        pose: Pose {
+    let objects = [0.5, -0.5].map(|side| {
+        let pose = Pose {
             translation: [middle[0] + side * gap * angle.cos(), middle[1] + side * gap * angle.sin()],
             scale: 0.1,
             rotation: rng.random_range(0.0..core::f32::consts::TAU),
-        },
-        color,
-        confidence: 1.0,
-        efd: bank.prototypes[prototype].1.clone(),
-        prototype: Some(prototype),
+        };
+        Object::of_efd(pose, color, 1.0, bank.prototypes[prototype].1.clone(), Some(prototype))
     });
     Scene { objects: objects.into(), ..Scene::empty(background) }
 }
@@ -54,7 +51,7 @@ pub fn cropped(hidden: f32, index: u64) -> Scene<f32> {
         };
         let efd = bank.prototypes[prototype].1.clone();
         let color = contrasting(&mut rng, background);
-        let object = Object { pose, color, confidence: 1.0, efd, prototype: Some(prototype) };
+        let object = Object::of_efd(pose, color, 1.0, efd, Some(prototype));
         let scene = Scene { objects: vec![object], ..Scene::empty(background) };
         if (1.0 - visible_area(&scene, &basis) - hidden).abs() > 0.03 {
             continue;
@@ -68,7 +65,7 @@ pub fn cropped(hidden: f32, index: u64) -> Scene<f32> {
         let color = contrasting(&mut rng, background);
         let efd = bank.prototypes[prototype].1.clone();
         let mut scene = scene;
-        scene.objects.push(Object { pose: other, color, confidence: 1.0, efd, prototype: Some(prototype) });
+        scene.objects.push(Object::of_efd(other, color, 1.0, efd, Some(prototype)));
         return scene;
     }
 }

@@ -37,13 +37,8 @@ pub fn pose() -> impl Strategy<Value = Pose<f64>> {
 
 /// One object with `harmonic_count` harmonics.
 pub fn object(harmonic_count: Range<usize>) -> impl Strategy<Value = Object<f64>> {
-    (pose(), color(), 0.0..1.0, efd(harmonic_count)).prop_map(|(pose, color, confidence, efd)| Object {
-        pose,
-        color,
-        confidence,
-        efd,
-        prototype: None,
-    })
+    (pose(), color(), 0.0..1.0, efd(harmonic_count))
+        .prop_map(|(pose, color, confidence, efd)| Object::of_efd(pose, color, confidence, efd, None))
 }
 
 /// A color with every channel in [0, 1].

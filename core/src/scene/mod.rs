@@ -202,6 +202,12 @@ impl<T: Real> Scene<T> {
         }
     }
 
+    /// Most harmonics of an object that is made of descriptors; 0 if there is none.
+    #[must_use]
+    pub fn harmonic_count(&self) -> usize {
+        self.objects.iter().map(|object| object.efd_rows().len()).max().unwrap_or(0)
+    }
+
     /// Rounds confidences: objects of more than 1/2 are there, the others are taken out.
     pub fn keep_visible(&mut self) {
         self.objects.retain(|object| object.confidence > T::of(0.5));

@@ -125,6 +125,17 @@ impl<T: Real> AnyShape<T> {
         if let Self::Prototype(prototype) = self { Some(prototype.index) } else { None }
     }
 
+    /// The same in another precision.
+    #[must_use]
+    pub fn cast<U: Real>(&self) -> AnyShape<U> {
+        match self {
+            Self::Efd(efd) => AnyShape::Efd(efd.cast()),
+            Self::Prototype(Prototype { index, efd }) => {
+                AnyShape::Prototype(Prototype { index: *index, efd: efd.cast() })
+            }
+        }
+    }
+
     fn of_kind(&self) -> &dyn Shape<T> {
         match self {
             Self::Efd(efd) => efd,

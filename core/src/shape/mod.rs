@@ -97,6 +97,12 @@ impl<T: Real> Efd<T> {
         rows.resize(harmonic_count, [T::zero(); 4]);
         Self { rows }
     }
+
+    /// The same in another precision.
+    #[must_use]
+    pub fn cast<U: Real>(&self) -> Efd<U> {
+        Efd { rows: self.rows.iter().map(|row| row.map(|value| U::of(value.as_f64()))).collect() }
+    }
 }
 
 /// A decoder of unit outlines, for batches of tensors: parameters in, always as many vertices out, and the way back for

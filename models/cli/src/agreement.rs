@@ -146,12 +146,9 @@ mod tests {
 
     /// A disk at `x` (px of 64) of radius `r` px, under edges of no width.
     fn disks(places: &[(f32, f32)]) -> Scene<f32> {
-        let object = |&(x, r): &(f32, f32)| Object {
-            pose: Pose { translation: [x / 64.0, 0.5], scale: r / 64.0, rotation: 0.0 },
-            color: [0.0; 3],
-            confidence: 1.0,
-            efd: Efd::new(vec![[1.0, 0.0, 0.0, -1.0]]),
-            prototype: None,
+        let object = |&(x, r): &(f32, f32)| {
+            let pose = Pose { translation: [x / 64.0, 0.5], scale: r / 64.0, rotation: 0.0 };
+            Object::of_efd(pose, [0.0; 3], 1.0, Efd::new(vec![[1.0, 0.0, 0.0, -1.0]]), None)
         };
         let objects = places.iter().map(object).collect();
         Scene { objects, edge: EdgeProfile::area(), compositing: Compositing::Over, ..Scene::empty([1.0; 3]) }

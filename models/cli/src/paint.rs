@@ -56,9 +56,8 @@ impl Painter {
     /// # Errors
     /// [`PaintError::Shape`] for fewer than 4 vertices.
     pub fn draw<T: Real>(&self, scene: &Scene<T>) -> Result<Drawing<T>, PaintError> {
-        let harmonics = scene.objects.iter().map(|object| object.efd.harmonic_count()).max().unwrap_or(1);
         let mut drawing = Drawing::default();
-        scene.draw(&OutlineBasis::new(self.vertices, harmonics)?, &mut drawing)?;
+        scene.draw(&OutlineBasis::new(self.vertices, scene.harmonic_count().max(1))?, &mut drawing)?;
         Ok(drawing)
     }
 

@@ -57,15 +57,13 @@ impl Prices {
 
     /// As [`scene_bits`], at these prices.
     pub(crate) fn scene_bits<T: Real>(&self, scene: &Scene<T>, bank: usize) -> f64 {
-        let is_known_from =
-            |before: &Object<T>, object: &Object<T>| before.prototype.is_none() && before.efd == object.efd;
         let shape = |(at, object): (usize, &Object<T>)| {
-            if object.prototype.is_some() {
+            if object.prototype().is_some() {
                 choice_bits(bank)
-            } else if scene.objects[..at].iter().any(|before| is_known_from(before, object)) {
+            } else if scene.objects[..at].iter().any(|before| before.shape == object.shape) {
                 0.0
             } else {
-                self.equal_bits(object.efd.harmonic_count())
+                self.equal_bits(object.efd_rows().len())
             }
         };
         let shapes = scene.objects.iter().enumerate().map(shape).sum::<f64>();

@@ -74,7 +74,7 @@ pub fn random_scene<T: Real>(object_count: usize, shapes: &[Efd<T>], seed: u64) 
             rotation: T::of(TAU * chance.unit()),
         };
         let shape = chance.below(shapes.len());
-        Object { pose, color: chance.color(), confidence: T::one(), efd: shapes[shape].clone(), prototype: None }
+        Object::of_efd(pose, chance.color(), T::one(), shapes[shape].clone(), None)
     });
     scene.objects = objects.collect::<Vec<_>>();
     scene

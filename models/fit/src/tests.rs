@@ -45,13 +45,8 @@ fn cholesky_of_many_equations() {
 
 #[test]
 fn description_lengths() {
-    let object = |prototype, harmonics| Object {
-        pose: Pose::identity(),
-        color: [0.0_f64; 3],
-        confidence: 1.0,
-        efd: Efd::zeros(harmonics),
-        prototype,
-    };
+    let object =
+        |prototype, harmonics| Object::of_efd(Pose::identity(), [0.0_f64; 3], 1.0, Efd::zeros(harmonics), prototype);
     // Background 24; object 24 + 48 and the choice among 4, or 2 harmonics of 4 coefficients of 8 bits.
     let mut scene = Scene::empty([0.0; 3]);
     assert!((scene_bits(&scene, 4) - 24.0).abs() < 1e-12);
@@ -154,7 +149,7 @@ fn faint_disks(steps: f64) -> Image<f64> {
     for center in [[0.25, 0.3], [0.7, 0.65]] {
         let pose = Pose { translation: center, scale: 10.0 / 64.0, rotation: 0.0 };
         let efd = Efd::new(vec![[1.0, 0.0, 0.0, -1.0]]);
-        scene.objects.push(Object { pose, color, confidence: 1.0, efd, prototype: None });
+        scene.objects.push(Object::of_efd(pose, color, 1.0, efd, None));
     }
     let mut drawing = Drawing::default();
     scene.draw(&OutlineBasis::new(64, 1).unwrap(), &mut drawing).unwrap();
@@ -171,7 +166,7 @@ fn faint_objects_are_objects() {
         let fit = fit_image(faint_disks(steps).view(), &FitOptions::default()).unwrap();
         assert_eq!(fit.scene.objects.len(), 2, "{steps} steps");
         // Off by the rounding of a step at most.
-        assert!((fit.scene.objects[0].color[0] * 255.0 - 100.0 - steps).abs() < 1.0, "{:?}", fit.scene);
+        assert!((fit.scene.objects[0].color()[0] * 255.0 - 100.0 - steps).abs() < 1.0, "{:?}", fit.scene);
         assert!(fit.loss < 1e-3, "{}", fit.loss);
     }
     let fit = fit_image(faint_disks(0.0).view(), &FitOptions::default()).unwrap();
@@ -217,19 +212,19 @@ fn objects_that_may_be_one_too_many_are_doubted() {
     let moved = |fit: &mut Fit<f64>, apart: f64| {
         let [x, y] = fit.scene.objects[0].pose.translation;
         fit.scene.objects[1].pose.translation = [x + apart * fit.scene.objects[0].pose.scale, y];
-        fit.scene.objects[1].color = fit.scene.objects[0].color;
+        fit.scene.objects[1].paint = fit.scene.objects[0].paint;
     };
     assert!(redundant(&|fit| moved(fit, 1.5)) && !redundant(&|fit| moved(fit, 4.0)));
     assert!(!redundant(&|fit| {
         moved(fit, 1.5);
-        fit.scene.objects[1].color[0] += 0.1;
+        fit.scene.objects[1].color_mut()[0] += 0.1;
     }));
     // A third one of the color that two others have where they overlap, if overlaps blend.
     let third = |fit: &mut Fit<f64>, compositing| {
         moved(fit, 1.5);
-        fit.scene.objects[1].color[0] += 0.2;
+        fit.scene.objects[1].color_mut()[0] += 0.2;
         let mut between = fit.scene.objects[0].clone();
-        between.color[0] += 0.1;
+        between.color_mut()[0] += 0.1;
         fit.scene.objects.push(between);
         fit.scene.compositing = compositing;
     };

@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 use core::f64::consts::PI;
 
 use dvp_core::render::Compositing;
-use dvp_core::{Object, Real, Scene};
+use dvp_core::{Efd, Object, Real, Scene};
 
 use crate::segment::color::distance;
 use crate::{Ambiguity, Fit, StopReason};
@@ -73,7 +73,7 @@ impl<T: Real> Fit<T> {
             x.max(y) > WIDE_POSITION * WIDE_POSITION * squared_radius(object) || size > WIDE_SIZE * WIDE_SIZE
         };
         let is_open = |ambiguity: &Ambiguity| !matches!(ambiguity, Ambiguity::Symmetry { .. });
-        let is_faint = |object: &Object<T>| distance(object.color, self.scene.background) < T::of(FAINT);
+        let is_faint = |object: &Object<T>| distance(object.color(), self.scene.background) < T::of(FAINT);
         Doubts {
             pose: self.covariance.iter().zip(&self.scene.objects).any(is_wide),
             ambiguity: self.ambiguity.iter().any(is_open),
@@ -92,7 +92,7 @@ impl<T: Real> Fit<T> {
 /// Squared radius of the disk that is as large as an object, scene units.
 fn squared_radius<T: Real>(object: &Object<T>) -> f64 {
     let scale = object.pose.scale.as_f64();
-    scale * scale * object.efd.signed_area().as_f64().abs() / PI
+    scale * scale * object.shape.efd().map_or(T::zero(), Efd::signed_area).as_f64().abs() / PI
 }
 
 /// Whether two objects may be one, or one what two others show where they overlap.
@@ -104,13 +104,14 @@ fn may_be_fewer<T: Real>(scene: &Scene<T>) -> bool {
         let [p, q] = [a, b].map(|k| objects[k].pose.translation);
         (p[0] - q[0]).hypot(p[1] - q[1]) < radii[a] + radii[b]
     };
-    let is_like = |k: usize, color: [T; 3]| distance(objects[k].color, color) < T::of(ONE_COLOR);
-    let mean = |a: usize, b: usize| core::array::from_fn(|c| T::of(0.5) * (objects[a].color[c] + objects[b].color[c]));
+    let is_like = |k: usize, color: [T; 3]| distance(objects[k].color(), color) < T::of(ONE_COLOR);
+    let mean =
+        |a: usize, b: usize| core::array::from_fn(|c| T::of(0.5) * (objects[a].color()[c] + objects[b].color()[c]));
     let is_overlap = |a: usize, b: usize| {
         let own = mean(a, b);
         (0..objects.len()).any(|k| k != a && k != b && touch(a, k) && touch(k, b) && is_like(k, own))
     };
     pairs().any(|(a, b)| {
-        touch(a, b) && (is_like(a, objects[b].color) || scene.compositing == Compositing::Blend && is_overlap(a, b))
+        touch(a, b) && (is_like(a, objects[b].color()) || scene.compositing == Compositing::Blend && is_overlap(a, b))
     })
 }

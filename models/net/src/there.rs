@@ -88,7 +88,7 @@ fn without_doubles<T: Real>(objects: &[Object<T>]) -> Vec<usize> {
 fn is_double<T: Real>(one: &Object<T>, other: &Object<T>) -> bool {
     let [a, b] = [one, other].map(|object| object.pose);
     let apart = (a.translation[0] - b.translation[0]).hypot(a.translation[1] - b.translation[1]);
-    let colors = one.color.iter().zip(&other.color);
+    let colors = one.color().into_iter().zip(other.color());
     apart.as_f64() < SAME_PLACE * (a.scale + b.scale).as_f64()
-        && colors.map(|(a, b)| (*a - *b).as_f64().abs()).fold(0.0, f64::max) < SAME_COLOR
+        && colors.map(|(a, b)| (a - b).as_f64().abs()).fold(0.0, f64::max) < SAME_COLOR
 }

@@ -211,16 +211,19 @@ fn ssim() -> Cases {
 
 /// A scene in another number type.
 pub(crate) fn scene_of<T: Real>(scene: &Scene<f64>) -> Scene<T> {
-    let objects = scene.objects.iter().map(|object| Object {
-        pose: Pose {
+    let objects = scene.objects.iter().map(|object| {
+        let pose = Pose {
             translation: object.pose.translation.map(T::of),
             scale: T::of(object.pose.scale),
             rotation: T::of(object.pose.rotation),
-        },
-        color: object.color.map(T::of),
-        confidence: T::of(object.confidence),
-        efd: Efd::new(object.efd.rows().iter().map(|row| row.map(T::of)).collect()),
-        prototype: object.prototype,
+        };
+        Object::of_efd(
+            pose,
+            object.color.map(T::of),
+            T::of(object.confidence),
+            Efd::new(object.efd.rows().iter().map(|row| row.map(T::of)).collect()),
+            object.prototype,
+        )
     });
     Scene { objects: objects.collect(), ..Scene::empty(scene.background.map(T::of)) }
 }

@@ -95,7 +95,7 @@ fn object(rng: &mut ChaCha8Rng, background: [f32; 3], scale: f32) -> Object<f32>
     let prototype = rng.random_range(0..bank.prototypes.len());
     let pose = Pose { translation: [0.5; 2], scale, rotation: rng.random_range(0.0..core::f32::consts::TAU) };
     let color = contrasting(rng, background);
-    Object { pose, color, confidence: 1.0, efd: bank.prototypes[prototype].1.clone(), prototype: Some(prototype) }
+    Object::of_efd(pose, color, 1.0, bank.prototypes[prototype].1.clone(), Some(prototype))
 }
 
 /// Two objects of one shape and color, of scale 0.1, their centers `gap` apart: their outlines are one.

@@ -83,13 +83,13 @@ impl Checker<'_> {
             (Some(_), Some(_)) => return self.wrong(field("shape"), "is the old name of `prototype`; keep one"),
             (index, None) | (None, index) => index,
         };
-        Ok(Object {
+        Ok(Object::of_efd(
             pose,
-            color: self.color(&field("color"), from.color)?,
-            confidence: self.within(&field("confidence"), from.confidence, [0.0, 1.0])?,
-            efd: self.efd(&field("efd"), from.efd.as_deref(), prototype, bank)?,
+            self.color(&field("color"), from.color)?,
+            self.within(&field("confidence"), from.confidence, [0.0, 1.0])?,
+            self.efd(&field("efd"), from.efd.as_deref(), prototype, bank)?,
             prototype,
-        })
+        ))
     }
 
     fn efd<T: Real>(
@@ -171,6 +171,7 @@ impl SceneJson {
         let objects = self.objects.iter().enumerate().map(|(k, object)| checker.object(k, object, bank));
         Ok(Scene {
             background: checker.color("background", self.background)?,
+            transparent: false,
             objects: objects.collect::<Result<_, _>>()?,
             edge: self.edge.map_or_else(|| Ok(EdgeProfile::reference()), |edge| checker.edge(edge))?,
             compositing: match self.compositing {
@@ -236,20 +237,21 @@ impl ObjectJson {
     /// The text's structure of an object, with its descriptors.
     #[must_use]
     pub fn from_object<T: Real>(object: &Object<T>) -> Self {
+        let descriptors = object.shape.efd();
         Self {
             translation: object.pose.translation.map(shortest),
             scale: shortest(object.pose.scale),
             rotation: Some(shortest(object.pose.rotation)),
             rotation_vec: None,
-            color: shortest_color(object.color),
+            color: shortest_color(object.color()),
             confidence: shortest(object.confidence).clamp(0.0, 1.0),
-            prototype: object.prototype,
+            prototype: object.prototype(),
             shape: None,
-            symmetry: Some(match object.efd.symmetry(T::of(SYMMETRY_TOLERANCE)) {
+            symmetry: descriptors.map(|efd| match efd.symmetry(T::of(SYMMETRY_TOLERANCE)) {
                 Symmetry::Finite(order) => order,
                 Symmetry::Continuous => 0,
             }),
-            efd: Some(object.efd.rows().iter().map(|row| row.map(shortest)).collect()),
+            efd: descriptors.map(|efd| efd.rows().iter().map(|row| row.map(shortest)).collect()),
         }
     }
 }

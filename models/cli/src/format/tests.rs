@@ -6,15 +6,12 @@ use dvp_core::{Efd, Image, ImageSize, Object, Pose, Scene};
 use super::*;
 
 fn scene() -> Scene<f32> {
+    let pose = Pose { translation: [0.25, 0.75], scale: 0.2, rotation: -1.5 };
+    let efd = Efd::new(vec![[1.0, 0.0, 0.0, -0.5], [0.01, 0.02, -0.03, 1e-7]]);
     Scene {
         background: [0.1, 0.2, 0.3],
-        objects: vec![Object {
-            pose: Pose { translation: [0.25, 0.75], scale: 0.2, rotation: -1.5 },
-            color: [1.0, 0.0, 0.7],
-            confidence: 1.0,
-            efd: Efd::new(vec![[1.0, 0.0, 0.0, -0.5], [0.01, 0.02, -0.03, 1e-7]]),
-            prototype: None,
-        }],
+        transparent: false,
+        objects: vec![Object::of_efd(pose, [1.0, 0.0, 0.7], 1.0, efd, None)],
         edge: EdgeProfile::reference(),
         compositing: Compositing::Over,
     }
@@ -74,8 +71,8 @@ fn published_lines_are_read() {
     let scene = parse(&object_with(r#""scale":0.2,"rotation_vec":[0.6,-0.8],"confidence":1.0,"shape":2"#)).unwrap();
     let object = &scene.objects[0];
     assert!((object.pose.rotation - 0.6f64.atan2(-0.8)).abs() < 1e-15);
-    assert_eq!(object.prototype, Some(2));
-    assert!((object.efd.rows()[0][3] + 0.5).abs() < 1e-12);
+    assert_eq!(object.prototype(), Some(2));
+    assert!((object.efd_rows()[0][3] + 0.5).abs() < 1e-12);
     assert_eq!(scene.edge, EdgeProfile::reference());
 }
 

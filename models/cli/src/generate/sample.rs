@@ -23,17 +23,12 @@ pub fn sample_scene(settings: &SceneSettings, bank: &Bank<f32>, size: ImageSize,
         if slot < visible || settings.keep_hidden {
             let pose = Pose { translation, scale, rotation };
             let shape = bank.prototypes.get(prototype);
-            objects.extend(shape.map(|(_, efd)| Object {
-                pose,
-                color,
-                confidence,
-                efd: efd.clone(),
-                prototype: Some(prototype),
-            }));
+            objects.extend(shape.map(|(_, efd)| Object::of_efd(pose, color, confidence, efd.clone(), Some(prototype))));
         }
     }
     Scene {
         background: color(&mut rng, settings.background),
+        transparent: false,
         objects,
         edge: settings.edge,
         compositing: settings.compositing,

@@ -27,7 +27,7 @@ fn scenes_follow_the_settings_and_their_number_only() {
         assert_ne!(scene, sample_scene(&settings, &bank, size, 8, index));
         counts[scene.objects.len()] += 1;
         for object in &scene.objects {
-            shapes[object.prototype.unwrap()] += 1;
+            shapes[object.prototype().unwrap()] += 1;
             assert!((0.1..=0.3).contains(&object.pose.scale));
             assert!(object.pose.translation.iter().all(|v| (0.05..=0.95).contains(v)));
         }

@@ -35,8 +35,7 @@ pub fn descend<T: Real, R>(
     fit: impl FnOnce(&mut Descent<'_, T, ContourRenderer<T>>) -> Result<R>,
 ) -> Result<R> {
     let renderer = ContourRenderer::new(scene.edge, scene.compositing);
-    let harmonics = scene.objects.iter().map(|object| object.efd.harmonic_count()).max().unwrap_or(1);
-    let harmonics = harmonics.max(OptIter::default().harmonic_count);
+    let harmonics = scene.harmonic_count().max(OptIter::default().harmonic_count);
     fit(&mut Descent::new(&renderer, REFERENCE_VERTICES, harmonics)?)
 }
 

@@ -2,7 +2,7 @@
 
 use clap::ValueEnum;
 use dvp_core::render::EdgeProfile;
-use dvp_core::{Efd, Object, Pose, Real, Scene};
+use dvp_core::{Object, Pose, Real, Scene};
 use dvp_fit::{Bank, Fit};
 
 /// Numbers to compute with.
@@ -19,12 +19,8 @@ fn number<A: Real, B: Real>(value: A) -> B {
     B::of(value.as_f64())
 }
 
-fn efd<A: Real, B: Real>(efd: &Efd<A>) -> Efd<B> {
-    Efd::new(efd.rows().iter().map(|row| row.map(number)).collect())
-}
-
 pub(super) fn bank<A: Real, B: Real>(bank: &Bank<A>) -> Bank<B> {
-    Bank { prototypes: bank.prototypes.iter().map(|(name, shape)| (name.clone(), efd(shape))).collect() }
+    Bank { prototypes: bank.prototypes.iter().map(|(name, shape)| (name.clone(), shape.cast())).collect() }
 }
 
 /// A scene in another precision.
@@ -33,16 +29,16 @@ pub fn scene<A: Real, B: Real>(scene: &Scene<A>) -> Scene<B> {
     let object = |object: &Object<A>| {
         let Pose { translation, scale, rotation } = object.pose;
         Object {
+            shape: object.shape.cast(),
             pose: Pose { translation: translation.map(number), scale: number(scale), rotation: number(rotation) },
-            color: object.color.map(number),
+            paint: object.color().map(number).into(),
             confidence: number(object.confidence),
-            efd: efd(&object.efd),
-            prototype: object.prototype,
         }
     };
     let EdgeProfile { law, offset, sigma, cut } = scene.edge;
     Scene {
         background: scene.background.map(number),
+        transparent: scene.transparent,
         objects: scene.objects.iter().map(object).collect(),
         edge: EdgeProfile { law, offset: number(offset), sigma: number(sigma), cut: number(cut) },
         compositing: scene.compositing,

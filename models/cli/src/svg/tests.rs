@@ -12,7 +12,7 @@ fn square(x: f64, y: f64, half: f64) -> Body {
 
 fn disk(x: f32, color: [f32; 3]) -> Object<f32> {
     let pose = Pose { translation: [x, 0.5], scale: 0.2, rotation: 0.0 };
-    Object { pose, color, confidence: 1.0, efd: Efd::new(vec![[1.0, 0.0, 0.0, -1.0]]), prototype: None }
+    Object::of_efd(pose, color, 1.0, Efd::new(vec![[1.0, 0.0, 0.0, -1.0]]), None)
 }
 
 #[test]
@@ -57,8 +57,7 @@ fn overlaps_are_found() {
 #[test]
 fn blended_objects_get_their_mean_color() {
     let objects = vec![disk(0.4, [1.0, 0.0, 0.0]), disk(0.6, [0.0, 0.0, 1.0])];
-    let mut scene =
-        Scene { background: [1.0; 3], objects, edge: EdgeProfile::reference(), compositing: Compositing::Blend };
+    let mut scene = Scene { objects, compositing: Compositing::Blend, ..Scene::empty([1.0; 3]) };
     let size = ImageSize::new(128, 128).unwrap();
     let text = to_svg(&scene, size).unwrap();
     assert!(text.contains("<g mask=\"url(#in-object-0)\"><use href=\"#object-1\" fill=\"#800080\""), "{text}");

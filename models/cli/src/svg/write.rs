@@ -39,8 +39,7 @@ pub fn to_svg<T: Real>(scene: &Scene<T>, size: ImageSize) -> Result<String, Shap
     let unit = T::of_usize(size.unit_px()).as_f64();
     let [width, height] = [size.width(), size.height()].map(|n| T::of_usize(n).as_f64());
     let reach = scene.edge.half_coverage().as_f64().max(0.0) * unit;
-    let harmonics = scene.objects.iter().map(|object| object.efd.harmonic_count()).max().unwrap_or(1);
-    let basis = OutlineBasis::new(REFERENCE_VERTICES, harmonics.max(1))?;
+    let basis = OutlineBasis::new(REFERENCE_VERTICES, scene.harmonic_count().max(1))?;
     let mut shapes = Vec::new();
     for (k, object) in scene.objects.iter().enumerate() {
         shapes.push(Shape::of(k, object, unit, &basis)?);
@@ -98,14 +97,14 @@ fn blurring(deviation: f64, [width, height]: [f64; 2], background: &str) -> Stri
 impl Shape {
     fn of<T: Real>(k: usize, object: &Object<T>, unit: f64, basis: &OutlineBasis<T>) -> Result<Self, ShapeError> {
         let mut outline = vec![[T::zero(); 2]; basis.vertex_count()];
-        basis.outline(object.efd.rows(), &mut outline)?;
+        basis.outline(object.shape.descriptors()?.rows(), &mut outline)?;
         Ok(Self {
             id: format!("object-{k}"),
             outline: outline.into_iter().map(|vertex| vertex.map(T::as_f64)).collect(),
             center: object.pose.translation.map(|v| v.as_f64() * unit),
             scale: object.pose.scale.as_f64() * unit,
             rotation: object.pose.rotation.as_f64(),
-            color: object.color.map(T::as_f64),
+            color: object.color().map(T::as_f64),
             confidence: object.confidence.as_f64(),
         })
     }

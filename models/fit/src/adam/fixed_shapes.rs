@@ -26,7 +26,7 @@ impl<T: Real> FixedShapes<T> {
         self.unused.clear();
         self.unused.resize(basis.vertex_count(), zero);
         for (object, unit) in scene.objects.iter().zip(self.units.chunks_exact_mut(basis.vertex_count())) {
-            basis.outline(object.efd.rows(), unit)?;
+            basis.outline(object.shape.descriptors()?.rows(), unit)?;
         }
         Ok(())
     }
@@ -38,7 +38,7 @@ impl<T: Real> FixedShapes<T> {
         drawing.background = scene.background;
         for (object, unit) in scene.objects.iter().zip(self.units.chunks_exact(self.unused.len().max(1))) {
             let first = drawing.vertices.len();
-            drawing.push(unit, object.color, object.confidence);
+            drawing.push(unit, object.color(), object.confidence);
             object.pose.transform(&mut drawing.vertices[first..]);
         }
     }

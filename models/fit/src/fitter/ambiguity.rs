@@ -23,9 +23,9 @@ impl<T: Real> Run<'_, T> {
         let mut out = Vec::new();
         let unit = self.unit_px();
         for (object, part) in found.objects.iter().enumerate() {
-            let order = match part.object.prototype {
+            let order = match part.object.prototype() {
                 Some(k) => self.fitter.prototypes[k].symmetry,
-                None => symmetry_order(&scene.objects[object].efd),
+                None => scene.objects[object].shape.efd().map_or(1, symmetry_order),
             };
             if order != 1 {
                 out.push(Ambiguity::Symmetry { object, order });

@@ -150,16 +150,9 @@ impl<T: Real> Run<'_, T> {
         let unit = self.unit_px();
         let bank = self.fitter.options.bank.as_ref();
         let efd = bank.and_then(|bank| bank.prototypes.get(part.shape)).map(|(_, efd)| efd.clone());
-        let object = Object {
-            pose: Pose {
-                rotation: wrapped(part.pose.rotation, T::of(core::f64::consts::TAU)),
-                ..part.pose.in_scene(unit)
-            },
-            color: part.color,
-            confidence: part.confidence,
-            efd: efd.unwrap_or_default(),
-            prototype: Some(part.shape),
-        };
+        let rotation = wrapped(part.pose.rotation, T::of(core::f64::consts::TAU));
+        let pose = Pose { rotation, ..part.pose.in_scene(unit) };
+        let object = Object::of_efd(pose, part.color, part.confidence, efd.unwrap_or_default(), Some(part.shape));
         FoundObject { object, segment: source.segment, twin: source.twin, completion: Completion::Prototype }
     }
 }

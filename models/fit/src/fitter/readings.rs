@@ -8,7 +8,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use dvp_core::render::{Compositing, EdgeLaw, EdgeProfile};
-use dvp_core::{ImageView, Real};
+use dvp_core::{ImageView, Object, Real};
 
 use super::run::{Care, Run, has_fractions, visible_error};
 use super::{DIRECT_PIXELS, FitScratch, Fitter};
@@ -257,7 +257,7 @@ impl<T: Real> Fitter<T> {
                 return Ok(fit.bits);
             }
             let mut plain = fit.clone();
-            let colors = plain.scene.objects.iter_mut().map(|object| &mut object.color);
+            let colors = plain.scene.objects.iter_mut().map(Object::color_mut);
             colors.chain([&mut plain.scene.background]).for_each(round_color);
             self.bits_at(image, &plain, fit.noise, scratch)
         };

@@ -168,6 +168,7 @@ impl<T: Real> Run<'_, T> {
     pub(super) fn scene_of(&self, found: &Found<T>) -> Scene<T> {
         Scene {
             background: found.background,
+            transparent: false,
             objects: found.objects.iter().map(|part| part.object.clone()).collect(),
             edge: self.edge,
             compositing: self.compositing,
@@ -207,12 +208,12 @@ impl<T: Real> Run<'_, T> {
         let renderer = ContourRenderer::new(self.edge, scene.compositing);
         let coverage = &mut scratch.colors.coverage[..values];
         renderer.object_coverage(&scratch.drawing, self.image.size(), scratch.shown.render_scratch(), coverage)?;
-        let mut colors: Vec<[T; 3]> = scene.objects.iter().map(|object| object.color).collect();
+        let mut colors: Vec<[T; 3]> = scene.objects.iter().map(Object::color).collect();
         colors.push(scene.background);
         let pixels = scratch.segmentation.soft_pixels(self.image.size().width());
         refine_colors(&self.image, pixels, &mut colors, &mut scratch.colors);
         for (object, &color) in scene.objects.iter_mut().zip(&colors) {
-            object.color = color;
+            *object.color_mut() = color;
         }
         scene.background = colors[scene.objects.len()];
         Ok(())
@@ -241,8 +242,8 @@ impl<T: Real> Run<'_, T> {
     /// Bits that a plain shape would spare: in a coded picture, fine detail of an outline says how coarse its edge is and
     /// not that there is no object.
     fn spared(&self, object: &Object<T>) -> f64 {
-        let fine = object.efd.harmonic_count().saturating_sub(PLAIN_HARMONICS);
-        if self.scratch.code.is_some() && object.prototype.is_none() {
+        let fine = object.efd_rows().len().saturating_sub(PLAIN_HARMONICS);
+        if self.scratch.code.is_some() && object.prototype().is_none() {
             self.fitter.options.prices.equal_bits(fine)
         } else {
             0.0
@@ -258,14 +259,15 @@ impl<T: Real> Run<'_, T> {
             return true;
         }
         let pixels = self.scratch.segmentation.segments()[part.segment].pixels;
-        let contrast = distance(part.object.color, scene.background);
+        let contrast = distance(part.object.color(), scene.background);
         pixels < SURE_PIXELS || contrast < T::of(SURE_CONTRAST)
     }
 
     /// Whether the object has the mean color of two others: where they overlap, objects that blend show it.
     fn is_mixed(&self, scene: &Scene<T>, at: usize) -> bool {
-        let own = scene.objects[at].color;
-        let others = || scene.objects.iter().enumerate().filter(move |(k, _)| *k != at).map(|(_, object)| object.color);
+        let own = scene.objects[at].color();
+        let others =
+            || scene.objects.iter().enumerate().filter(move |(k, _)| *k != at).map(|(_, object)| object.color());
         let mean = |a: [T; 3], b: [T; 3]| core::array::from_fn(|c| T::of(0.5) * (a[c] + b[c]));
         self.compositing == Compositing::Blend
             && self.care == Care::Full
@@ -286,7 +288,7 @@ impl<T: Real> Run<'_, T> {
             let samples = &scratch.segmentation.segments()[part.segment].samples;
             let noise = scratch.segmentation.noise();
             let mut block = covariance(&scratch.outline, center, samples, unit, noise, &mut scratch.lanes);
-            if object.prototype.is_none() {
+            if object.prototype().is_none() {
                 block[10] += bend_variance(signed_area(&scratch.outline));
             }
             out.push(block);

@@ -121,12 +121,9 @@ fn a_sharp_dot_among_wide_edges_is_found() {
 #[test]
 fn edges_along_the_grid_do_not_hide_the_reference() {
     let bank = mdshr_bank::<f64>(64);
-    let object = |prototype: usize, translation, scale, rotation, color| Object {
-        pose: Pose { translation, scale, rotation },
-        color,
-        confidence: 1.0,
-        efd: bank.prototypes()[prototype].clone(),
-        prototype: Some(prototype),
+    let object = |prototype: usize, translation, scale, rotation, color| {
+        let pose = Pose { translation, scale, rotation };
+        Object::of_efd(pose, color, 1.0, bank.prototypes()[prototype].clone(), Some(prototype))
     };
     let truth = Scene {
         objects: vec![

@@ -148,7 +148,7 @@ impl<T: Real> Run<'_, T> {
             return Ok(None);
         }
         let mut outline = alloc::vec![[T::zero(); 2]; self.fitter.outlines.vertex_count()];
-        self.fitter.outlines.outline(single.object.efd.rows(), &mut outline)?;
+        self.fitter.outlines.outline(single.object.efd_rows(), &mut outline)?;
         single.object.pose.transform(&mut outline);
         let unit = self.unit_px();
         outline.iter_mut().for_each(|v| *v = v.map(|x| x * unit));
@@ -169,12 +169,12 @@ impl<T: Real> Run<'_, T> {
         let Some(field) = OutlineField::new(&contour) else { return Ok(None) };
         let samples = &self.scratch.segmentation.segments()[single.segment].samples;
         // The samples of a sharpened or noisy picture hide what the outline shows.
-        let turns = match single.object.efd.symmetry(T::of(SYMMETRY_TOLERANCE)) {
+        let turns = match single.object.shape.descriptors()?.symmetry(T::of(SYMMETRY_TOLERANCE)) {
             Symmetry::Finite(order) => order,
             Symmetry::Continuous => 1,
         };
         let repeats = repeats(&contour, &field, samples).max(turns);
-        let shape_bits = self.fitter.options.prices.free_shape_bits(single.object.efd.harmonic_count(), repeats);
+        let shape_bits = self.fitter.options.prices.free_shape_bits(single.object.efd_rows().len(), repeats);
         Ok(Some(Waisted { contour, field, most, shape_bits }))
     }
 
@@ -237,7 +237,7 @@ impl<T: Real> Run<'_, T> {
                 scale: motion.scale() * normal.scale / unit,
                 rotation: normal.rotation + motion.rotation(),
             };
-            let object = Object { pose, efd: normal.efd, ..single.object.clone() };
+            let object = Object { pose, shape: normal.efd.into(), ..single.object.clone() };
             Some(FoundObject { object, ..single.clone() })
         };
         explanation.members.iter().map(place).collect()

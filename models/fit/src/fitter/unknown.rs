@@ -107,18 +107,13 @@ impl<T: Real> Run<'_, T> {
         // A first harmonic of size 0 has no pose.
         let normal = Efd::new(grown.outline.rows).normalize().ok()?;
         let unit = self.unit_px();
-        let object = Object {
-            pose: Pose {
-                translation: grown.outline.center.map(|v| v / unit),
-                scale: normal.scale / unit,
-                rotation: normal.rotation,
-            },
-            color: self.scratch.segmentation.segments()[segment].color,
-            confidence: self.scratch.segmentation.segments()[segment].confidence,
-            efd: normal.efd,
-            prototype: None,
+        let pose = Pose {
+            translation: grown.outline.center.map(|v| v / unit),
+            scale: normal.scale / unit,
+            rotation: normal.rotation,
         };
-        Some((object, grown.steps, completion))
+        let segment = &self.scratch.segmentation.segments()[segment];
+        Some((Object::of_efd(pose, segment.color, segment.confidence, normal.efd, None), grown.steps, completion))
     }
 
     /// The outline of a segment as traced (px); none if it encloses nothing.

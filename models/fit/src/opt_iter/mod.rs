@@ -132,6 +132,6 @@ impl OptIter {
         let mut efd = Efd::zeros(self.harmonic_count.max(1));
         efd.rows_mut()[0] = [T::one(), T::zero(), T::zero(), T::of(self.start_ellipse)];
         let pose = Pose { translation: blob.center, scale: T::of(self.start_scale), rotation: blob.orientation };
-        Object { pose, color: blob.color, confidence: T::one(), efd, prototype: None }
+        Object::of_efd(pose, blob.color, T::one(), efd, None)
     }
 }

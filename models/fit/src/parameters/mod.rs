@@ -61,9 +61,9 @@ impl<T: Real> Parameters<T> {
             let (sin, cos) = object.pose.rotation.sin_cos();
             self.values.extend_from_slice(&object.pose.translation);
             self.values.extend_from_slice(&[object.pose.scale, sin, cos]);
-            self.values.extend_from_slice(&object.color);
+            self.values.extend_from_slice(&object.color());
             if free == Free::PoseColorAndShape {
-                self.values.extend_from_slice(object.efd.rows().as_flattened());
+                self.values.extend_from_slice(object.efd_rows().as_flattened());
             }
         }
         self.gradient.clear();
@@ -78,7 +78,7 @@ impl<T: Real> Parameters<T> {
         background.copy_from_slice(&grad.background);
         let mut values = &self.values[BACKGROUND..];
         for object in &grad.objects {
-            let len = object_len(self.free, object.efd.len());
+            let len = object_len(self.free, object.efd_rows().len());
             let (Some((slot, tail)), Some((value, value_tail))) =
                 (rest.split_at_mut_checked(len), values.split_at_checked(len))
             else {
@@ -95,7 +95,7 @@ impl<T: Real> Parameters<T> {
         let (background, mut rest) = self.values.split_at_mut(BACKGROUND);
         into_unit(background);
         for object in &scene.objects {
-            let len = object_len(self.free, object.efd.harmonic_count());
+            let len = object_len(self.free, object.efd_rows().len());
             let Some((slot, tail)) = rest.split_at_mut_checked(len) else {
                 return;
             };
@@ -109,7 +109,7 @@ impl<T: Real> Parameters<T> {
         let (background, mut rest) = self.values.split_at(BACKGROUND);
         scene.background.copy_from_slice(background);
         for object in &mut scene.objects {
-            let len = object_len(self.free, object.efd.harmonic_count());
+            let len = object_len(self.free, object.efd_rows().len());
             let Some((slot, tail)) = rest.split_at_checked(len) else {
                 return;
             };
@@ -158,7 +158,7 @@ fn pull_back_object<T: Real>(grad: &ObjectGrad<T>, values: &[T], slot: &mut [T])
     slot[3..5].copy_from_slice(&pair);
     slot[5..POSE_AND_COLOR].copy_from_slice(&grad.color);
     if slot.len() > POSE_AND_COLOR {
-        slot[POSE_AND_COLOR..].copy_from_slice(grad.efd.as_flattened());
+        slot[POSE_AND_COLOR..].copy_from_slice(&grad.numbers);
     }
 }
 
@@ -180,9 +180,11 @@ fn store_object<T: Real>(slot: &[T], object: &mut Object<T>) {
     object.pose.translation.copy_from_slice(&slot[..2]);
     object.pose.scale = slot[2];
     object.pose.rotation = rotation_from_pair([slot[3], slot[4]]);
-    object.color.copy_from_slice(&slot[5..POSE_AND_COLOR]);
-    if slot.len() > POSE_AND_COLOR {
-        object.efd.rows_mut().as_flattened_mut().copy_from_slice(&slot[POSE_AND_COLOR..]);
+    object.color_mut().copy_from_slice(&slot[5..POSE_AND_COLOR]);
+    if slot.len() > POSE_AND_COLOR
+        && let Some(efd) = object.shape.efd_mut()
+    {
+        efd.rows_mut().as_flattened_mut().copy_from_slice(&slot[POSE_AND_COLOR..]);
     }
 }
 

@@ -8,7 +8,7 @@ use super::{Free, Parameters, renormalize};
 fn scene() -> Scene<f64> {
     let pose = Pose { translation: [0.25, 0.75], scale: 0.2, rotation: core::f64::consts::FRAC_PI_2 };
     let efd = Efd::new(vec![[1.0, 0.0, 0.0, -0.5], [0.1, 0.0, 0.0, 0.1]]);
-    let object = Object { pose, color: [0.1, 0.2, 0.3], confidence: 0.5, efd, prototype: Some(1) };
+    let object = Object::of_efd(pose, [0.1, 0.2, 0.3], 0.5, efd, Some(1));
     Scene { objects: vec![object], ..Scene::empty([0.4, 0.5, 0.6]) }
 }
 
@@ -47,7 +47,7 @@ fn settling_keeps_to_the_box() {
     (values[0], values[5], values[8]) = (-0.5, -1.0, 1.5);
     parameters.settle(&scene);
     parameters.store(&mut scene);
-    assert_eq!((scene.background[0], scene.objects[0].pose.scale, scene.objects[0].color[0]), (0.0, 1e-3, 1.0));
+    assert_eq!((scene.background[0], scene.objects[0].pose.scale, scene.objects[0].color()[0]), (0.0, 1e-3, 1.0));
 }
 
 #[test]

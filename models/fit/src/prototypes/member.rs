@@ -56,11 +56,11 @@ pub fn members<T: Real>(fit: &Fit<T>, size: ImageSize, image: usize) -> Result<V
 /// The outlines of a scene in px.
 pub(super) fn outlines_px<T: Real>(scene: &Scene<T>, size: ImageSize) -> Result<Vec<Vec<[f64; 2]>>, ShapeError> {
     let unit = f64::of_usize(size.unit_px());
-    let harmonics = scene.objects.iter().map(|object| object.efd.harmonic_count()).max().unwrap_or(0);
+    let harmonics = scene.harmonic_count();
     let basis = OutlineBasis::<T>::new(REFERENCE_VERTICES, harmonics.max(1))?;
     let outline = |object: &dvp_core::Object<T>| {
         let mut vertices = vec![[T::zero(); 2]; REFERENCE_VERTICES];
-        basis.outline(object.efd.rows(), &mut vertices)?;
+        basis.outline(object.shape.descriptors()?.rows(), &mut vertices)?;
         object.pose.transform(&mut vertices);
         Ok(vertices.into_iter().map(|v| v.map(|x| x.as_f64() * unit)).collect())
     };

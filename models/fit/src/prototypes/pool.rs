@@ -69,14 +69,14 @@ impl<T: Real> Pool<T> {
     pub fn add(&mut self, fit: &Fit<T>, size: ImageSize, scratch: &FitScratch<T>) {
         let unit = f64::of_usize(size.unit_px());
         for object in &fit.scene.objects {
-            let Some(k) = object.prototype.filter(|&k| k < self.samples.len()) else { continue };
+            let Some(k) = object.prototype().filter(|&k| k < self.samples.len()) else { continue };
             if self.samples[k].len() >= SAMPLES_PER_PROTOTYPE {
                 continue;
             }
             let limit = WELL_POSED_PX * FRAME / (object.pose.scale.as_f64() * unit);
             let mut best: (f64, Option<&Segment<T>>) = (limit * limit, None);
             self.lanes.set(&self.outlines[k]);
-            for segment in scratch.segments().iter().filter(|segment| same_color(segment.color, object.color)) {
+            for segment in scratch.segments().iter().filter(|segment| same_color(segment.color, object.color())) {
                 let squared = self.mean_squared(k, segment, object, unit, scratch);
                 if squared < best.0 {
                     best = (squared, Some(segment));

@@ -36,12 +36,12 @@ pub struct RefineScratch<T: Real> {
 impl<T: Real> RefineScratch<T> {
     /// Draws `scene` and keeps the residual of its rendering; returns the mean absolute error.
     pub(super) fn compare(&mut self, scene: &Scene<T>, image: ImageView<'_, T>) -> Result<T, FitError> {
-        let harmonics = scene.objects.iter().map(|object| object.efd.harmonic_count()).max().unwrap_or(1).max(1);
+        let harmonics = scene.harmonic_count().max(1);
         let basis = match self.basis.take() {
             Some(basis) if basis.harmonic_count() >= harmonics => basis,
             _ => OutlineBasis::new(REFERENCE_VERTICES, harmonics)?,
         };
-        scene.draw(self.basis.insert(basis), &mut self.drawing)?;
+        scene.draw(&*self.basis.insert(basis), &mut self.drawing)?;
         self.pixels.resize(image.data().len(), T::zero());
         let renderer = ContourRenderer::new(scene.edge, scene.compositing);
         renderer.render(&self.drawing, image.size(), &mut self.render, &mut self.pixels)?;
@@ -61,13 +61,13 @@ impl<T: Real> RefineScratch<T> {
                 return Err(FitError::Scale { index });
             }
             objects.push(JointObject {
-                shape: self.shape_of(&object.efd, index)?,
+                shape: self.shape_of(object.shape.descriptors()?, index)?,
                 pose: PosePx {
                     translation: translation.map(|v| v * unit_px),
                     log_scale: (scale * unit_px).ln(),
                     rotation,
                 },
-                color: object.color,
+                color: object.color(),
                 confidence: object.confidence,
             });
         }
@@ -106,7 +106,7 @@ impl<T: Real> RefineScratch<T> {
 pub(super) fn to_scene<T: Real>(start: &Scene<T>, moved: &JointScene<T>, unit_px: T) -> Scene<T> {
     let objects = start.objects.iter().zip(&moved.objects).map(|(object, part)| Object {
         pose: part.pose.in_scene(unit_px),
-        color: part.color,
+        paint: part.color.into(),
         ..object.clone()
     });
     Scene { background: moved.background, objects: objects.collect(), ..*start }

@@ -73,19 +73,23 @@ impl<B: Backend> Prediction<B> {
         let weights = self.prototypes.as_ref().map(read).transpose()?.unwrap_or_default();
         let objects = scales.len() / batch.max(1);
         let [rows, choices] = [&descriptors, &weights].map(|values: &Vec<T>| values.len() / scales.len().max(1));
-        let object = |k: usize| Object {
-            pose: Pose {
+        let object = |k: usize| {
+            let pose = Pose {
                 translation: [translations[2 * k], translations[2 * k + 1]],
                 scale: scales[k],
                 rotation: rotations[k],
-            },
-            color: [colors[3 * k], colors[3 * k + 1], colors[3 * k + 2]],
-            confidence: confidences[k],
-            efd: Efd::new(descriptors[rows * k..rows * (k + 1)].as_chunks().0.to_vec()),
-            prototype: PrototypeBank::strongest(&weights[choices * k..choices * (k + 1)]),
+            };
+            Object::of_efd(
+                pose,
+                [colors[3 * k], colors[3 * k + 1], colors[3 * k + 2]],
+                confidences[k],
+                Efd::new(descriptors[rows * k..rows * (k + 1)].as_chunks().0.to_vec()),
+                PrototypeBank::strongest(&weights[choices * k..choices * (k + 1)]),
+            )
         };
         let scene = |item: usize| Scene {
             background: [background[3 * item], background[3 * item + 1], background[3 * item + 2]],
+            transparent: false,
             objects: (item * objects..(item + 1) * objects).map(object).collect(),
             edge,
             compositing: Compositing::Blend,

@@ -41,7 +41,9 @@ fn predictions_have_the_extents_and_ranges_of_scenes() {
         }
         let scenes = found.scenes::<f64>(EdgeProfile::reference()).unwrap();
         assert_eq!(scenes.iter().map(|scene| scene.objects.len()).collect::<Vec<_>>(), [8, 8]);
-        assert!(scenes[0].objects.iter().all(|object| object.prototype.is_some() == (shape == ShapeHead::Prototypes)));
+        assert!(
+            scenes[0].objects.iter().all(|object| object.prototype().is_some() == (shape == ShapeHead::Prototypes))
+        );
     }
 }
 

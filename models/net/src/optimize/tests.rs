@@ -20,13 +20,9 @@ fn parts<T: Real>() -> (ModelConfig, Model<Host>, SceneSteps<T>, Image<T>) {
     let weights = initial_weights(&asked, 3, T::DTYPE, &HostDevice).unwrap();
     let model = Model::load(&config, &bank, &Weights::new(&weights).frozen()).unwrap();
     let painter = SceneSteps::new(config.objects(), HARMONICS, EdgeProfile::reference()).unwrap();
-    let heart = Object {
-        pose: Pose { translation: [T::of(0.4), T::of(0.6)], scale: T::of(0.25), rotation: T::of(0.5) },
-        color: [T::of(0.9), T::of(0.2), T::of(0.1)],
-        confidence: T::one(),
-        efd: bank.prototypes()[0].clone(),
-        prototype: Some(0),
-    };
+    let pose = Pose { translation: [T::of(0.4), T::of(0.6)], scale: T::of(0.25), rotation: T::of(0.5) };
+    let heart =
+        Object::of_efd(pose, [T::of(0.9), T::of(0.2), T::of(0.1)], T::one(), bank.prototypes()[0].clone(), Some(0));
     let scene = Scene { objects: vec![heart], ..Scene::empty([T::of(0.2), T::of(0.3), T::of(0.4)]) };
     let image = painter.paint(&scene, ImageSize::new(32, 32).unwrap()).unwrap();
     (config, model, painter, image)

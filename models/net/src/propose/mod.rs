@@ -18,7 +18,7 @@ mod tests;
 use dvp_core::render::EdgeProfile;
 use dvp_core::shape::PrototypeBank;
 use dvp_core::tensor::{Host, HostDevice, Parameters};
-use dvp_core::{Image, ImageView, Object, Real, Scene};
+use dvp_core::{AnyShape, Image, ImageView, Object, Real, Scene};
 
 pub use built_in::BUILT_IN;
 
@@ -147,8 +147,9 @@ impl Proposer {
 
     /// A slot that is there, with the shape of the prototype that weighs most in it.
     fn as_object(&self, slot: &Object<f32>) -> Object<f32> {
-        let prototype = slot.prototype.and_then(|index| self.bank.prototypes().get(index));
-        Object { confidence: 1.0, efd: prototype.unwrap_or(&slot.efd).clone(), ..slot.clone() }
+        let prototype = slot.prototype().and_then(|index| self.bank.prototypes().get(index));
+        let shape = prototype.map_or_else(|| slot.shape.clone(), |efd| AnyShape::of_efd(efd.clone(), slot.prototype()));
+        Object { confidence: 1.0, shape, ..slot.clone() }
     }
 
     fn latents(&self, target: &Image<f32>) -> Result<Latents<Host>, NetError> {

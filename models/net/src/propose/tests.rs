@@ -23,7 +23,7 @@ fn size(width: usize, height: usize) -> ImageSize {
 
 fn object(translation: [f32; 2], scale: f32, color: [f32; 3], confidence: f32) -> Object<f32> {
     let pose = Pose { translation, scale, rotation: 0.3 };
-    Object { pose, color, confidence, efd: Efd::new(vec![[1.0, 0.0, 0.0, -1.0]]), prototype: None }
+    Object::of_efd(pose, color, confidence, Efd::new(vec![[1.0, 0.0, 0.0, -1.0]]), None)
 }
 
 /// Of disks.
@@ -52,7 +52,7 @@ fn what_is_found_on_the_square_stands_where_it_is_in_the_picture() {
     let disk = object([1.5, 0.5], 0.2, [0.9, 0.8, 0.7], 1.0);
     for (size, disk) in [
         (size(256, 128), disk.clone()),
-        (size(128, 256), object([0.5, 1.5], 0.2, disk.color, 1.0)),
+        (size(128, 256), object([0.5, 1.5], 0.2, disk.color(), 1.0)),
         (size(64, 32), disk.clone()),
     ] {
         let truth = Scene { objects: vec![disk], ..Scene::empty(background) };
@@ -170,13 +170,13 @@ fn what_is_in_doubt_is_there_if_the_picture_shows_it() {
 fn objects_have_shapes_of_the_bank() {
     let proposer = Proposer::from_bytes(BUILT_IN).unwrap();
     let heart = proposer.bank().prototypes()[0].clone();
-    let there = Object { efd: heart.clone(), ..object([0.4, 0.5], 0.25, [0.9, 0.8, 0.1], 1.0) };
+    let there = Object { shape: heart.clone().into(), ..object([0.4, 0.5], 0.25, [0.9, 0.8, 0.1], 1.0) };
     let painter = SceneSteps::new(1, 16, EdgeProfile::reference()).unwrap();
     let image =
         painter.paint(&Scene { objects: vec![there], ..Scene::empty([0.1, 0.2, 0.4]) }, size(128, 128)).unwrap();
     let found = proposer.objects(image.view()).unwrap();
     assert_eq!(found.objects.len(), 1);
-    assert_eq!((found.objects[0].efd.clone(), found.objects[0].confidence), (heart, 1.0));
+    assert_eq!((found.objects[0].shape.efd(), found.objects[0].confidence), (Some(&heart), 1.0));
 }
 
 #[test]

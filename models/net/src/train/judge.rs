@@ -5,7 +5,7 @@ use core::f64::consts::TAU;
 use dvp_core::render::PixelLoss;
 use dvp_core::shape::PrototypeBank;
 use dvp_core::tensor::{Backend, Tensor};
-use dvp_core::{Image, Real, Scene};
+use dvp_core::{AnyShape, Image, Real, Scene};
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 
@@ -140,7 +140,7 @@ impl<T: Real> Judge<T> {
             object.pose.rotation = T::of(rng.random_range(0.0..TAU));
             if !prototypes.is_empty() {
                 let k = rng.random_range(0..prototypes.len());
-                (object.efd, object.prototype) = (prototypes[k].clone(), Some(k));
+                object.shape = AnyShape::of_efd(prototypes[k].clone(), Some(k));
             }
         }
         Ok(())

@@ -46,7 +46,7 @@ fn batch<T: Real>(count: usize) -> Batch<T> {
             };
             let (color, shape) = ([T::of(0.9 - shift), T::of(shift), T::of(0.3)], (k + j) % 3);
             let efd = bank.prototypes()[shape].clone();
-            Object { pose, color, confidence: T::one(), efd, prototype: Some(shape) }
+            Object::of_efd(pose, color, T::one(), efd, Some(shape))
         };
         Scene { objects: (0..=k % 2).map(object).collect(), ..Scene::empty([T::of(0.2), T::of(0.5), T::of(0.8)]) }
     };
@@ -85,7 +85,7 @@ fn what_is_seen_twice_is_dreamed_once_and_what_the_picture_lacks_never() {
     let dreamed = &seen.objects[0];
     assert_eq!(dreamed.pose, Pose { rotation: dreamed.pose.rotation, ..object.pose });
     assert_ne!(dreamed.pose, object.pose);
-    assert_eq!(dreamed.prototype.map(|k| &judge.bank.prototypes()[k]), Some(&dreamed.efd));
+    assert_eq!(dreamed.prototype().map(|k| &judge.bank.prototypes()[k]), dreamed.shape.efd());
 }
 
 #[test]

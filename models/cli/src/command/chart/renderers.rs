@@ -185,7 +185,9 @@ impl<T: Real, R: Renderer<T>> Tiles<T, R> {
     fn scene(&self, picture: &Picture) -> Scene<T> {
         let mut scene = cast_scene(&picture.truth);
         for object in &mut scene.objects {
-            object.efd = object.efd.resized(self.basis.harmonic_count());
+            if let Some(efd) = object.shape.efd_mut() {
+                *efd = efd.resized(self.basis.harmonic_count());
+            }
         }
         scene
     }

@@ -45,7 +45,7 @@ impl Aspect {
             Self::Scale => objects.map(|object| object.scale).collect(),
             Self::Rotation => objects.map(|object| object.rotation).collect(),
             Self::Color => objects.flat_map(|object| object.color).collect(),
-            Self::Shape => objects.flat_map(|object| object.efd.as_flattened().iter().copied()).collect(),
+            Self::Shape => objects.flat_map(|object| object.numbers.iter().copied()).collect(),
             Self::Background => grad.background.to_vec(),
         };
         values.into_iter().map(f64::from).collect()

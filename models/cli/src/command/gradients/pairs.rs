@@ -2,7 +2,7 @@
 
 use dvp_core::scene::rotation_from_pair;
 use dvp_core::shape::Efd;
-use dvp_core::{ImageSize, Object, Scene};
+use dvp_core::{AnyShape, ImageSize, Object, Scene};
 
 use crate::format::mdshr_bank;
 use crate::generate::{SceneSettings, sample_scene};
@@ -35,10 +35,11 @@ impl Pair {
             object.pose.scale = mix(from.scale, to.scale);
             let pair = [mix(from.rotation.sin(), to.rotation.sin()), mix(from.rotation.cos(), to.rotation.cos())];
             object.pose.rotation = rotation_from_pair(pair);
-            object.color = [0, 1, 2].map(|k| mix(a.color[k], b.color[k]));
+            object.paint = [0, 1, 2].map(|k| mix(a.color()[k], b.color()[k])).into();
             object.confidence = mix(a.confidence, b.confidence);
-            let rows = a.efd.rows().iter().zip(b.efd.rows());
-            object.efd = Efd::new(rows.map(|(a, b)| [0, 1, 2, 3].map(|k| mix(a[k], b[k]))).collect());
+            let rows = a.efd_rows().iter().zip(b.efd_rows());
+            let mixed = Efd::new(rows.map(|(a, b)| [0, 1, 2, 3].map(|k| mix(a[k], b[k]))).collect());
+            object.shape = AnyShape::of_efd(mixed, a.prototype());
             object
         };
         Scene {

@@ -45,7 +45,7 @@ impl Spent {
             |&(at, object): &(usize, &Object<f32>)| !objects[..at].iter().any(|other| is_same_shape(other, object));
         let different: Vec<&Object<f32>> =
             objects.iter().enumerate().filter(is_new).map(|(_, object)| object).collect();
-        let harmonics = |object: &&Object<f32>| object.prototype.is_none().then(|| object.efd.harmonic_count());
+        let harmonics = |object: &&Object<f32>| object.prototype().is_none().then(|| object.efd_rows().len());
         let free: Vec<usize> = objects.iter().filter_map(|object| harmonics(&object)).collect();
         let coefficients = 4 * different.iter().filter_map(harmonics).sum::<usize>();
         Self {
@@ -59,8 +59,8 @@ impl Spent {
 }
 
 fn is_same_shape(a: &Object<f32>, b: &Object<f32>) -> bool {
-    match (a.prototype, b.prototype) {
-        (None, None) => a.efd == b.efd,
+    match (a.prototype(), b.prototype()) {
+        (None, None) => a.shape == b.shape,
         (a, b) => a == b,
     }
 }

@@ -1,4 +1,4 @@
-use dvp_core::Scene;
+use dvp_core::{AnyShape, Scene};
 use proptest::prelude::*;
 
 use super::spent::{Law, Spent};
@@ -24,7 +24,8 @@ fn prototypes_cost_their_choice_and_shapes_their_harmonics() {
         scene.objects.push(object);
     }
     scene.objects.truncate(2);
-    scene.objects[0].prototype = Some(1);
+    let shape = scene.objects[0].shape.efd().unwrap().clone();
+    scene.objects[0].shape = AnyShape::of_efd(shape, Some(1));
     let spent = Spent::of(&scene, 4);
     // Background 24, two objects of 72, a choice of 2 bits for each prototype.
     assert_eq!((spent.objects, spent.numbers), (2, 3 + 2 * 7));
@@ -38,7 +39,7 @@ fn prototypes_cost_their_choice_and_shapes_their_harmonics() {
 #[test]
 fn all_harmonics_that_vertices_carry_paint_the_same() {
     let (scene, size) = (truth(3, 0), square(128).unwrap());
-    assert!(scene.objects[0].efd.harmonic_count() > 31);
+    assert!(scene.objects[0].efd_rows().len() > 31);
     let mut written = scene.clone();
     written.objects.iter_mut().for_each(|object| *object = written_out(object, 31));
     let [a, b] = [scene, written].map(|scene| Painter::default().paint(&scene, size).unwrap());

@@ -30,11 +30,11 @@ impl Price {
             ..truth.clone()
         };
         let shared = with_shapes(&|_, object| {
-            let alike = truth.objects.iter().zip(&needed).filter(|(other, _)| other.efd == object.efd);
+            let alike = truth.objects.iter().zip(&needed).filter(|(other, _)| other.shape.efd() == object.shape.efd());
             written_out(object, alike.map(|(_, &harmonics)| harmonics).max().unwrap_or(1))
         });
         let known =
-            with_shapes(&|at, object| if object.prototype.is_some() { object } else { &shared.objects[at] }.clone());
+            with_shapes(&|at, object| if object.prototype().is_some() { object } else { &shared.objects[at] }.clone());
         let background = Scene { objects: Vec::new(), ..truth.clone() };
         let nothing = scene_bits(&background, bank);
         let alone = truth.objects.iter().zip(&needed).map(|(object, &harmonics)| {
@@ -62,9 +62,9 @@ const MOST_HARMONICS: usize = EDGES / 2;
 /// The object with its shape cut to so many harmonics, and of no bank. All that the vertices carry leave every vertex where it
 /// is: at t = i / 63 harmonic 63 - n is harmonic n with the sines negative, and harmonic 63 does not move.
 pub(super) fn written_out(object: &Object<f32>, harmonics: usize) -> Object<f32> {
-    let mut rows = vec![[0.0; 4]; MOST_HARMONICS.min(object.efd.harmonic_count())];
+    let mut rows = vec![[0.0; 4]; MOST_HARMONICS.min(object.efd_rows().len())];
     let mut center = [[0.0; 2]];
-    for (n, &[a, b, c, d]) in (1_usize..).zip(object.efd.rows()) {
+    for (n, &[a, b, c, d]) in (1_usize..).zip(object.efd_rows()) {
         let turns = n % EDGES;
         let (n, sign) = if turns <= MOST_HARMONICS { (turns, 1.0) } else { (EDGES - turns, -1.0) };
         if let Some(row) = n.checked_sub(1).and_then(|n| rows.get_mut(n)) {
@@ -79,7 +79,7 @@ pub(super) fn written_out(object: &Object<f32>, harmonics: usize) -> Object<f32>
     rows.truncate(harmonics);
     object.pose.transform(&mut center);
     let pose = Pose { translation: center[0], ..object.pose };
-    Object { pose, efd: Efd::new(rows), prototype: None, ..object.clone() }
+    Object { pose, shape: Efd::new(rows).into(), ..object.clone() }
 }
 
 /// The number of harmonics of an object that is shortest to write with what the picture misses without the others.
@@ -88,7 +88,7 @@ fn needed_harmonics(truth: &Scene<f32>, at: usize, size: ImageSize) -> Result<us
     let whole = painter.paint(truth, size)?;
     let mut cut = truth.clone();
     let mut best = (f64::INFINITY, 1);
-    for harmonics in 1..=MOST_HARMONICS.min(truth.objects[at].efd.harmonic_count()) {
+    for harmonics in 1..=MOST_HARMONICS.min(truth.objects[at].efd_rows().len()) {
         cut.objects[at] = written_out(&truth.objects[at], harmonics);
         let shape = scene_bits(&Scene { objects: vec![cut.objects[at].clone()], ..Scene::empty([0.0; 3]) }, 1);
         if shape >= best.0 {

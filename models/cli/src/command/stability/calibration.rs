@@ -65,7 +65,7 @@ impl Stated {
             let Some(pair) = pair.filter(|pair| pair.iou >= SAME) else { continue };
             let Some(covariance) = fit.covariance.get(pair.found) else { continue };
             let (true_object, object) = (&truth.objects[k], &found.there.objects[pair.found]);
-            let off = if true_object.efd == object.efd {
+            let off = if true_object.shape.efd() == object.shape.efd() {
                 let turn = TAU / f64::of_usize(order(fit.ambiguity.iter(), pair.found).max(1));
                 pose_difference(true_object, object, turn).map(Some)
             } else {

@@ -170,7 +170,7 @@ fn is_finite(fit: &Fit<f32>) -> bool {
     let objects = fit.scene.objects.iter().flat_map(|object| {
         let pose = &object.pose;
         let pose = [pose.translation[0], pose.translation[1], pose.scale, pose.rotation, object.confidence];
-        pose.into_iter().chain(object.color).chain(object.efd.rows().as_flattened().iter().copied())
+        pose.into_iter().chain(object.color()).chain(object.efd_rows().as_flattened().iter().copied())
     });
     let covariance = fit.covariance.iter().flatten().copied();
     objects.chain(fit.scene.background).chain(covariance).all(f32::is_finite)

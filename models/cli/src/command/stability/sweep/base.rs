@@ -58,12 +58,9 @@ pub(super) fn apart(rng: &mut ChaCha8Rng, count: usize, scales: Range, gap: f32)
                 distance > (scale + pose.scale) * REACH + gap
             })
         });
-        scene.objects.extend(place.map(|translation| Object {
-            pose: Pose { translation, scale, rotation },
-            color,
-            confidence: 1.0,
-            efd: bank.prototypes[prototype].1.clone(),
-            prototype: Some(prototype),
+        scene.objects.extend(place.map(|translation| {
+            let pose = Pose { translation, scale, rotation };
+            Object::of_efd(pose, color, 1.0, bank.prototypes[prototype].1.clone(), Some(prototype))
         }));
     }
     scene

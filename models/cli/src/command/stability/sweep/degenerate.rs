@@ -28,7 +28,7 @@ pub(super) fn coincident(level: f64, seed: u64) -> Result<Case> {
 fn with_shape(efd: &Efd<f32>, seed: u64) -> Result<Case> {
     let mut scene = apart(&mut random(seed), OBJECTS, SCALES, GAP);
     for object in &mut scene.objects {
-        (object.efd, object.prototype) = (efd.clone(), None);
+        object.shape = efd.clone().into();
     }
     case(scene, SIDE)
 }

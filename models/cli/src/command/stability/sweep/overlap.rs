@@ -39,12 +39,9 @@ pub(super) fn occluded(level: f64, seed: u64) -> Result<Case> {
     };
     let shape = rng.random_range(0..bank.prototypes.len());
     let direction = rng.random_range(0.0..core::f32::consts::TAU);
-    let object = |prototype: usize, scale, color, rotation| Object {
-        pose: Pose { translation: [0.5; 2], scale, rotation },
-        color,
-        confidence: 1.0,
-        efd: bank.prototypes[prototype].1.clone(),
-        prototype: Some(prototype),
+    let object = |prototype: usize, scale, color, rotation| {
+        let pose = Pose { translation: [0.5; 2], scale, rotation };
+        Object::of_efd(pose, color, 1.0, bank.prototypes[prototype].1.clone(), Some(prototype))
     };
     let mut angle = || rng.random_range(0.0..core::f32::consts::TAU);
     let objects = vec![object(shape, REAR, rear, angle()), object(SQUARE, FRONT, front, angle())];

@@ -1,7 +1,7 @@
 //! Starts that are off in one way, all else being true.
 
 use anyhow::Result;
-use dvp_core::{Object, Real, Scene};
+use dvp_core::{AnyShape, Object, Real, Scene};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
@@ -24,7 +24,7 @@ pub(super) fn turned(level: f64, seed: u64) -> Result<Case> {
     let mut truth = mds_hr(seed)?;
     let heart = mdshr_bank().prototypes[0].1.clone();
     for object in &mut truth.objects {
-        (object.efd, object.prototype) = (heart.clone(), Some(0));
+        object.shape = AnyShape::of_efd(heart.clone(), Some(0));
     }
     moved(truth, seed, |object, rng| {
         let way = if rng.random() { 1.0 } else { -1.0 };
