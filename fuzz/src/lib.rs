@@ -76,13 +76,32 @@ impl<'a> Arbitrary<'a> for Points {
     }
 }
 
+/// Where rings begin, in any order and anywhere.
+#[derive(Clone, Debug)]
+pub struct Breaks(pub Vec<usize>);
+
+impl Breaks {
+    /// In order, and none behind `count` vertices.
+    pub fn rising(mut self, count: usize) -> Vec<usize> {
+        self.0.iter_mut().for_each(|start| *start = (*start).min(count));
+        self.0.sort_unstable();
+        self.0
+    }
+}
+
+impl<'a> Arbitrary<'a> for Breaks {
+    fn arbitrary(u: &mut Unstructured<'a>) -> Result<Self> {
+        list(u, 6, |u| u.int_in_range(0..=40)).map(Self)
+    }
+}
+
 /// A small image size.
 pub fn size(u: &mut Unstructured<'_>, most: usize) -> Result<ImageSize> {
     let (width, height) = (u.int_in_range(1..=most)?, u.int_in_range(1..=most)?);
     ImageSize::new(width, height).map_err(|_| arbitrary::Error::IncorrectFormat)
 }
 
-/// A drawing of up to four wild objects, and the size to paint it at.
+/// A drawing of up to four wild objects, often of several rings, sometimes with breaks that are none, and the size to paint it at.
 pub struct Painting {
     /// What to paint.
     pub drawing: Drawing<f32>,
@@ -99,6 +118,8 @@ impl<'a> Arbitrary<'a> for Painting {
             let color = [number(u)?, number(u)?, number(u)?];
             drawing.push(&outline, color, f32::from(u.arbitrary::<u8>()?) / 255.0);
         }
+        let breaks = Breaks::arbitrary(u)?;
+        drawing.breaks = if u.ratio(7, 8)? { breaks.rising(drawing.vertices.len()) } else { breaks.0 };
         Ok(Self { drawing, size })
     }
 }
@@ -116,6 +137,6 @@ impl fmt::Debug for Painting {
             let outline = Points(drawing.outline(k).to_vec());
             writeln!(f, "drawing.push(&{outline:?}, {}, {:?});", Code(&drawing.colors[k]), drawing.confidences[k])?;
         }
-        Ok(())
+        writeln!(f, "drawing.breaks = vec!{:?};", drawing.breaks)
     }
 }

@@ -3,6 +3,7 @@
 use dvp_core::ImageSize;
 use dvp_core::render::SoftTriangles;
 use dvp_core::render::triangles::{Delaunay, Face, Triangulate};
+use dvp_core::shape::Rings;
 use dvp_tests::coverage::coverage;
 use dvp_tests::strategy;
 use proptest::prelude::*;
@@ -23,7 +24,7 @@ proptest! {
             outline.push(star[0]);
         }
         let mut faces = Vec::new();
-        let report = Delaunay.triangulate(&outline, &mut faces);
+        let report = Delaunay.triangulate(Rings::one(&outline), &mut faces);
         prop_assert_eq!(report.crossing_edges, 0);
         // A fan around the origin, from which the star is seen whole, has the same area.
         let next = star.iter().cycle().skip(1);
@@ -35,7 +36,7 @@ proptest! {
     #[test]
     fn any_outline_is_triangulated(outline in strategy::wild_outline()) {
         let mut faces = Vec::new();
-        Delaunay.triangulate(&outline, &mut faces);
+        Delaunay.triangulate(Rings::one(&outline), &mut faces);
         prop_assert!(faces.as_flattened().iter().all(|&k| k < outline.len()));
     }
 

@@ -6,9 +6,10 @@
 //! | [`tile`] | coverage tiles per object, the trait of coverage models, and the renderer over any of them |
 //! | `composite` | one pass over the image: mixing, loss, gradients with respect to colors, confidences and coverage |
 //! | [`contour`] | coverage by the scene's edge profile, without the reference's seams: the default renderer |
-//! | [`exact`] | coverage by the area of pixel and outline in common |
+//! | [`exact`] | coverage by the area of pixel and object in common |
 //! | [`hard`] | coverage 0 or 1: masks |
 //! | [`dense`] | the default renderer again, in tensor operations alone |
+//! | `even_odd` | points told inside from outside, many at a time |
 //! | `render_op` | any renderer, and its fused loss, as steps of a batch: [`RenderOp`], [`RenderLossOp`] |
 //! | `triangles` | coverage by the distance to triangles, the reference's; with the feature of that name |
 
@@ -16,6 +17,7 @@
 mod composite;
 pub mod contour;
 pub mod dense;
+mod even_odd;
 pub mod exact;
 pub mod hard;
 mod render_op;
@@ -130,6 +132,17 @@ pub enum RenderError {
     },
     /// `starts` does not begin at 0 or falls.
     Starts,
+    /// A place where a ring begins lies before the last one or behind all vertices.
+    Breaks {
+        /// Which of the `breaks`.
+        index: usize,
+        /// The vertex that it names.
+        start: usize,
+        /// Smallest that it may name: the one named before.
+        least: usize,
+        /// Largest that it may name: the number of vertices.
+        most: usize,
+    },
     /// A setting is out of range.
     Setting {
         /// Which setting.
@@ -148,6 +161,11 @@ impl core::fmt::Display for RenderError {
             Self::NotFinite { what, object: None } => write!(f, "{what} is NaN or infinite"),
             Self::Length { what, expected, len } => write!(f, "{what} has {len} values, needs {expected}"),
             Self::Starts => write!(f, "starts must begin at 0 and never fall"),
+            Self::Breaks { index, start, least, most } => write!(
+                f,
+                "break {index} says that a ring begins at vertex {start}, needs one from {least} to {most}: breaks never fall \
+                 and count the vertices of all objects; Drawing::push_rings writes them"
+            ),
             Self::Setting { what, value, must } => write!(f, "{what} is {value}, must be {must}"),
         }
     }

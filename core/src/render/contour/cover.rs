@@ -9,6 +9,7 @@ use crate::real::Real;
 use crate::render::exact::ExactRecord;
 use crate::render::tile::{ChunkState, LANES, Lanes, Tile, grow, reserved_chunks};
 use crate::scene::PixelProfile;
+use crate::shape::Rings;
 use crate::simd::{Kernel, lanes};
 
 /// Squared distance of pixels that no edge looked at, px^2.
@@ -36,7 +37,7 @@ pub struct ContourRecord<T> {
 /// The forward kernel; fills `record.closest` only if `BACKWARD`.
 pub(super) struct Cover<'a, T, const BACKWARD: bool> {
     pub(super) band: Band<T>,
-    pub(super) outline_px: &'a [[T; 2]],
+    pub(super) rings_px: Rings<'a, T>,
     pub(super) size: ImageSize,
     pub(super) tile: &'a mut Tile<T>,
     pub(super) record: &'a mut ContourRecord<T>,
@@ -81,7 +82,7 @@ impl<T: Real, const BACKWARD: bool> Cover<'_, T, BACKWARD> {
         }
     }
 
-    /// Lists the edges, and flips a bit where a row meets one: what stands to the right changes sides.
+    /// Lists the edges of all rings, and flips a bit where a row meets one: what stands to the right changes sides.
     #[inline(always)]
     fn prepare_edges(&mut self) {
         let window = self.tile.window();
@@ -90,27 +91,30 @@ impl<T: Real, const BACKWARD: bool> Cover<'_, T, BACKWARD> {
         let shortest = T::of(SHORTEST_SQUARED * 0.25) * unit * unit;
         let record = &mut *self.record;
         record.edges.clear();
-        record.edges.reserve(self.outline_px.len());
-        for (from, a) in self.outline_px.iter().enumerate() {
-            let to = if from + 1 < self.outline_px.len() { from + 1 } else { 0 };
-            let b = &self.outline_px[to];
-            let (a, b) = ([a[0] - origin[0], a[1] - origin[1]], [b[0] - origin[0], b[1] - origin[1]]);
-            let along = [b[0] - a[0], b[1] - a[1]];
-            let squared = along[0] * along[0] + along[1] * along[1];
-            if squared >= shortest {
-                let edge = Edge { from, to, start: a, along, inverse_squared: squared.recip(), near: Near::default() };
-                if let Some(near) = edge.find_near(self.band.reach, window) {
-                    record.edges.push(Edge { near, ..edge });
+        record.edges.reserve(self.rings_px.vertices.len());
+        for ring in self.rings_px.ranges() {
+            for from in ring.clone() {
+                let to = if from + 1 < ring.end { from + 1 } else { ring.start };
+                let (a, b) = (&self.rings_px.vertices[from], &self.rings_px.vertices[to]);
+                let (a, b) = ([a[0] - origin[0], a[1] - origin[1]], [b[0] - origin[0], b[1] - origin[1]]);
+                let along = [b[0] - a[0], b[1] - a[1]];
+                let squared = along[0] * along[0] + along[1] * along[1];
+                if squared >= shortest {
+                    let edge =
+                        Edge { from, to, start: a, along, inverse_squared: squared.recip(), near: Near::default() };
+                    if let Some(near) = edge.find_near(self.band.reach, window) {
+                        record.edges.push(Edge { near, ..edge });
+                    }
                 }
-            }
-            // Rows with low <= row < high meet the edge: each row meets a closed outline an even number of times.
-            let (low, high) = (a[1].min(b[1]).ceil().to_count(), b[1].max(a[1]).ceil().to_count().min(window.rows));
-            let slope = along[0] / along[1];
-            for row in low..high {
-                let x = a[0] + (T::of_usize(row) - a[1]) * slope;
-                let column = x.ceil().to_count();
-                if column < window.width() {
-                    record.inside[row * window.chunks + column / LANES] ^= 1 << (column % LANES);
+                // Rows with low <= row < high meet the edge: each row meets a closed ring an even number of times.
+                let (low, high) = (a[1].min(b[1]).ceil().to_count(), b[1].max(a[1]).ceil().to_count().min(window.rows));
+                let slope = along[0] / along[1];
+                for row in low..high {
+                    let x = a[0] + (T::of_usize(row) - a[1]) * slope;
+                    let column = x.ceil().to_count();
+                    if column < window.width() {
+                        record.inside[row * window.chunks + column / LANES] ^= 1 << (column % LANES);
+                    }
                 }
             }
         }

@@ -15,7 +15,7 @@ pub(super) struct CoverVjp<'a, T> {
     pub(super) band: Band<T>,
     pub(super) tile: &'a mut Tile<T>,
     pub(super) record: &'a mut ContourRecord<T>,
-    pub(super) grad_outline_px: &'a mut [[T; 2]],
+    pub(super) grad_px: &'a mut [[T; 2]],
 }
 
 impl<T: Real> Kernel for CoverVjp<'_, T> {
@@ -95,9 +95,9 @@ impl<T: Real> CoverVjp<'_, T> {
         }
         let [even, odd] = sums;
         let [sx, sy, ux, uy] = lanes(|i| (0..BLOCK).map(|lane| even[i][lane] + odd[i][lane]).sum::<T>());
-        self.grad_outline_px[edge.from][0] += sx - ux;
-        self.grad_outline_px[edge.from][1] += sy - uy;
-        self.grad_outline_px[edge.to][0] += ux;
-        self.grad_outline_px[edge.to][1] += uy;
+        self.grad_px[edge.from][0] += sx - ux;
+        self.grad_px[edge.from][1] += sy - uy;
+        self.grad_px[edge.to][0] += ux;
+        self.grad_px[edge.to][1] += uy;
     }
 }

@@ -1,4 +1,4 @@
-//! Edges of an outline, and the blocks of pixels near them.
+//! Edges of rings, and the blocks of pixels near them.
 
 use crate::real::Real;
 use crate::render::tile::{Window, pixel_range};

@@ -1,9 +1,9 @@
 //! Coverage by the scene's edge profile: the reference's images without the seams of its triangles, blur, exact areas.
 //!
-//! With d the distance from the center of a pixel to the outline as the profile's law measures it (signed, negative
-//! inside, squared or not), coverage is logistic((offset - d) / sigma), and 0 where d > cut. Inside and outside are told
-//! apart by the even-odd rule: a pixel is inside where a ray to the left meets an odd number of edges; self-intersecting
-//! outlines have holes. Area coverage is left to [`exact`](super::exact).
+//! With d the distance from the center of a pixel to the closest edge of any ring as the profile's law measures it (signed,
+//! negative inside, squared or not), coverage is logistic((offset - d) / sigma), and 0 where d > cut. Inside and outside
+//! are told apart by the even-odd rule over all rings: a pixel is inside where a ray to the left meets an odd number of
+//! edges; rings inside of others and outlines that cross themselves have holes. Area coverage is left to [`exact`](super::exact).
 //!
 //! Distances are worked out only in a narrow band along the outline: outside up to the cut, inside up to where coverage
 //! is within [`ContourDistance::saturation`] of 1, which then counts as 1, without gradient.
@@ -32,6 +32,7 @@ use super::{Compositing, EdgeLaw, EdgeProfile, RenderError};
 use crate::dims::ImageSize;
 use crate::real::Real;
 use crate::scene::PixelProfile;
+use crate::shape::Rings;
 use crate::simd::dispatch;
 
 /// Inside, coverage this close to 1 counts as 1 unless said otherwise.
@@ -133,36 +134,36 @@ impl<T: Real> CoverageModel<T> for ContourDistance<T> {
 
     fn cover(
         &self,
-        outline_px: &[[T; 2]],
+        rings_px: Rings<'_, T>,
         size: ImageSize,
         tile: &mut Tile<T>,
         record: &mut ContourRecord<T>,
         backward: bool,
     ) -> Result<(), RenderError> {
         if self.edge.law == EdgeLaw::Area {
-            return ExactArea.cover(outline_px, size, tile, &mut record.exact, backward);
+            return ExactArea.cover(rings_px, size, tile, &mut record.exact, backward);
         }
         let band = self.band(T::of_usize(size.unit_px()));
         if backward {
-            dispatch(cover::Cover::<T, true> { band, outline_px, size, tile, record });
+            dispatch(cover::Cover::<T, true> { band, rings_px, size, tile, record });
         } else {
-            dispatch(cover::Cover::<T, false> { band, outline_px, size, tile, record });
+            dispatch(cover::Cover::<T, false> { band, rings_px, size, tile, record });
         }
         Ok(())
     }
 
     fn cover_vjp(
         &self,
-        outline_px: &[[T; 2]],
+        rings_px: Rings<'_, T>,
         size: ImageSize,
         tile: &mut Tile<T>,
         record: &mut ContourRecord<T>,
-        grad_outline_px: &mut [[T; 2]],
+        grad_px: &mut [[T; 2]],
     ) {
         if self.edge.law == EdgeLaw::Area {
-            return ExactArea.cover_vjp(outline_px, size, tile, &mut record.exact, grad_outline_px);
+            return ExactArea.cover_vjp(rings_px, size, tile, &mut record.exact, grad_px);
         }
         let band = self.band(T::of_usize(size.unit_px()));
-        dispatch(cover_vjp::CoverVjp { band, tile, record, grad_outline_px });
+        dispatch(cover_vjp::CoverVjp { band, tile, record, grad_px });
     }
 }

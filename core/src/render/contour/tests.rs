@@ -6,11 +6,12 @@ use crate::dims::ImageSize;
 use crate::render::tile::TileRenderer;
 use crate::render::{Compositing, EdgeLaw, EdgeProfile, RenderError};
 use crate::scene::Drawing;
+use crate::shape::{Outline, Rings};
 
 /// Coverage pixel by pixel and edge by edge, from the definition.
-fn by_definition(outline: &[[f64; 2]], edge: EdgeProfile<f64>, size: ImageSize) -> Vec<f64> {
+fn by_definition(rings: Rings<'_, f64>, edge: EdgeProfile<f64>, size: ImageSize) -> Vec<f64> {
     let unit = size.unit_px() as f64;
-    let edges = || outline.iter().zip(outline.iter().cycle().skip(1));
+    let edges = || rings.iter().flat_map(|ring| ring.iter().zip(ring.iter().cycle().skip(1)));
     let pixels = (0..size.height()).flat_map(|row| (0..size.width()).map(move |column| (row as f64, column as f64)));
     let coverage = pixels.map(|(row, column)| {
         let p = [(column + 0.5) / unit, (row + 0.5) / unit];
@@ -32,13 +33,13 @@ fn by_definition(outline: &[[f64; 2]], edge: EdgeProfile<f64>, size: ImageSize) 
     coverage.collect()
 }
 
-fn assert_by_definition(outline: &[[f64; 2]], edge: EdgeProfile<f64>, size: ImageSize) {
+fn assert_by_definition(rings: Rings<'_, f64>, edge: EdgeProfile<f64>, size: ImageSize) {
     let mut drawing = Drawing::default();
-    drawing.push(outline, [1.0; 3], 1.0);
+    drawing.push_rings(rings, [1.0; 3], 1.0);
     let mut coverage = vec![f64::NAN; size.pixels()];
     let renderer = ContourRenderer::new(edge, Compositing::Blend);
     renderer.object_coverage(&drawing, size, &mut Default::default(), &mut coverage).unwrap();
-    for (i, (found, expected)) in coverage.iter().zip(by_definition(outline, edge, size)).enumerate() {
+    for (i, (found, expected)) in coverage.iter().zip(by_definition(rings, edge, size)).enumerate() {
         let (row, column) = (i / size.width(), i % size.width());
         // Saturation is 1e-6 from the logistic.
         assert!((found - expected).abs() < 1.1e-6, "({row}, {column}): {found}, not {expected}");
@@ -71,7 +72,7 @@ fn coverage_is_that_of_the_definition() {
     ];
     for edge in edges {
         for outline in [pentagram([0.7, 0.5], 0.45), pentagram([0.05, 0.95], 0.4), pentagram([0.5, 0.5], 3.0)] {
-            assert_by_definition(&outline, edge, size);
+            assert_by_definition(Rings::one(&outline), edge, size);
         }
     }
 }
@@ -81,7 +82,25 @@ fn thin_outlines_in_small_images_are_covered() {
     for (width, height) in [(1, 1), (1, 40), (40, 1), (16, 16), (17, 33)] {
         let size = ImageSize::new(width, height).unwrap();
         let edge = EdgeProfile { offset: 0.02, sigma: 0.004, cut: 0.04, ..EdgeProfile::reference() };
-        assert_by_definition(&[[0.1, 0.2], [0.9, 0.25], [0.5, 0.3]], edge, size);
+        assert_by_definition(Rings::one(&[[0.1, 0.2], [0.9, 0.25], [0.5, 0.3]]), edge, size);
+    }
+}
+
+#[test]
+fn every_ring_counts() {
+    let size = ImageSize::new(70, 61).unwrap();
+    let square = |low: f64, high: f64| [[low, low], [high, low], [high, high], [low, high]];
+    let mut outline = Outline::default();
+    // A frame whose hole is drawn the same way round, with an island that is not, a ring that crosses the frame, one outside
+    // of the view and one of two vertices, which is a line.
+    outline.push_ring(square(0.1, 0.9));
+    outline.push_ring(square(0.25, 0.75));
+    outline.push_ring(square(0.4, 0.6).into_iter().rev());
+    outline.push_ring(pentagram([0.95, 0.5], 0.15));
+    outline.push_ring(pentagram([7.0, 0.5], 0.4));
+    outline.push_ring([[0.15, 0.05], [0.2, 0.95]]);
+    for edge in [EdgeProfile::reference(), EdgeProfile::distance(0.02)] {
+        assert_by_definition(outline.rings(), edge, size);
     }
 }
 

@@ -1,18 +1,22 @@
-//! Forward: the area of each pixel that lies inside an outline.
+//! Forward: the area of each pixel that lies inside of rings.
 
 use alloc::vec::Vec;
 
+use super::orientation::Orientation;
 use super::pieces::{Piece, Visit, for_each_piece};
 use crate::dims::ImageSize;
 use crate::real::Real;
 use crate::render::tile::{ChunkState, LANES, Lanes, Tile, grow, reserved_chunks};
+use crate::shape::Rings;
 use crate::simd::Kernel;
 
-/// What the forward pass of an outline leaves for the backward pass, and memory.
+/// What the forward pass of an object leaves for the backward pass, and memory.
 #[derive(Clone, Debug, Default)]
 pub struct ExactRecord<T> {
-    /// The outline from the upper left corner of the tile, where pixel (r, c) spans \[c, c + 1\] x \[r, r + 1\].
-    pub(super) outline: Vec<[T; 2]>,
+    /// The vertices from the upper left corner of the tile, where pixel (r, c) spans \[c, c + 1\] x \[r, r + 1\].
+    pub(super) vertices: Vec<[T; 2]>,
+    /// Which way round each ring is walked.
+    pub(super) orientation: Orientation<T>,
     /// Integral of the winding number over each pixel of mixed chunks.
     pub(super) winding: Vec<Lanes<T>>,
     /// Per chunk, what its last pixel hands on to the pixels further right.
@@ -21,9 +25,9 @@ pub struct ExactRecord<T> {
     entry: Vec<T>,
 }
 
-/// Covers one outline.
+/// Covers one object, whose orientation stands in the record.
 pub(super) struct Cover<'a, T> {
-    pub(super) outline_px: &'a [[T; 2]],
+    pub(super) rings_px: Rings<'a, T>,
     pub(super) size: ImageSize,
     pub(super) tile: &'a mut Tile<T>,
     pub(super) record: &'a mut ExactRecord<T>,
@@ -37,17 +41,14 @@ impl<T: Real> Kernel for Cover<'_, T> {
     /// are wholly inside or outside: the sum is rounded there, so that no rounding error travels on.
     #[inline(always)]
     fn run(self) {
-        let Self { outline_px, size, tile, record } = self;
+        let Self { rings_px, size, tile, record } = self;
         let window = tile.window();
         let (width, chunks) = (window.width(), window.chunks);
-        record.prepare(outline_px, [window.left(), window.top], chunks * window.rows, window.rows, size);
-        let ExactRecord { outline, winding, carry, entry } = record;
-        let Some(&last) = outline.last() else { return };
+        record.prepare(rings_px.vertices, [window.left(), window.top], chunks * window.rows, window.rows, size);
+        let ExactRecord { vertices, orientation, winding, carry, entry } = record;
         let mut sums = Accumulate { tile: &mut *tile, winding, carry, entry, chunks };
-        let mut a = last;
-        for &b in outline.iter() {
-            for_each_piece(a, b, width, window.rows, &mut sums);
-            a = b;
+        for (from, to) in orientation.edges(rings_px) {
+            for_each_piece(vertices[from], vertices[to], width, window.rows, &mut sums);
         }
         for (row, &entry) in entry.iter().enumerate() {
             let mut sum = entry;
@@ -103,10 +104,10 @@ impl<T: Real> Visit<T> for Accumulate<'_, T> {
 
 impl<T: Real> ExactRecord<T> {
     #[inline(always)]
-    fn prepare(&mut self, outline_px: &[[T; 2]], corner: [usize; 2], chunks: usize, rows: usize, size: ImageSize) {
+    fn prepare(&mut self, vertices_px: &[[T; 2]], corner: [usize; 2], chunks: usize, rows: usize, size: ImageSize) {
         let shift = corner.map(|corner| T::of(0.5) - T::of_usize(corner));
-        self.outline.clear();
-        self.outline.extend(outline_px.iter().map(|&[x, y]| [x + shift[0], y + shift[1]]));
+        self.vertices.clear();
+        self.vertices.extend(vertices_px.iter().map(|&[x, y]| [x + shift[0], y + shift[1]]));
         let reserved = reserved_chunks(size);
         grow(&mut self.winding, chunks, reserved);
         grow(&mut self.carry, chunks, reserved);
@@ -120,29 +121,19 @@ impl<T: Real> ExactRecord<T> {
 
 /// Coverage under the even-odd rule from the mean winding number of a pixel: the distance to the nearest even number.
 ///
-/// Exact where the pixel holds two neighboring winding numbers only (every pixel of a simple outline); where an outline
-/// crosses itself inside the pixel, parts of other winding numbers are averaged first.
+/// Exact where the pixel holds two neighboring winding numbers only (every pixel, unless edges cross each other); where
+/// edges cross inside the pixel, parts of other winding numbers are averaged first.
 #[inline(always)]
 fn even_odd<T: Real>(winding: T) -> T {
     let half = T::of(0.5);
     (winding - (winding * half + half).floor() * T::of(2.0)).abs()
 }
 
-/// Derivative of coverage by the winding number: +1 or -1. At its kinks, the whole numbers, it takes the side on
-/// which a simple outline of this `orientation` (+1 or -1, see [`orientation`]) lies: winding from 0 to +1 or -1.
+/// Derivative of coverage by the winding number: +1 or -1. At its kinks, the whole numbers, it takes the side on which rings
+/// that do not cross each other lie: winding from 0 to 1.
 #[inline(always)]
-pub(super) fn even_odd_slope<T: Real>(winding: T, orientation: T) -> T {
+pub(super) fn even_odd_slope<T: Real>(winding: T) -> T {
     let tie = T::of(1e-5);
-    let turned = winding * orientation;
-    let folded = turned - ((turned + T::one() - tie) * T::of(0.5)).floor() * T::of(2.0);
-    if folded > -tie { orientation } else { -orientation }
-}
-
-/// Sign of the winding number inside a simple outline: +1 or -1.
-#[inline(always)]
-pub(super) fn orientation<T: Real>(outline: &[[T; 2]]) -> T {
-    let Some(&[x, y]) = outline.first() else { return T::one() };
-    let doubled: T =
-        outline.windows(2).map(|pair| (pair[0][0] - x) * (pair[1][1] - y) - (pair[1][0] - x) * (pair[0][1] - y)).sum();
-    if doubled > T::zero() { -T::one() } else { T::one() }
+    let folded = winding - ((winding + T::one() - tie) * T::of(0.5)).floor() * T::of(2.0);
+    if folded > -tie { T::one() } else { -T::one() }
 }

@@ -1,14 +1,15 @@
-//! Exact coverage: the share of each pixel that lies inside the outline, what drawing programs call analytic
+//! Exact coverage: the share of each pixel that lies inside of an object, what drawing programs call analytic
 //! anti-aliasing.
 //!
-//! In: one closed outline in pixels. Out: coverage per pixel, and backward the gradient of the vertices. There is no edge
-//! profile: an outline covers what it encloses, with neither fattening nor softness.
+//! In: closed rings in pixels. Out: coverage per pixel, and backward the gradient of the vertices. There is no edge
+//! profile: rings cover what they enclose, with neither fattening nor softness.
 //!
-//! Self-overlap follows the even-odd rule, as in the other renderers of the crate: what an outline encloses twice is
-//! outside.
+//! Overlap follows the even-odd rule, as in the other renderers of the crate: what is enclosed twice is outside, whichever
+//! way round the rings are drawn.
 //!
 //! | file | holds |
 //! |---|---|
+//! | `orientation.rs` | which way round each ring is walked |
 //! | `pieces.rs` | an edge cut at the pixel grid |
 //! | `area.rs` | forward: the winding number integrated over pixels, even-odd coverage |
 //! | `area_vjp.rs` | backward: what a moving edge sweeps |
@@ -21,6 +22,7 @@
 
 mod area;
 mod area_vjp;
+mod orientation;
 mod pieces;
 #[cfg(test)]
 mod tests;
@@ -33,15 +35,16 @@ use super::tile::{CoverageModel, Tile, TileRenderer};
 use super::{RenderError, tile::TileScratch};
 use crate::dims::ImageSize;
 use crate::real::Real;
+use crate::shape::Rings;
 use crate::simd::dispatch;
 
-/// Paints outlines with exact area coverage.
+/// Paints objects with exact area coverage.
 pub type ExactRenderer = TileRenderer<ExactArea>;
 
 /// Memory of an [`ExactRenderer`].
 pub type ExactScratch<T> = TileScratch<T, ExactRecord<T>>;
 
-/// Coverage by the area of pixel and outline in common.
+/// Coverage by the area of pixel and object in common.
 ///
 /// *Derivative*: exact, see [`TileRenderer`]'s `render_vjp`; piecewise smooth, with kinks where a vertex or an
 /// axis-parallel edge crosses the pixel grid. Where a pixel is wholly inside or outside there is none: an object that
@@ -67,24 +70,25 @@ impl<T: Real> CoverageModel<T> for ExactArea {
 
     fn cover(
         &self,
-        outline_px: &[[T; 2]],
+        rings_px: Rings<'_, T>,
         size: ImageSize,
         tile: &mut Tile<T>,
         record: &mut ExactRecord<T>,
         _backward: bool,
     ) -> Result<(), RenderError> {
-        dispatch(Cover { outline_px, size, tile, record });
+        record.orientation.find(rings_px);
+        dispatch(Cover { rings_px, size, tile, record });
         Ok(())
     }
 
     fn cover_vjp(
         &self,
-        _outline_px: &[[T; 2]],
+        rings_px: Rings<'_, T>,
         _size: ImageSize,
         tile: &mut Tile<T>,
         record: &mut ExactRecord<T>,
-        grad_outline_px: &mut [[T; 2]],
+        grad_px: &mut [[T; 2]],
     ) {
-        dispatch(CoverVjp { tile, record, grad_outline: grad_outline_px });
+        dispatch(CoverVjp { rings_px, tile, record, grad_px });
     }
 }

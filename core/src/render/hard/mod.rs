@@ -1,6 +1,6 @@
-//! Hard coverage: 1 where the center of a pixel lies inside the outline, else 0. Masks, not gradients.
+//! Hard coverage: 1 where the center of a pixel lies inside of an object, else 0. Masks, not gradients.
 //!
-//! In: one closed outline in pixels. Out: coverage 0 or 1 per pixel under the even-odd rule. A center on an edge counts
+//! In: closed rings in pixels. Out: coverage 0 or 1 per pixel under the even-odd rule. A center on an edge counts
 //! as inside if the edge is a left or upper side, as outside if it is a right or lower side, so that outlines with an edge
 //! in common never share a pixel and leave none out.
 //!
@@ -27,9 +27,10 @@ use super::RenderError;
 use super::tile::{CoverageModel, Tile, TileRenderer, TileScratch};
 use crate::dims::ImageSize;
 use crate::real::Real;
+use crate::shape::Rings;
 use crate::simd::dispatch;
 
-/// Paints outlines with hard edges.
+/// Paints objects with hard edges.
 pub type HardRenderer = TileRenderer<HardMask>;
 
 /// Memory of a [`HardRenderer`].
@@ -57,15 +58,15 @@ impl<T: Real> CoverageModel<T> for HardMask {
 
     fn cover(
         &self,
-        outline_px: &[[T; 2]],
+        rings_px: Rings<'_, T>,
         size: ImageSize,
         tile: &mut Tile<T>,
         record: &mut HardRecord,
         _backward: bool,
     ) -> Result<(), RenderError> {
-        dispatch(Cover { outline_px, size, tile, record });
+        dispatch(Cover { rings_px, size, tile, record });
         Ok(())
     }
 
-    fn cover_vjp(&self, _: &[[T; 2]], _: ImageSize, _: &mut Tile<T>, _: &mut HardRecord, _: &mut [[T; 2]]) {}
+    fn cover_vjp(&self, _: Rings<'_, T>, _: ImageSize, _: &mut Tile<T>, _: &mut HardRecord, _: &mut [[T; 2]]) {}
 }

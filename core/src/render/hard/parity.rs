@@ -1,27 +1,28 @@
-//! Which pixel centers lie inside an outline.
+//! Which pixel centers lie inside of rings.
 
 use alloc::vec::Vec;
 
 use crate::dims::ImageSize;
 use crate::real::Real;
 use crate::render::tile::{ChunkState, LANES, Lanes, Tile, grow, reserved_chunks};
+use crate::shape::Rings;
 use crate::simd::Kernel;
 
 /// Memory of the forward pass.
 #[derive(Clone, Debug, Default)]
 pub struct HardRecord {
-    /// Per chunk, bit by bit, the pixels before which a row enters or leaves the outline.
+    /// Per chunk, bit by bit, the pixels before which a row enters or leaves the object.
     crossings: Vec<u16>,
 }
 
 const _: () = assert!(LANES == u16::BITS as usize, "a chunk is one word of bits");
 
-/// Covers one outline.
+/// Covers one object.
 ///
 /// Each edge marks in each row that it spans the first pixel center at or right of it; a pixel is inside if the number
 /// of marks up to it is odd.
 pub(super) struct Cover<'a, T> {
-    pub(super) outline_px: &'a [[T; 2]],
+    pub(super) rings_px: Rings<'a, T>,
     pub(super) size: ImageSize,
     pub(super) tile: &'a mut Tile<T>,
     pub(super) record: &'a mut HardRecord,
@@ -32,32 +33,34 @@ impl<T: Real> Kernel for Cover<'_, T> {
 
     #[inline(always)]
     fn run(self) {
-        let Self { outline_px, size, tile, record } = self;
+        let Self { rings_px, size, tile, record } = self;
         let window = tile.window();
         let chunks = window.chunks;
         let count = chunks * window.rows;
         grow(&mut record.crossings, count, reserved_chunks(size));
         let crossings = &mut record.crossings[..count];
         crossings.fill(0);
-        let Some(&last) = outline_px.last() else { return };
         let (left, width) = (T::of_usize(window.left()), window.width());
         let (top, end) = (T::of_usize(window.top), T::of_usize(window.top + window.rows));
-        let mut a = last;
-        for &b in outline_px {
-            let (upper, lower) = if a[1] <= b[1] { (a, b) } else { (b, a) };
-            a = b;
-            // Rows y with upper <= y < lower.
-            let first = upper[1].max(top).min(end).ceil();
-            let end = lower[1].max(top).min(end).ceil();
-            let slope = (lower[0] - upper[0]) / (lower[1] - upper[1]);
-            let mut y = first;
-            while y < end {
-                let column = (upper[0] + (y - upper[1]) * slope - left).ceil().to_count();
-                if column < width {
-                    let row = y.to_count() - window.top;
-                    crossings[row * chunks + column / LANES] ^= 1 << (column % LANES);
+        for ring in rings_px.iter() {
+            let Some(&last) = ring.last() else { continue };
+            let mut a = last;
+            for &b in ring {
+                let (upper, lower) = if a[1] <= b[1] { (a, b) } else { (b, a) };
+                a = b;
+                // Rows y with upper <= y < lower.
+                let first = upper[1].max(top).min(end).ceil();
+                let end = lower[1].max(top).min(end).ceil();
+                let slope = (lower[0] - upper[0]) / (lower[1] - upper[1]);
+                let mut y = first;
+                while y < end {
+                    let column = (upper[0] + (y - upper[1]) * slope - left).ceil().to_count();
+                    if column < width {
+                        let row = y.to_count() - window.top;
+                        crossings[row * chunks + column / LANES] ^= 1 << (column % LANES);
+                    }
+                    y += T::one();
                 }
-                y += T::one();
             }
         }
         let rows = crossings.chunks_exact(chunks).zip(tile.states.chunks_exact_mut(chunks));

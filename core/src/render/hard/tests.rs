@@ -5,14 +5,20 @@ use super::{BACKGROUND, HardMask, HardScratch, object_index};
 use crate::dims::ImageSize;
 use crate::render::{Compositing, RenderError, TileRenderer};
 use crate::scene::Drawing;
+use crate::shape::{Outline, Rings};
 
 /// Rows of '.' and '#'; the outline counts from the upper left corner of the image, whose shorter side is its height.
 fn picture(outline: &[[f32; 2]], width: usize, height: usize) -> Vec<alloc::string::String> {
+    picture_of_rings(Rings::one(outline), width, height)
+}
+
+/// As [`picture`], of several rings.
+fn picture_of_rings(rings: Rings<'_, f32>, width: usize, height: usize) -> Vec<alloc::string::String> {
     let size = ImageSize::new(width, height).unwrap();
     let unit = f32::from(u16::try_from(size.unit_px()).unwrap());
-    let scene: Vec<_> = outline.iter().map(|v| v.map(|x| x / unit)).collect();
+    let vertices: Vec<_> = rings.vertices.iter().map(|v| v.map(|x| x / unit)).collect();
     let mut drawing = Drawing::default();
-    drawing.push(&scene, [1.0; 3], 1.0);
+    drawing.push_rings(Rings { vertices: &vertices, ..rings }, [1.0; 3], 1.0);
     let renderer = TileRenderer { coverage: HardMask, compositing: Compositing::Over };
     let mut mask = vec![0.0; size.pixels()];
     renderer.object_coverage(&drawing, size, &mut HardScratch::default(), &mut mask).unwrap();
@@ -43,6 +49,21 @@ fn doubly_wound_core_is_outside() {
     let inner = [[1.0, 1.0], [3.0, 1.0], [3.0, 3.0], [1.0, 3.0], [1.0, 1.0]];
     let loops: Vec<_> = outer.into_iter().chain(inner).collect();
     assert_eq!(picture(&loops, 4, 4), ["####", "#..#", "#..#", "####"]);
+}
+
+#[test]
+fn rings_take_turns() {
+    let square = |low: f32, high: f32| [[low, low], [high, low], [high, high], [low, high]];
+    let mut outline = Outline::default();
+    outline.push_ring(square(0.0, 6.0));
+    outline.push_ring([[3.5, 0.0], [3.5, 6.0]]);
+    outline.push_ring([[2.0, 2.5]]);
+    outline.push_ring(square(1.0, 5.0));
+    outline.push_ring(square(2.0, 4.0).into_iter().rev());
+    // The second object begins where this ring ends; a ring without vertices stands between.
+    outline.breaks.push(outline.vertices.len());
+    let rows = picture_of_rings(outline.rings(), 7, 6);
+    assert_eq!(rows, ["######.", "#....#.", "#.##.#.", "#.##.#.", "#....#.", "######."]);
 }
 
 #[test]

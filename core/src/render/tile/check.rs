@@ -20,6 +20,14 @@ pub(super) fn check_drawing<T: Real>(drawing: &Drawing<T>) -> Result<(), RenderE
             return Err(RenderError::Starts);
         }
     }
+    let mut least = 0;
+    for (index, &start) in drawing.breaks.iter().enumerate() {
+        let most = drawing.vertices.len();
+        if !(least..=most).contains(&start) {
+            return Err(RenderError::Breaks { index, start, least, most });
+        }
+        least = start;
+    }
     if !all_finite(&drawing.background) {
         return Err(RenderError::NotFinite { what: "background", object: None });
     }

@@ -1,8 +1,8 @@
 //! Per-object coverage tiles, and the renderer that turns any coverage model into images and gradients.
 //!
 //! ```text
-//! outline (px) --CoverageModel::cover--> Tile --composite--> pixels, loss
-//! grad outline <-CoverageModel::cover_vjp- Tile.grad <-composite-'
+//! rings (px) --CoverageModel::cover--> Tile --composite--> pixels, loss
+//! grad rings <-CoverageModel::cover_vjp- Tile.grad <-composite-'
 //! ```
 //!
 //! A [`Tile`] holds one object's coverage in a window of the image, in chunks of [`LANES`] pixels of a row. Chunk c of
@@ -71,11 +71,11 @@ pub struct Window {
 }
 
 impl Window {
-    /// The smallest window that holds each pixel center within `reach_px` of the box of `outline_px`; `None` if the image
-    /// holds no such pixel.
+    /// The smallest window that holds each pixel center within `reach_px` of the box of `vertices_px`; `None` if the
+    /// image holds no such pixel.
     #[must_use]
-    pub fn around<T: Real>(outline_px: &[[T; 2]], reach_px: T, size: ImageSize) -> Option<Self> {
-        let [first, rest @ ..] = outline_px else { return None };
+    pub fn around<T: Real>(vertices_px: &[[T; 2]], reach_px: T, size: ImageSize) -> Option<Self> {
+        let [first, rest @ ..] = vertices_px else { return None };
         let (mut low, mut high) = (*first, *first);
         for v in rest {
             for i in 0..2 {

@@ -10,6 +10,7 @@ use crate::real::Real;
 use crate::render::composite::{CompositeScratch, Composition, Forward, Loss, Mae, Mse, Pull};
 use crate::render::{Compositing, PixelLoss, RenderError, Renderer};
 use crate::scene::{Drawing, DrawingGrad};
+use crate::shape::Rings;
 
 /// Paints with any coverage model: a coverage tile per object, then one pass of compositing over the image, fused with
 /// the loss and its gradient where one is asked for.
@@ -18,7 +19,7 @@ use crate::scene::{Drawing, DrawingGrad};
 /// allocates otherwise. Objects outside the view cost nothing and get zero gradient.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TileRenderer<C> {
-    /// How much of each pixel an outline covers.
+    /// How much of each pixel an object covers.
     pub coverage: C,
     /// How objects that share a pixel mix.
     pub compositing: Compositing,
@@ -27,7 +28,7 @@ pub struct TileRenderer<C> {
 /// Memory of a [`TileRenderer`], kept between calls.
 #[derive(Debug)]
 pub struct TileScratch<T, R> {
-    pub(super) outline_px: Vec<[T; 2]>,
+    pub(super) vertices_px: Vec<[T; 2]>,
     grad_px: Vec<[T; 2]>,
     pub(super) tiles: Vec<Tile<T>>,
     pub(super) records: Vec<R>,
@@ -37,7 +38,7 @@ pub struct TileScratch<T, R> {
 impl<T: Real, R> Default for TileScratch<T, R> {
     fn default() -> Self {
         Self {
-            outline_px: Vec::new(),
+            vertices_px: Vec::new(),
             grad_px: Vec::new(),
             tiles: Vec::new(),
             records: Vec::new(),
@@ -66,15 +67,15 @@ impl<C> TileRenderer<C> {
             scratch.tiles.resize_with(objects, Tile::default);
             scratch.records.resize_with(objects, C::Record::default);
         }
-        scratch.outline_px.clear();
-        scratch.outline_px.extend(drawing.vertices.iter().map(|&v| to_px(v, size)));
+        scratch.vertices_px.clear();
+        scratch.vertices_px.extend(drawing.vertices.iter().map(|&v| to_px(v, size)));
         let reach_px = self.coverage.reach_px(T::of_usize(size.unit_px()));
         for (k, (tile, record)) in scratch.tiles[..objects].iter_mut().zip(&mut scratch.records).enumerate() {
-            let outline_px = &scratch.outline_px[drawing.starts[k]..drawing.starts[k + 1]];
-            match Window::around(outline_px, reach_px, size) {
+            let vertices = &scratch.vertices_px[drawing.starts[k]..drawing.starts[k + 1]];
+            match Window::around(vertices, reach_px, size) {
                 Some(window) => {
                     tile.reset(window, size);
-                    self.coverage.cover(outline_px, size, tile, record, backward)?;
+                    self.coverage.cover(Rings { vertices, ..drawing.rings(k) }, size, tile, record, backward)?;
                 }
                 None => tile.reset(Window::default(), size),
             }
@@ -99,8 +100,8 @@ impl<C> TileRenderer<C> {
         for (k, (tile, record)) in scratch.tiles[..objects].iter_mut().zip(&mut scratch.records).enumerate() {
             if tile.window().rows > 0 {
                 let range = drawing.starts[k]..drawing.starts[k + 1];
-                let outline_px = &scratch.outline_px[range.clone()];
-                self.coverage.cover_vjp(outline_px, size, tile, record, &mut scratch.grad_px[range]);
+                let rings_px = Rings { vertices: &scratch.vertices_px[range.clone()], ..drawing.rings(k) };
+                self.coverage.cover_vjp(rings_px, size, tile, record, &mut scratch.grad_px[range]);
             }
         }
         let unit = T::of_usize(size.unit_px());

@@ -7,6 +7,7 @@ use crate::dims::ImageSize;
 use crate::real::Real;
 use crate::render::RenderError;
 use crate::scene::Drawing;
+use crate::shape::Rings;
 
 impl<C> TileRenderer<C> {
     /// Hands the coverage of every object to `visit`, with no regard to confidence: the object's index, the index of a
@@ -30,7 +31,7 @@ impl<C> TileRenderer<C> {
     {
         self.coverage.check()?;
         check_drawing(drawing)?;
-        let TileScratch { outline_px, tiles, records, .. } = scratch;
+        let TileScratch { vertices_px, tiles, records, .. } = scratch;
         if tiles.is_empty() {
             tiles.push(Tile::default());
             records.push(C::Record::default());
@@ -38,12 +39,12 @@ impl<C> TileRenderer<C> {
         let ([tile, ..], [record, ..]) = (&mut tiles[..], &mut records[..]) else { return Ok(()) };
         let reach_px = self.coverage.reach_px(T::of_usize(size.unit_px()));
         for k in 0..drawing.object_count() {
-            outline_px.clear();
-            outline_px
-                .extend(drawing.vertices[drawing.starts[k]..drawing.starts[k + 1]].iter().map(|&v| to_px(v, size)));
-            let Some(window) = Window::around(outline_px, reach_px, size) else { continue };
+            let rings = drawing.rings(k);
+            vertices_px.clear();
+            vertices_px.extend(rings.vertices.iter().map(|&v| to_px(v, size)));
+            let Some(window) = Window::around(vertices_px, reach_px, size) else { continue };
             tile.reset(window, size);
-            self.coverage.cover(outline_px, size, tile, record, false)?;
+            self.coverage.cover(Rings { vertices: vertices_px, ..rings }, size, tile, record, false)?;
             for i in 0..window.rows * window.chunks {
                 let left = (window.left_chunk + i % window.chunks) * LANES;
                 let start = (window.top + i / window.chunks) * size.width() + left;

@@ -10,23 +10,23 @@ use crate::real::Real;
 use crate::render::tile::{ChunkState, LANES, Lanes, Tile, Window, grow, pixel_range, reserved_chunks};
 use crate::simd::Kernel;
 
-/// What the forward pass of an outline leaves for the backward pass, and memory.
+/// What the forward pass of an object leaves for the backward pass, and memory.
 #[derive(Clone, Debug, Default)]
 pub struct TriangleRecord<T> {
     /// Triangles of the interior.
     pub(super) faces: Vec<Face>,
-    /// The outline from the upper left pixel of the tile.
-    pub(super) outline: Vec<[T; 2]>,
+    /// The vertices from the upper left pixel of the tile.
+    pub(super) vertices: Vec<[T; 2]>,
     /// Signed squared distance to the nearest triangle, px^2; infinite where none is within reach.
     pub(super) distance: Vec<Lanes<T>>,
     /// 3 x face + edge of the nearest edge of that triangle; means something where the distance is finite.
     pub(super) winner: Vec<[u32; LANES]>,
 }
 
-/// Covers one outline whose faces stand in the record.
+/// Covers one object whose faces stand in the record.
 pub(super) struct Cover<'a, T> {
     pub(super) profile: SquaredProfile<T>,
-    pub(super) outline_px: &'a [[T; 2]],
+    pub(super) vertices_px: &'a [[T; 2]],
     pub(super) size: ImageSize,
     pub(super) tile: &'a mut Tile<T>,
     pub(super) record: &'a mut TriangleRecord<T>,
@@ -37,19 +37,19 @@ impl<T: Real> Kernel for Cover<'_, T> {
 
     #[inline(always)]
     fn run(self) {
-        let Self { profile, outline_px, size, tile, record } = self;
+        let Self { profile, vertices_px, size, tile, record } = self;
         let window = tile.window();
         let count = window.chunks * window.rows;
         let corner = [window.left(), window.top].map(T::of_usize);
-        let TriangleRecord { faces, outline, distance, winner } = record;
-        outline.clear();
-        outline.extend(outline_px.iter().map(|&[x, y]| [x - corner[0], y - corner[1]]));
+        let TriangleRecord { faces, vertices, distance, winner } = record;
+        vertices.clear();
+        vertices.extend(vertices_px.iter().map(|&[x, y]| [x - corner[0], y - corner[1]]));
         grow(distance, count, reserved_chunks(size));
         grow(winner, count, reserved_chunks(size));
         distance[..count].fill([T::infinity(); LANES]);
         let mut code = 0;
         for face in faces.iter() {
-            let corners = face.map(|vertex| outline[vertex]);
+            let corners = face.map(|vertex| vertices[vertex]);
             if let Some(triangle) = Triangle::new(corners, profile.least_area) {
                 triangle.draw(code, profile.reach, window, distance, winner);
             }

@@ -1,7 +1,7 @@
 //! Soft triangles: the reference's renderer, with the seams of its triangles.
 //!
-//! In: one closed outline in pixels. Out: coverage per pixel, and backward the gradient of the vertices. The outline is
-//! cut into triangles; with d2 the signed squared distance from a pixel center to a triangle (doubled frame, negative
+//! In: closed rings in pixels. Out: coverage per pixel, and backward the gradient of the vertices. What the rings enclose
+//! is cut into triangles; with d2 the signed squared distance from a pixel center to a triangle (doubled frame, negative
 //! inside), the triangle covers the pixel by logistic((offset - d2) / sigma), 0 where d2 > cut, and the object by the
 //! largest of its triangles; profiles in distance are painted as well, area coverage as the nearest of them. Inside an object, on the edges that two triangles share, d2 is 0: coverage dips to 0.993
 //! there (reference profile), and to 1/2 where the offset is 0. [`contour`](super::contour) has no such seams and is faster; this one is for comparison
@@ -9,7 +9,7 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `triangulate.rs` | from an outline to triangles |
+//! | `triangulate.rs` | from rings to triangles |
 //! | `profile.rs` | the edge profile in pixels |
 //! | `distance.rs` | forward: nearest triangle, coverage |
 //! | `distance_vjp.rs` | backward: coverage to vertices |
@@ -37,9 +37,10 @@ use super::tile::{CoverageModel, Tile, TileRenderer, TileScratch};
 use super::{ContourDistance, EdgeProfile, RenderError};
 use crate::dims::ImageSize;
 use crate::real::Real;
+use crate::shape::Rings;
 use crate::simd::dispatch;
 
-/// Paints outlines as soft triangles.
+/// Paints objects as soft triangles.
 pub type TriangleRenderer<T> = TileRenderer<SoftTriangles<T>>;
 
 /// Memory of a [`TriangleRenderer`].
@@ -82,34 +83,34 @@ impl<T: Real, F: Triangulate> CoverageModel<T> for SoftTriangles<T, F> {
 
     fn cover(
         &self,
-        outline_px: &[[T; 2]],
+        rings_px: Rings<'_, T>,
         size: ImageSize,
         tile: &mut Tile<T>,
         record: &mut TriangleRecord<T>,
         _backward: bool,
     ) -> Result<(), RenderError> {
-        self.faces.triangulate(outline_px, &mut record.faces);
-        if let Some(&vertex) = record.faces.as_flattened().iter().find(|&&vertex| vertex >= outline_px.len()) {
+        self.faces.triangulate(rings_px, &mut record.faces);
+        if let Some(&vertex) = record.faces.as_flattened().iter().find(|&&vertex| vertex >= rings_px.vertices.len()) {
             return Err(RenderError::Setting {
                 what: "face",
                 value: T::of_usize(vertex).as_f64(),
-                must: "a vertex of its outline",
+                must: "a vertex of its object",
             });
         }
         let profile = SquaredProfile::new(&self.edge, T::of_usize(size.unit_px()));
-        dispatch(Cover { profile, outline_px, size, tile, record });
+        dispatch(Cover { profile, vertices_px: rings_px.vertices, size, tile, record });
         Ok(())
     }
 
     fn cover_vjp(
         &self,
-        _outline_px: &[[T; 2]],
+        _rings_px: Rings<'_, T>,
         size: ImageSize,
         tile: &mut Tile<T>,
         record: &mut TriangleRecord<T>,
-        grad_outline_px: &mut [[T; 2]],
+        grad_px: &mut [[T; 2]],
     ) {
         let profile = SquaredProfile::new(&self.edge, T::of_usize(size.unit_px()));
-        dispatch(CoverVjp { profile, tile, record, grad_outline: grad_outline_px });
+        dispatch(CoverVjp { profile, tile, record, grad_px });
     }
 }

@@ -6,6 +6,7 @@ use crate::dims::ImageSize;
 use crate::render::triangles::TriangleScratch;
 use crate::render::{Compositing, EdgeProfile, RenderError, TileRenderer};
 use crate::scene::Drawing;
+use crate::shape::{Outline, Rings};
 
 /// Sum of the areas of the faces.
 fn area(outline: &[[f64; 2]], faces: &[Face]) -> f64 {
@@ -17,9 +18,31 @@ fn area(outline: &[[f64; 2]], faces: &[Face]) -> f64 {
 }
 
 fn triangulate(outline: &[[f64; 2]]) -> (Vec<Face>, TriangulationReport) {
+    triangulate_rings(Rings::one(outline))
+}
+
+fn triangulate_rings(rings: Rings<'_, f64>) -> (Vec<Face>, TriangulationReport) {
     let mut faces = vec![[7; 3]];
-    let report = Delaunay.triangulate(outline, &mut faces);
+    let report = Delaunay.triangulate(rings, &mut faces);
     (faces, report)
+}
+
+#[test]
+fn holes_stay_outside() {
+    // A square of 4 x 4, a hole of 2 x 2 the same way round, an island of 1 x 1 in it, and rings that enclose nothing.
+    let square = |low: f64, high: f64| [[low, low], [high, low], [high, high], [low, high]];
+    let mut outline = Outline::default();
+    outline.push_ring([[0.5, 0.5]]);
+    outline.push_ring(square(0.0, 4.0));
+    outline.push_ring([[0.1, 0.2], [3.0, 0.5]]);
+    outline.push_ring(square(1.0, 3.0));
+    outline.push_ring(square(1.5, 2.5).into_iter().rev());
+    outline.breaks.push(outline.vertices.len());
+    let (faces, report) = triangulate_rings(outline.rings());
+    assert_eq!(report, TriangulationReport::default());
+    assert!((area(&outline.vertices, &faces) - (16.0 - 4.0 + 1.0)).abs() < 1e-12);
+    // 8 between the borders of the frame, 2 in the island.
+    assert_eq!(faces.len(), 10);
 }
 
 #[test]
@@ -61,7 +84,7 @@ fn far_vertices_are_refused_without_a_panic() {
 struct Halves;
 
 impl Triangulate for Halves {
-    fn triangulate<T>(&self, _: &[[T; 2]], faces: &mut Vec<Face>) -> TriangulationReport {
+    fn triangulate<T>(&self, _: Rings<'_, T>, faces: &mut Vec<Face>) -> TriangulationReport {
         faces.clear();
         faces.extend([[0, 1, 2], [0, 2, 3]]);
         TriangulationReport::default()
