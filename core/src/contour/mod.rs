@@ -5,7 +5,7 @@
 //! | `label` | a mask, or what neighbors have in common | connected components, [`label`], [`label_by`] |
 //! | `walk` | a yes or no per pixel | the cracks between yes and no, loop by loop |
 //! | `trace` | a mask, or a field and a level | closed polygons, [`trace_mask`], [`trace_level`] |
-//! | `polygon` | a polygon | area, perimeter, inside or not, points at equal distances |
+//! | `polygon` | a polygon | area, centroid, perimeter, inside or not, points at equal distances |
 //!
 //! *Units*: pixels; the pixel (row r, column c) covers \[c, c + 1\] x \[r, r + 1\], x right, y down. Divided by
 //! [`ImageSize::unit_px`](crate::ImageSize::unit_px) they are scene units. A polygon is a slice of vertices, closed by the edge from
@@ -19,7 +19,7 @@ mod trace;
 mod walk;
 
 pub use label::{Components, label, label_by};
-pub use polygon::{contains, perimeter, resample, signed_area};
+pub use polygon::{centroid, contains, perimeter, resample, signed_area};
 pub use trace::{trace_level, trace_mask};
 
 /// Which neighbors of a pixel are in one piece with it.

@@ -24,6 +24,20 @@ pub fn signed_area<T: Real>(polygon: &[[T; 2]]) -> T {
     twice * T::of(0.5)
 }
 
+/// The center of the area inside; none without area. Parts wound twice count twice.
+#[must_use]
+pub fn centroid<T: Real>(polygon: &[[T; 2]]) -> Option<[T; 2]> {
+    let &[x, y] = polygon.first()?;
+    let mut sums = [T::zero(); 3];
+    for [p, q] in edges(polygon) {
+        let (p, q) = ([p[0] - x, p[1] - y], [q[0] - x, q[1] - y]);
+        let cross = p[0] * q[1] - q[0] * p[1];
+        sums = [sums[0] + (p[0] + q[0]) * cross, sums[1] + (p[1] + q[1]) * cross, sums[2] + cross];
+    }
+    let weight = T::of(3.0) * sums[2];
+    (weight != T::zero()).then(|| [x + sums[0] / weight, y + sums[1] / weight])
+}
+
 /// The length of all edges, the closing one included.
 #[must_use]
 pub fn perimeter<T: Real>(polygon: &[[T; 2]]) -> T {

@@ -11,7 +11,7 @@ pub struct Segment<T> {
     /// From its start to its end.
     pub along: Vec2<T>,
     /// 1 / length^2; 0 for a segment without length, whose nearest point is its start.
-    inverse_squared: T,
+    pub inverse_squared: T,
 }
 
 /// The point of a segment nearest to a given point.

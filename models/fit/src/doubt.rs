@@ -3,6 +3,7 @@
 use alloc::vec::Vec;
 
 use dvp_core::contour::contains;
+use dvp_core::geometry::Segment;
 use dvp_core::{ImageSize, Real, simd};
 
 use crate::free::foot::EdgeLanes;
@@ -178,13 +179,8 @@ pub(crate) fn hidden_share<'a, T: Real>(
 
 /// Whether every edge of a closed outline is farther from the point than `distance`.
 fn is_farther<T: Real>(outline: &[[T; 2]], point: [T; 2], distance: T) -> bool {
-    outline.windows(2).all(|edge| {
-        let [along, to] = [[edge[0], edge[1]], [edge[0], point]].map(|[from, to]| [to[0] - from[0], to[1] - from[1]]);
-        let squared = along[0] * along[0] + along[1] * along[1];
-        let dot = along[0] * to[0] + along[1] * to[1];
-        let t = if squared > T::zero() { (dot / squared).max(T::zero()).min(T::one()) } else { T::zero() };
-        (to[0] - t * along[0]).hypot(to[1] - t * along[1]) > distance
-    })
+    let mut edges = outline.windows(2).map(|edge| Segment::new(edge[0].into(), edge[1].into()));
+    edges.all(|edge| edge.nearest(point.into()).distance() > distance)
 }
 
 /// Least and greatest x and y.

@@ -6,6 +6,7 @@ use core::array;
 use super::profile::SquaredProfile;
 use super::triangulate::Face;
 use crate::dims::ImageSize;
+use crate::geometry::{Segment, Vec2};
 use crate::real::Real;
 use crate::render::tile::{ChunkState, LANES, Lanes, Tile, Window, grow, pixel_range, reserved_chunks};
 use crate::simd::Kernel;
@@ -69,41 +70,11 @@ impl<T: Real> Kernel for Cover<'_, T> {
     }
 }
 
-/// A directed edge, with what the distance to it needs.
-#[derive(Clone, Copy)]
-struct Edge<T> {
-    from: [T; 2],
-    along: [T; 2],
-    /// 1 / length^2; 0 for an edge of no length, whose nearest point is then `from`.
-    per_square: T,
-}
-
-impl<T: Real> Edge<T> {
-    #[inline(always)]
-    fn new(from: [T; 2], to: [T; 2]) -> Self {
-        let along = [to[0] - from[0], to[1] - from[1]];
-        let square = along[0] * along[0] + along[1] * along[1];
-        let per_square = if square > T::min_positive_value() { T::one() / square } else { T::zero() };
-        Self { from, along, per_square }
-    }
-
-    /// Squared distance, and on which side the point lies.
-    #[inline(always)]
-    fn measure(&self, x: T, y: T) -> (T, T) {
-        let (px, py) = (x - self.from[0], y - self.from[1]);
-        let u = (px * self.along[0] + py * self.along[1]) * self.per_square;
-        let u = if u > T::zero() { u } else { T::zero() };
-        let u = if u < T::one() { u } else { T::one() };
-        let (ex, ey) = (px - u * self.along[0], py - u * self.along[1]);
-        (ex * ex + ey * ey, self.along[0] * py - self.along[1] * px)
-    }
-}
-
 /// A triangle, ready to be measured from.
 #[derive(Clone, Copy)]
 struct Triangle<T> {
     corners: [[T; 2]; 3],
-    edges: [Edge<T>; 3],
+    edges: [Segment<T>; 3],
     /// +1 or -1, so that inside is where all three sides times it are positive.
     turn: T,
 }
@@ -114,14 +85,20 @@ impl<T: Real> Triangle<T> {
     fn new([a, b, c]: [[T; 2]; 3], least_area: T) -> Option<Self> {
         let area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
         let turn = if area > T::zero() { T::one() } else { -T::one() };
-        let edges = [Edge::new(a, b), Edge::new(b, c), Edge::new(c, a)];
+        let edge = |from: [T; 2], to: [T; 2]| Segment::new(from.into(), to.into());
+        let edges = [edge(a, b), edge(b, c), edge(c, a)];
         (area.abs() > least_area).then_some(Self { corners: [a, b, c], edges, turn })
     }
 
     /// Signed squared distance, and which edge is nearest.
     #[inline(always)]
     fn measure(&self, x: T, y: T) -> (T, u32) {
-        let [(d0, side0), (d1, side1), (d2, side2)] = self.edges.map(|edge| edge.measure(x, y));
+        let point = Vec2::new(x, y);
+        let measure = |edge: Segment<T>| {
+            // Squared distance, and on which side the point lies.
+            (edge.nearest(point).distance_squared(), edge.along.cross(point - edge.from))
+        };
+        let [(d0, side0), (d1, side1), (d2, side2)] = self.edges.map(measure);
         let (near, edge) = if d1 < d0 { (d1, 1) } else { (d0, 0) };
         let (near, edge) = if d2 < near { (d2, 2) } else { (near, edge) };
         let (side0, side1, side2) = (side0 * self.turn, side1 * self.turn, side2 * self.turn);

@@ -13,8 +13,8 @@ use crate::free::grow::{Freedom, GrowSettings, Thrift};
 use crate::free::outline_fit::FreeOutline;
 use crate::joint::{JointObject, JointScene};
 use crate::pose::field::OutlineField;
+use crate::pose::gauss_newton::{Frame, PosePx};
 use crate::pose::search::{Effort, search};
-use crate::split::motion::Motion;
 use crate::split::twins::{Union, misfit, repeats};
 use crate::split::waist::{is_convex, is_waisted};
 use crate::split::{Explanation, split};
@@ -230,12 +230,12 @@ impl<T: Real> Run<'_, T> {
 
     fn placed(&self, explanation: &Explanation<T>, single: &FoundObject<T>) -> Option<Vec<FoundObject<T>>> {
         let unit = self.unit_px();
-        let place = |(outline, motion): &(FreeOutline<T>, Motion<T>)| {
+        let place = |(outline, motion): &(FreeOutline<T>, PosePx<T>)| {
             let normal = Efd::new(outline.rows.clone()).normalize().ok()?;
             let pose = Pose {
-                translation: motion.apply(outline.center).map(|v| v / unit),
-                scale: motion.scale() * normal.scale / unit,
-                rotation: normal.rotation + motion.rotation(),
+                translation: Frame::new(motion).to_pixels(outline.center).map(|v| v / unit),
+                scale: motion.log_scale.exp() * normal.scale / unit,
+                rotation: normal.rotation + motion.rotation,
             };
             let object = Object { pose, shape: normal.efd.into(), ..single.object.clone() };
             Some(FoundObject { object, ..single.clone() })

@@ -3,6 +3,7 @@
 use alloc::vec::Vec;
 
 use dvp_core::contour::{Connectivity, perimeter, resample, signed_area, trace_level};
+use dvp_core::geometry::push_turning;
 use dvp_core::{ImageSize, Real};
 
 use crate::segment::{Segment, Segmentation};
@@ -111,13 +112,13 @@ fn fill_hidden<T: Real>(
         let row = (y - low[1] + MARGIN) * columns;
         let covered = |&x: &usize| field[row + x - low[0] + MARGIN] == T::one();
         if let (Some(first), Some(last)) = ((low[0]..high[0]).find(covered), (low[0]..high[0]).rfind(covered)) {
-            // Mirrored on the right, so that both chains bulge to the same side.
-            push_hull(left, [T::of_usize(first), T::of_usize(y)]);
-            push_hull(right, [-T::of_usize(last), T::of_usize(y)]);
+            // Mirrored on the left, so that both chains turn to the same side.
+            push_turning(left, 0, [-T::of_usize(first), T::of_usize(y)]);
+            push_turning(right, 0, [T::of_usize(last), T::of_usize(y)]);
         }
     }
     for y in low[1]..high[1] {
-        let (Some(from), Some(to)) = (at_row(left, y), at_row(right, y).map(|x| -x)) else { continue };
+        let (Some(from), Some(to)) = (at_row(left, y).map(|x| -x), at_row(right, y)) else { continue };
         let row = (y - low[1] + MARGIN) * columns;
         for x in from.ceil().to_count().max(low[0])..(to.floor().to_count() + 1).min(high[0]) {
             let value = &mut field[row + x - low[0] + MARGIN];
@@ -126,18 +127,6 @@ fn fill_hidden<T: Real>(
             }
         }
     }
-}
-
-/// Adds a point, one row further down, to the left chain of a convex hull.
-fn push_hull<T: Real>(chain: &mut Vec<[T; 2]>, point: [T; 2]) {
-    while let [.., a, b] = chain[..] {
-        let turn = (b[0] - a[0]) * (point[1] - a[1]) - (b[1] - a[1]) * (point[0] - a[0]);
-        if turn < T::zero() {
-            break;
-        }
-        chain.pop();
-    }
-    chain.push(point);
 }
 
 /// Where the chain crosses the middle of a row.

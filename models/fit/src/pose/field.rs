@@ -4,6 +4,8 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
+use dvp_core::contour::{centroid, signed_area};
+use dvp_core::geometry::{Segment, Vec2};
 use dvp_core::{Real, simd};
 
 /// Cells per side of the grid, as a part of an index in lanes and as a count.
@@ -15,9 +17,7 @@ const SHORTEST_EDGE: f64 = 1e-12;
 /// One edge of the unit outline.
 #[derive(Clone, Copy, Debug)]
 struct Edge<T> {
-    start: [T; 2],
-    step: [T; 2],
-    inverse_length_squared: T,
+    segment: Segment<T>,
     /// Unit normals, to the outside: of the vertex it starts at, its own, of the vertex it ends at. Those of a vertex are
     /// between those of its two edges: together they tell on which side of it a point is.
     normals: [[T; 2]; 3],
@@ -91,7 +91,7 @@ impl<T: Real> OutlineField<T> {
             low,
             cells_per_unit,
             area: signed.abs(),
-            centroid: centroid(vertices, signed),
+            centroid: centroid(vertices).unwrap_or_default(),
             radius,
         };
         simd::dispatch(FillGrid { field: &mut field });
@@ -170,10 +170,10 @@ impl<T: Real> OutlineField<T> {
         for i in 0..N {
             if let Some(edges) = self.edges.get(before[i] as usize..).and_then(|edges| edges.first_chunk::<3>()) {
                 for k in 0..3 {
-                    let Edge { start, step, inverse_length_squared, .. } = edges[k];
-                    (fans[k][0][i], fans[k][1][i]) = (start[0], start[1]);
-                    (fans[k][2][i], fans[k][3][i]) = (step[0], step[1]);
-                    fans[k][4][i] = inverse_length_squared;
+                    let Segment { from, along, inverse_squared } = edges[k].segment;
+                    (fans[k][0][i], fans[k][1][i]) = (from.x, from.y);
+                    (fans[k][2][i], fans[k][3][i]) = (along.x, along.y);
+                    fans[k][4][i] = inverse_squared;
                 }
             }
         }
@@ -249,7 +249,7 @@ impl<T: Real> simd::Kernel for FillGrid<'_, T> {
                 // Edges are numbered in `T`, to be chosen in lanes as wide as the distances.
                 let number = T::of_usize(i);
                 for column in 0..CELLS {
-                    let squared = edge.closest([x[column], y]).0;
+                    let squared = edge.segment.nearest(Vec2::new(x[column], y)).distance_squared();
                     let nearer = squared < least[column];
                     least[column] = if nearer { squared } else { least[column] };
                     nearest[column] = if nearer { number } else { nearest[column] };
@@ -272,52 +272,12 @@ impl<T: Real> simd::Kernel for FillGrid<'_, T> {
 
 impl<T: Real> Edge<T> {
     fn new(start: [T; 2], end: [T; 2], counterclockwise: bool) -> Option<Self> {
-        let step = [end[0] - start[0], end[1] - start[1]];
-        let squared = step[0] * step[0] + step[1] * step[1];
+        let segment = Segment::new(start.into(), end.into());
+        let squared = segment.along.length_squared();
         if squared.is_nan() || squared <= T::of(SHORTEST_EDGE) {
             return None;
         }
-        let length = squared.sqrt();
-        let sign = if counterclockwise { T::one() } else { -T::one() } / length;
-        Some(Self {
-            start,
-            step,
-            inverse_length_squared: T::one() / squared,
-            normals: [[step[1] * sign, -step[0] * sign]; 3],
-        })
+        let sign = if counterclockwise { T::one() } else { -T::one() } / squared.sqrt();
+        Some(Self { segment, normals: [[segment.along.y * sign, -segment.along.x * sign]; 3] })
     }
-
-    /// Squared distance, position along the edge clamped to [0, 1], and the vector from the closest point.
-    #[inline(always)]
-    fn closest(&self, point: [T; 2]) -> (T, T, [T; 2]) {
-        let d = [point[0] - self.start[0], point[1] - self.start[1]];
-        let u =
-            ((d[0] * self.step[0] + d[1] * self.step[1]) * self.inverse_length_squared).max(T::zero()).min(T::one());
-        let offset = [d[0] - u * self.step[0], d[1] - u * self.step[1]];
-        (offset[0] * offset[0] + offset[1] * offset[1], u, offset)
-    }
-}
-
-fn signed_area<T: Real>(vertices: &[[T; 2]]) -> T {
-    let n = vertices.len();
-    let twice: T = (0..n)
-        .map(|i| {
-            let (a, b) = (vertices[i], vertices[(i + 1) % n]);
-            a[0] * b[1] - a[1] * b[0]
-        })
-        .sum();
-    twice * T::of(0.5)
-}
-
-fn centroid<T: Real>(vertices: &[[T; 2]], signed_area: T) -> [T; 2] {
-    let n = vertices.len();
-    let mut sum = [T::zero(); 2];
-    for i in 0..n {
-        let (a, b) = (vertices[i], vertices[(i + 1) % n]);
-        let cross = a[0] * b[1] - a[1] * b[0];
-        for c in 0..2 {
-            sum[c] += (a[c] + b[c]) * cross;
-        }
-    }
-    sum.map(|s| s / (T::of(6.0) * signed_area))
 }

@@ -1,5 +1,6 @@
 //! Gauss-Newton on the four parameters of a pose: the outline shall lie at the sampled distances.
 
+use dvp_core::geometry::{Similarity, Vec2};
 use dvp_core::{Pose, Real, simd};
 
 use super::equations::{Normal, Robustness, SampleLanes};
@@ -24,6 +25,17 @@ pub(crate) fn wrapped<T: Real>(angle: T, period: T) -> T {
 }
 
 impl<T: Real> PosePx<T> {
+    /// Leaves everything where it is.
+    pub(crate) fn identity() -> Self {
+        Self { translation: [T::zero(); 2], log_scale: T::zero(), rotation: T::zero() }
+    }
+
+    /// As a map of the plane in pixels.
+    pub(crate) fn similarity(&self) -> Similarity<T> {
+        let turn = Vec2::from_angle(self.rotation) * self.log_scale.exp();
+        Similarity { turn, translation: self.translation.into(), reflected: false }
+    }
+
     /// The pose in scene units, of which one has `unit_px` pixels.
     pub(crate) fn in_scene(&self, unit_px: T) -> Pose<T> {
         let translation = self.translation.map(|v| v / unit_px);

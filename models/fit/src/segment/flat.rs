@@ -5,9 +5,8 @@
 
 use alloc::vec::Vec;
 
+use dvp_core::geometry::DisjointSets;
 use dvp_core::{ImageSize, ImageView, Real, simd};
-
-use super::disjoint::DisjointSets;
 
 /// A run of flat pixels of one row.
 #[derive(Clone, Copy, Debug)]

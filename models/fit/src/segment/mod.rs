@@ -7,7 +7,6 @@
 //! turns soft pixels into samples; `noisy` and `robust` do the same for noisy pictures.
 
 pub(crate) mod color;
-mod disjoint;
 mod edge_kind;
 mod flat;
 mod interpret;

@@ -8,10 +8,10 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
+use dvp_core::geometry::DisjointSets;
 use dvp_core::{ImageView, Real};
 
 use super::color::{distance, is_same};
-use super::disjoint::DisjointSets;
 use super::flat::{FlatMap, Run};
 use super::region::Region;
 use super::transition::{Soft, SoftScratch, along, off_overshoot};
@@ -210,7 +210,9 @@ fn add_regions<T: Real>(map: &mut FlatMap, width: usize, found: &[Thin<T>], join
                 sets.push()
             }
             [first, ref others @ ..] => {
-                others.iter().for_each(|&other| sets.unite(first, other));
+                for &other in others {
+                    sets.unite(first, other);
+                }
                 first
             }
         };

@@ -22,7 +22,6 @@ use alloc::vec::Vec;
 
 use dvp_core::Real;
 
-use motion::Motion;
 use simple_shapes::SimpleShapes;
 
 use crate::free::outline_fit::FreeOutline;
@@ -57,7 +56,7 @@ pub(crate) struct PartSet<T> {
 /// Objects of one color, each a shape (px) and the motion that places it, that together explain an outline.
 #[derive(Clone, Debug)]
 pub(crate) struct Explanation<T> {
-    pub(crate) members: Vec<(FreeOutline<T>, Motion<T>)>,
+    pub(crate) members: Vec<(FreeOutline<T>, PosePx<T>)>,
     /// Bits of their shapes, shared ones once.
     pub(crate) shape_bits: f64,
     /// Robust mean squared distance error (px^2).
@@ -69,7 +68,7 @@ impl<T: Real> PartSet<T> {
     pub(crate) fn of_simple_shapes(&self, shapes: &SimpleShapes<T>) -> Explanation<T> {
         let member = |part: &Part<T>| {
             let rows = shapes.rows[part.prototype].clone();
-            (FreeOutline { center: [T::zero(); 2], rows }, Motion { pose: part.pose })
+            (FreeOutline { center: [T::zero(); 2], rows }, part.pose)
         };
         Explanation {
             members: self.parts.iter().map(member).collect(),

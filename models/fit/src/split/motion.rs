@@ -32,40 +32,13 @@ const MOST_UNEXPLAINED: f64 = 0.08;
 const WIDTHS: [f64; 2] = [1.5, 0.7];
 const STEPS: usize = 6;
 
-/// A similarity (rigid up to the last percent) of the plane in pixels.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Motion<T> {
-    pub(super) pose: PosePx<T>,
-}
-
-impl<T: Real> Motion<T> {
-    /// Leaves everything where it is.
-    pub(super) fn identity() -> Self {
-        Self { pose: PosePx { translation: [T::zero(); 2], log_scale: T::zero(), rotation: T::zero() } }
-    }
-
-    /// From where `first` places a shape to where `second` does.
-    pub(super) fn between(first: &PosePx<T>, second: &PosePx<T>) -> Self {
-        let (rotation, log_scale) = (second.rotation - first.rotation, second.log_scale - first.log_scale);
-        let turn = PosePx { translation: [T::zero(); 2], log_scale, rotation };
-        let [x, y] = Frame::new(&turn).to_pixels(first.translation);
-        let translation = [second.translation[0] - x, second.translation[1] - y];
-        Self { pose: PosePx { translation, ..turn } }
-    }
-
-    pub(crate) fn apply(&self, point: [T; 2]) -> [T; 2] {
-        Frame::new(&self.pose).to_pixels(point)
-    }
-
-    /// Radians.
-    pub(crate) fn rotation(&self) -> T {
-        self.pose.rotation
-    }
-
-    /// The factor by which lengths grow.
-    pub(crate) fn scale(&self) -> T {
-        self.pose.log_scale.exp()
-    }
+/// The motion (px) from where `first` places a shape to where `second` does.
+pub(super) fn between<T: Real>(first: &PosePx<T>, second: &PosePx<T>) -> PosePx<T> {
+    let (rotation, log_scale) = (second.rotation - first.rotation, second.log_scale - first.log_scale);
+    let turn = PosePx { translation: [T::zero(); 2], log_scale, rotation };
+    let [x, y] = Frame::new(&turn).to_pixels(first.translation);
+    let translation = [second.translation[0] - x, second.translation[1] - y];
+    PosePx { translation, ..turn }
 }
 
 /// A point of an outline with its outward direction.
@@ -88,7 +61,7 @@ struct Merit<T> {
 
 /// Motions that could take one of two equal objects to the other, the most credible first; `contour` is the outline of their
 /// union, `field` its signed distance, both in px.
-pub(super) fn search<T: Real>(contour: &[[T; 2]], field: &OutlineField<T>) -> Vec<Motion<T>> {
+pub(super) fn search<T: Real>(contour: &[[T; 2]], field: &OutlineField<T>) -> Vec<PosePx<T>> {
     let anchors = anchors(contour);
     let mut kept: Vec<(T, PosePx<T>)> = Vec::with_capacity(KEPT + 1);
     let least_shift = T::of(LEAST_SHIFT) * field.area.sqrt();
@@ -121,7 +94,7 @@ pub(super) fn search<T: Real>(contour: &[[T; 2]], field: &OutlineField<T>) -> Ve
             keep(&mut found, merit.outside, pose, field.centroid);
         }
     }
-    found.into_iter().map(|(_, pose)| Motion { pose }).collect()
+    found.into_iter().map(|(_, pose)| pose).collect()
 }
 
 /// Points at equal steps along the contour with outward directions.

@@ -6,11 +6,12 @@
 use alloc::vec::Vec;
 
 use dvp_core::Real;
+use dvp_core::geometry::Similarity;
 
 use crate::free::foot::EdgeLanes;
 use crate::pose::equations::{Robustness, SampleLanes};
 use crate::pose::field::OutlineField;
-use crate::pose::gauss_newton::{Frame, PosePx};
+use crate::pose::gauss_newton::PosePx;
 use crate::segment::EdgeSample;
 
 /// Rotational symmetries looked for, the highest first.
@@ -30,61 +31,23 @@ const MOST_FORBIDDEN: f64 = 0.06;
 /// Edges around that of a sample which it supports.
 const SUPPORTED_EDGES: usize = 1;
 
-/// A rigid motion, after a reflection at the x axis or not.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Carry<T> {
-    reflected: bool,
-    /// Carries points by its inverse.
-    pose: PosePx<T>,
-}
-
-impl<T: Real> Carry<T> {
-    /// The turn by `angle` (radians) about `center`.
-    fn turn(center: [T; 2], angle: T) -> Self {
-        Self::about(center, center, angle, false)
+/// A symmetry moved to where the samples that it carries agree best with the outline.
+fn refined<T: Real>(
+    symmetry: Similarity<T>,
+    field: &OutlineField<T>,
+    samples: &[EdgeSample<T>],
+) -> Option<Similarity<T>> {
+    let mirrored = |point: [T; 2]| if symmetry.reflected { [point[0], -point[1]] } else { point };
+    let carried: Vec<EdgeSample<T>> = samples.iter().map(|s| EdgeSample { point: mirrored(s.point), ..*s }).collect();
+    let carried = SampleLanes::new(&carried, 1, false);
+    // Poses take the unit outline to the samples; a symmetry takes the samples to the outline.
+    let back = Similarity { reflected: false, ..symmetry }.inverse()?;
+    let mut pose = PosePx { translation: back.translation.to_array(), log_scale: T::zero(), rotation: back.angle() };
+    for width in [2.0, 0.7] {
+        let robustness = Robustness { width_px: T::of(width), rough: false };
+        pose = PosePx { log_scale: T::zero(), ..pose.refine(field, &carried, robustness, 5).0 };
     }
-
-    /// The reflection at the line through `center` at `angle` (radians).
-    fn reflection(center: [T; 2], angle: T) -> Self {
-        Self::about([center[0], -center[1]], center, angle + angle, true)
-    }
-
-    /// R(angle) (p - from) + to.
-    fn about(from: [T; 2], to: [T; 2], angle: T, reflected: bool) -> Self {
-        let (sin, cos) = angle.sin_cos();
-        // The inverse of a pose: R(-rotation) (p - translation).
-        let back = [cos * to[0] + sin * to[1], cos * to[1] - sin * to[0]];
-        let translation = [from[0] - back[0], from[1] - back[1]];
-        Self { reflected, pose: PosePx { translation, log_scale: T::zero(), rotation: -angle } }
-    }
-
-    pub(super) fn point(&self, [x, y]: [T; 2]) -> [T; 2] {
-        Frame::new(&self.pose).to_unit(if self.reflected { [x, -y] } else { [x, y] })
-    }
-
-    /// The point a turn leaves in place.
-    fn center(&self) -> Option<[T; 2]> {
-        // c = R (c - t), so (1 - R) c = -R t.
-        let (sin, cos) = (-self.pose.rotation).sin_cos();
-        let [x, y] = self.pose.translation;
-        let (p, q) = (-(cos * x - sin * y), -(sin * x + cos * y));
-        let (a, b) = (T::one() - cos, sin);
-        let determinant = a * a + b * b;
-        (determinant > T::of(1e-6)).then(|| [(a * p - b * q) / determinant, (b * p + a * q) / determinant])
-    }
-
-    fn refined(self, field: &OutlineField<T>, samples: &[EdgeSample<T>]) -> Self {
-        let sign = if self.reflected { -T::one() } else { T::one() };
-        let turned: Vec<EdgeSample<T>> =
-            samples.iter().map(|s| EdgeSample { point: [s.point[0], sign * s.point[1]], ..*s }).collect();
-        let turned = SampleLanes::new(&turned, 1, false);
-        let mut pose = self.pose;
-        for width in [2.0, 0.7] {
-            let robustness = Robustness { width_px: T::of(width), rough: false };
-            pose = PosePx { log_scale: T::zero(), ..pose.refine(field, &turned, robustness, 5).0 };
-        }
-        Self { pose, ..self }
-    }
+    Some(Similarity { reflected: symmetry.reflected, ..pose.similarity().inverse()? })
 }
 
 /// An outline with what is known of it.
@@ -114,50 +77,55 @@ impl<'a, T: Real> PartlyKnown<'a, T> {
 
     /// The symmetries of the outline but for the identity; `allowed` tells whether an outline may pass at a distance
     /// (px) from a point.
-    pub(super) fn symmetries(&mut self, allowed: impl Fn([T; 2], T) -> bool) -> Vec<Carry<T>> {
+    pub(super) fn symmetries(&mut self, allowed: impl Fn([T; 2], T) -> bool) -> Vec<Similarity<T>> {
         let stride = 1 + self.samples.len() / SEARCH_SAMPLES;
         let few: Vec<EdgeSample<T>> = self.samples.iter().step_by(stride).copied().collect();
         let full = T::of(core::f64::consts::TAU);
         let mut found = Vec::new();
         for order in ORDERS {
             let step = full / T::of_usize(order);
-            let turn = Carry::turn(self.field.centroid, step).refined(self.field, &few);
-            let Some(center) = turn.center() else { continue };
-            if self.holds(&Carry::turn(center, step), &few, &allowed) {
-                found.extend((1..order).map(|i| Carry::turn(center, step * T::of_usize(i))));
+            let turn = refined(Similarity::turn_about(self.field.centroid.into(), step), self.field, &few);
+            let Some(center) = turn.and_then(|turn| turn.fixed_point()) else { continue };
+            if self.holds(&Similarity::turn_about(center, step), &few, &allowed) {
+                found.extend((1..order).map(|i| Similarity::turn_about(center, step * T::of_usize(i))));
                 break;
             }
         }
         if found.is_empty() {
-            let mut axes: Vec<(T, Carry<T>)> = (0..AXES)
+            let mut axes: Vec<(T, Similarity<T>)> = (0..AXES)
                 .map(|i| {
                     let angle = T::of(core::f64::consts::PI) * T::of_usize(i) / T::of_usize(AXES);
-                    let carry = Carry::reflection(self.field.centroid, angle);
-                    (self.miss(&carry, &few), carry)
+                    let mirror = Similarity::reflection(self.field.centroid.into(), angle);
+                    (self.miss(&mirror, &few), mirror)
                 })
                 .collect();
             axes.sort_by(|a, b| a.0.partial_cmp(&b.0).unwrap_or(core::cmp::Ordering::Equal));
-            let refined = axes.iter().take(REFINED_AXES).map(|(_, carry)| carry.refined(self.field, &few));
-            let refined: Vec<Carry<T>> = refined.collect();
-            found.extend(refined.into_iter().find(|carry| self.holds(carry, &few, &allowed)));
+            let near = axes.iter().take(REFINED_AXES);
+            let moved: Vec<Similarity<T>> = near.filter_map(|(_, axis)| refined(*axis, self.field, &few)).collect();
+            found.extend(moved.into_iter().find(|mirror| self.holds(mirror, &few, &allowed)));
         }
         found
     }
 
     /// Sum of the robust misses (px^2) of the carried samples.
-    fn miss(&self, carry: &Carry<T>, samples: &[EdgeSample<T>]) -> T {
+    fn miss(&self, symmetry: &Similarity<T>, samples: &[EdgeSample<T>]) -> T {
         let misses = samples.iter().map(|sample| {
-            let off = self.field.distance(carry.point(sample.point)).0 - sample.distance;
+            let off = self.field.distance(symmetry.point(sample.point.into()).to_array()).0 - sample.distance;
             let squared = off * off;
             squared / (T::one() + squared * T::of(0.25))
         });
         misses.sum()
     }
 
-    fn holds(&mut self, carry: &Carry<T>, samples: &[EdgeSample<T>], allowed: impl Fn([T; 2], T) -> bool) -> bool {
+    fn holds(
+        &mut self,
+        symmetry: &Similarity<T>,
+        samples: &[EdgeSample<T>],
+        allowed: impl Fn([T; 2], T) -> bool,
+    ) -> bool {
         let (mut tested, mut agreeing, mut forbidden) = (0, 0, 0);
         for sample in samples {
-            let point = carry.point(sample.point);
+            let point = symmetry.point(sample.point.into()).to_array();
             forbidden += usize::from(!allowed(point, sample.distance));
             if self.supported[self.lanes.closest(point)] {
                 tested += 1;
@@ -172,11 +140,11 @@ impl<'a, T: Real> PartlyKnown<'a, T> {
     }
 
     /// The samples that `symmetries` carry to stretches without any.
-    pub(super) fn carried(&mut self, symmetries: &[Carry<T>]) -> Vec<EdgeSample<T>> {
+    pub(super) fn carried(&mut self, symmetries: &[Similarity<T>]) -> Vec<EdgeSample<T>> {
         let mut out = Vec::new();
-        for carry in symmetries {
+        for symmetry in symmetries {
             for sample in self.samples {
-                let point = carry.point(sample.point);
+                let point = symmetry.point(sample.point.into()).to_array();
                 if !self.supported[self.lanes.closest(point)] {
                     out.push(EdgeSample { point, ..*sample });
                 }

@@ -10,7 +10,7 @@ use dvp_core::shape::REFERENCE_VERTICES;
 use dvp_core::{ImageSize, Real};
 
 use super::assign;
-use super::motion::{Motion, search};
+use super::motion::{between, search};
 use super::symmetry::PartlyKnown;
 use super::{CROSSING_PX, Explanation, Part};
 use crate::free::basis::Basis;
@@ -79,14 +79,14 @@ impl<T: Real> Union<'_, T> {
     ) -> Option<Explanation<T>> {
         let frame = Frame::new(&parts[0].pose);
         let outline = prototype.outline.iter().map(|&v| frame.to_pixels(v)).collect();
-        self.shaped(outline, Motion::between(&parts[0].pose, &parts[1].pose), scratch)
+        self.shaped(outline, between(&parts[0].pose, &parts[1].pose), scratch)
     }
 
     /// Pairs of equal objects, best first.
     pub(crate) fn twins(&self, scratch: &mut TwinScratch<T>) -> Vec<Explanation<T>> {
         let mut pairs = Vec::new();
         for motion in search(self.contour, self.field).into_iter().take(TRIED) {
-            let frame = Frame::new(&motion.pose);
+            let frame = Frame::new(&motion);
             let margin = T::of_usize(MARGIN);
             let both = |point: [T; 2]| {
                 let here = self.field.distance(point).0;
@@ -105,11 +105,11 @@ impl<T: Real> Union<'_, T> {
     fn shaped(
         &self,
         mut outline: Vec<[T; 2]>,
-        motion: Motion<T>,
+        motion: PosePx<T>,
         scratch: &mut TwinScratch<T>,
     ) -> Option<Explanation<T>> {
         let margin = T::of_usize(MARGIN);
-        let mut poses = [Motion::identity().pose, motion.pose];
+        let mut poses = [PosePx::identity(), motion];
         let mut field = OutlineField::new(&outline)?;
         let mut found = None;
         for _ in 0..ROUNDS {
@@ -125,7 +125,7 @@ impl<T: Real> Union<'_, T> {
                 let carried = known.carried(&symmetries);
                 let common = |point: [T; 2]| {
                     let here = field.distance(point).0;
-                    let carried = symmetries.iter().map(|carry| field.distance(carry.point(point)).0);
+                    let carried = symmetries.iter().map(|map| field.distance(map.point(point.into()).to_array()).0);
                     if here > margin { here } else { carried.fold(here, T::max) }
                 };
                 outline = closed(&traced(&outline, common, &mut scratch.field)?);
@@ -142,7 +142,7 @@ impl<T: Real> Union<'_, T> {
             poses = [first.pose, second.pose];
             found = Some(Explanation {
                 shape_bits: self.settings.prices.free_shape_bits(grown.outline.rows.len(), symmetries.len() + 1),
-                members: poses.map(|pose| (grown.outline.clone(), Motion { pose })).into(),
+                members: poses.map(|pose| (grown.outline.clone(), pose)).into(),
                 cost: set.cost,
             });
             Prototype { outline, field, .. } = prototype;

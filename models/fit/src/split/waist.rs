@@ -3,6 +3,7 @@
 use alloc::vec::Vec;
 
 use dvp_core::contour::signed_area;
+use dvp_core::geometry::{Segment, Vec2, convex_hull};
 use dvp_core::{ImageSize, Real};
 
 /// Turn (radians) over four edges from which an outline bends inward.
@@ -45,34 +46,10 @@ pub(crate) fn is_convex<T: Real>(contour: &[[T; 2]]) -> bool {
     contour.iter().all(|&point| depth(&hull, point) <= T::of(HOLLOW_PX))
 }
 
-/// Corners of the convex hull, counterclockwise with y up (Andrew's monotone chain).
-fn convex_hull<T: Real>(points: &[[T; 2]]) -> Vec<[T; 2]> {
-    let mut sorted = points.to_vec();
-    sorted.sort_by(|a, b| a.partial_cmp(b).unwrap_or(core::cmp::Ordering::Equal));
-    let mut hull: Vec<[T; 2]> = Vec::new();
-    let mut chain = |points: &mut dyn Iterator<Item = &[T; 2]>| {
-        let first = hull.len();
-        for &p in points {
-            while let [.., a, b] = hull[first..] {
-                if (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]) > T::zero() {
-                    break;
-                }
-                hull.pop();
-            }
-            hull.push(p);
-        }
-        hull.pop();
-    };
-    chain(&mut sorted.iter());
-    chain(&mut sorted.iter().rev());
-    hull
-}
-
 /// How far inside a convex polygon of [`convex_hull`] a point lies.
 fn depth<T: Real>(hull: &[[T; 2]], point: [T; 2]) -> T {
-    let next = hull.iter().cycle().skip(1);
-    hull.iter().zip(next).fold(T::infinity(), |least, (a, b)| {
-        let (edge, arm) = ([b[0] - a[0], b[1] - a[1]], [point[0] - a[0], point[1] - a[1]]);
-        least.min((edge[0] * arm[1] - edge[1] * arm[0]) / edge[0].hypot(edge[1]).max(T::of(1e-9)))
+    Segment::closed(hull).fold(T::infinity(), |least, side| {
+        let across = side.along.cross(Vec2::from(point) - side.from);
+        least.min(across / side.along.length().max(T::of(1e-9)))
     })
 }

@@ -15,9 +15,10 @@ use alloc::vec::Vec;
 
 use dvp_core::Real;
 use dvp_core::contour::{resample, signed_area};
+use dvp_core::geometry::{Segment, Similarity, Vec2};
 
 use crate::Completion;
-use motion::{Motion, Symmetry};
+use motion::Symmetry;
 
 /// Points of the contour that are looked at.
 const POINTS: usize = 120;
@@ -82,24 +83,19 @@ pub(crate) fn complete<T: Real>(
 
 impl<T: Real> Seen<'_, T> {
     /// Distance (px, signed) of a point to the nearest seen stretch, the normal there, and the point before it.
-    fn nearest(&self, point: [T; 2]) -> Option<(T, [T; 2], usize)> {
-        let mut best: Option<(T, [T; 2], usize)> = None;
+    fn nearest(&self, point: Vec2<T>) -> Option<(T, Vec2<T>, usize)> {
+        let mut best: Option<(T, Vec2<T>, usize)> = None;
         for i in 0..POINTS {
             let j = (i + 1) % POINTS;
             if !self.shows[i] || !self.shows[j] {
                 continue;
             }
-            let (a, b) = (self.points[i], self.points[j]);
-            let (x, y) = (b[0] - a[0], b[1] - a[1]);
-            let to = [point[0] - a[0], point[1] - a[1]];
-            let squared = (x * x + y * y).max(T::of(1e-9));
-            let t = ((to[0] * x + to[1] * y) / squared).max(T::zero()).min(T::one());
-            let off = [to[0] - t * x, to[1] - t * y];
-            let distance = off[0].hypot(off[1]);
+            let segment = Segment::new(self.points[i].into(), self.points[j].into());
+            let offset = segment.nearest(point).offset;
+            let distance = offset.length();
             if best.is_none_or(|(nearest, ..)| distance < nearest.abs()) {
-                let length = squared.sqrt();
-                let normal = [y / length, -x / length];
-                let sign = if off[0] * normal[0] + off[1] * normal[1] < T::zero() { -T::one() } else { T::one() };
+                let normal = -segment.along.perp() / segment.along.length().max(T::of(1e-4));
+                let sign = if offset.dot(normal) < T::zero() { -T::one() } else { T::one() };
                 best = Some((sign * distance, normal, i));
             }
         }
@@ -107,7 +103,7 @@ impl<T: Real> Seen<'_, T> {
     }
 
     /// Whether carried points lie on what is seen, or where nothing could be seen.
-    fn is_credible(&self, symmetry: &Symmetry<T>, motions: &[Motion<T>], limits: &Limits) -> bool {
+    fn is_credible(&self, symmetry: &Symmetry<T>, motions: &[Similarity<T>], limits: &Limits) -> bool {
         let mirror = matches!(symmetry, Symmetry::Mirror { .. });
         let seen = self.shows.iter().filter(|&&shows| shows).count() * motions.len();
         let most = T::of(limits.forbidden) * T::of_usize(seen) / T::of_usize(limits.stride);
@@ -115,14 +111,14 @@ impl<T: Real> Seen<'_, T> {
         let mut agrees = Vec::from([false; POINTS]);
         for motion in motions {
             for i in (0..POINTS).step_by(limits.stride).filter(|&i| self.shows[i]) {
-                let at = motion.carry(self.points[i]);
+                let at = motion.point(self.points[i].into());
                 match self.nearest(at) {
                     Some((distance, ..)) if distance.abs() < T::of(limits.agrees_px) => {
                         agreeing += 1;
                         squares += distance * distance;
                         agrees[i] = true;
                     }
-                    _ if (self.allows)(at) => {}
+                    _ if (self.allows)(at.to_array()) => {}
                     _ => forbidden += 1,
                 }
                 if T::of_usize(forbidden) > most {

@@ -1,44 +1,11 @@
-//! Turns and reflections, and the symmetries made of them.
+//! Symmetries of an outline: the turns and reflections that repeat it.
 
 use alloc::vec::Vec;
 
 use dvp_core::Real;
+use dvp_core::geometry::{Similarity, Vec2};
 
 use crate::Completion;
-
-/// v -> m v + t, where m is a turn or a reflection.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Motion<T> {
-    pub(super) m: [[T; 2]; 2],
-    t: [T; 2],
-}
-
-impl<T: Real> Motion<T> {
-    pub(super) fn turn(angle: T, center: [T; 2]) -> Self {
-        let (sin, cos) = angle.sin_cos();
-        Self::about([[cos, -sin], [sin, cos]], center)
-    }
-
-    /// At the line through `center` at half of `angle`.
-    pub(super) fn reflection(angle: T, center: [T; 2]) -> Self {
-        let (sin, cos) = angle.sin_cos();
-        Self::about([[cos, sin], [sin, -cos]], center)
-    }
-
-    fn about(m: [[T; 2]; 2], center: [T; 2]) -> Self {
-        Self { m, t: [0, 1].map(|c| center[c] - m[c][0] * center[0] - m[c][1] * center[1]) }
-    }
-
-    pub(super) fn carry(&self, [x, y]: [T; 2]) -> [T; 2] {
-        [0, 1].map(|c| self.m[c][0] * x + self.m[c][1] * y + self.t[c])
-    }
-
-    /// Turns and reflections are undone by their transposes.
-    pub(super) fn back(&self, [x, y]: [T; 2]) -> [T; 2] {
-        let (x, y) = (x - self.t[0], y - self.t[1]);
-        [0, 1].map(|c| self.m[0][c] * x + self.m[1][c] * y)
-    }
-}
 
 /// What repeats the outline.
 #[derive(Clone, Copy, Debug)]
@@ -55,13 +22,13 @@ pub(super) enum Symmetry<T> {
 }
 
 impl<T: Real> Symmetry<T> {
-    pub(super) fn motions(&self) -> Vec<Motion<T>> {
+    pub(super) fn motions(&self) -> Vec<Similarity<T>> {
         match *self {
             Self::Turn { order, center } => {
                 let step = T::of(core::f64::consts::TAU) / T::of_usize(order);
-                (1..order).map(|i| Motion::turn(step * T::of_usize(i), center)).collect()
+                (1..order).map(|i| Similarity::turn_about(center.into(), step * T::of_usize(i))).collect()
             }
-            Self::Mirror { angle, center } => Vec::from([Motion::reflection(angle, center)]),
+            Self::Mirror { angle, center } => Vec::from([Similarity::reflection(center.into(), angle * T::of(0.5))]),
         }
     }
 
@@ -90,9 +57,7 @@ impl<T: Real> Symmetry<T> {
 }
 
 /// Unit vector across the axis of a reflection.
-pub(super) fn axis_normal<T: Real>(motion: &Motion<T>) -> [T; 2] {
-    // The axis is at half the angle of m.
-    let half = motion.m[1][0].atan2(motion.m[0][0]) * T::of(0.5);
-    let (sin, cos) = half.sin_cos();
-    [-sin, cos]
+pub(super) fn axis_normal<T: Real>(reflection: &Similarity<T>) -> Vec2<T> {
+    // The axis is at half the angle of the map.
+    Vec2::from_angle(reflection.angle() * T::of(0.5)).perp()
 }

@@ -1,6 +1,6 @@
 //! A symmetry moved to where what it carries agrees best with what is seen.
 
-use dvp_core::Real;
+use dvp_core::{Real, Vec2};
 
 use super::motion::{Symmetry, axis_normal};
 use super::{AGREES_PX, POINTS, Seen};
@@ -24,16 +24,16 @@ impl<T: Real> Seen<'_, T> {
             let mut count = T::zero();
             for motion in symmetry.motions() {
                 for i in (0..POINTS).step_by(2).filter(|&i| self.shows[i]) {
-                    let at = motion.carry(self.points[i]);
+                    let at = motion.point(self.points[i].into());
                     let Some((distance, n, _)) = self.nearest(at).filter(|near| near.0.abs() < reach) else { continue };
                     // n (1 - m): how the distance grows as the center moves. A mirror moves across its axis and turns.
-                    let pull = [0, 1].map(|c| n[c] - n[0] * motion.m[0][c] - n[1] * motion.m[1][c]);
+                    let [right, down] = [Vec2::new(T::one(), T::zero()), Vec2::new(T::zero(), T::one())];
+                    let pull = n - Vec2::new(n.dot(motion.direction(right)), n.dot(motion.direction(down)));
                     let row = if mirror {
-                        let arm = [at[0] - center[0], at[1] - center[1]];
-                        let across = axis_normal(&motion);
-                        [pull[0] * across[0] + pull[1] * across[1], (n[1] * arm[0] - n[0] * arm[1]) / self.extent()]
+                        let arm = at - Vec2::from(center);
+                        [pull.dot(axis_normal(&motion)), arm.cross(n) / self.extent()]
                     } else {
-                        pull
+                        pull.to_array()
                     };
                     normal_equations[0] += row[0] * row[0];
                     normal_equations[1] += row[0] * row[1];
@@ -55,7 +55,7 @@ impl<T: Real> Seen<'_, T> {
             let step = [(c * p - b * q) / determinant, (a * q - b * p) / determinant];
             symmetry = if mirror {
                 let across = axis_normal(symmetry.motions().first()?);
-                symmetry.moved([step[0] * across[0], step[0] * across[1], step[1] / self.extent()])
+                symmetry.moved([step[0] * across.x, step[0] * across.y, step[1] / self.extent()])
             } else {
                 symmetry.moved([step[0], step[1], T::zero()])
             };

@@ -3,8 +3,9 @@
 use alloc::vec::Vec;
 
 use dvp_core::Real;
+use dvp_core::geometry::{Similarity, Vec2};
 
-use super::motion::{Motion, Symmetry};
+use super::motion::Symmetry;
 use super::{POINTS, Seen};
 
 /// Symmetry orders looked for.
@@ -20,8 +21,9 @@ impl<T: Real> Seen<'_, T> {
             let mut best = (T::of(LEAST_RUN) * T::of_usize(POINTS), None);
             let step = T::of(core::f64::consts::TAU) / T::of_usize(order);
             for multiple in 1..=order / 2 {
-                let motion = Motion::turn(step * T::of_usize(multiple), [T::zero(); 2]);
-                let carried: Vec<[T; 2]> = self.points.iter().map(|&point| motion.carry(point)).collect();
+                let motion = Similarity::turn_about(Vec2::default(), step * T::of_usize(multiple));
+                let carried: Vec<[T; 2]> =
+                    self.points.iter().map(|&point| motion.point(point.into()).to_array()).collect();
                 for shift in 1..POINTS {
                     self.runs(
                         |i| (i + shift) % POINTS,
@@ -29,15 +31,10 @@ impl<T: Real> Seen<'_, T> {
                         |count, mean, spread| {
                             let merit = count / (T::one() + T::of(4.0) * spread / self.slack());
                             if merit > best.0 {
-                                // (1 - m) center = mean.
-                                let [[a, b], [c, d]] = motion.m;
-                                let (p, q, r, s) = (T::one() - a, -b, -c, T::one() - d);
-                                let determinant = p * s - q * r;
-                                let center = [
-                                    (s * mean[0] - q * mean[1]) / determinant,
-                                    (p * mean[1] - r * mean[0]) / determinant,
-                                ];
-                                best = (merit, Some(Symmetry::Turn { order, center }));
+                                // The turn about a center shifts by (1 - turn) center.
+                                let shifted = Similarity { translation: mean.into(), ..motion };
+                                let center = shifted.fixed_point().map(Vec2::to_array);
+                                best = (merit, center.map(|center| Symmetry::Turn { order, center }));
                             }
                         },
                     );
@@ -65,13 +62,13 @@ impl<T: Real> Seen<'_, T> {
             }
             // Twice the angle of the axis: a right angle from the main direction.
             let angle = (xy + xy).atan2(xx - yy) + T::of(core::f64::consts::PI);
-            let motion = Motion::reflection(angle, [T::zero(); 2]);
-            let carried: Vec<[T; 2]> = self.points.iter().map(|&point| motion.carry(point)).collect();
+            let motion = Similarity::reflection(Vec2::default(), angle * T::of(0.5));
+            let carried: Vec<[T; 2]> = self.points.iter().map(|&point| motion.point(point.into()).to_array()).collect();
             self.runs(partner, &carried, |count, mean, spread| {
                 let merit = count / (T::one() + T::of(4.0) * spread / self.slack());
                 if merit > best.0 {
                     // Half way from the middle of what is seen to its image.
-                    let image = motion.carry(middle);
+                    let image = motion.point(middle.into()).to_array();
                     let center = [0, 1].map(|c| (middle[c] + image[c] + mean[c]) * T::of(0.5));
                     best = (merit, Some(Symmetry::Mirror { angle, center }));
                 }

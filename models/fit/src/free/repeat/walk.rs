@@ -3,13 +3,13 @@
 use alloc::vec::Vec;
 
 use dvp_core::Real;
+use dvp_core::geometry::Similarity;
 
-use super::motion::Motion;
 use super::{AGREES_PX, POINTS, Seen};
 
 impl<T: Real> Seen<'_, T> {
     /// The contour, hidden stretches walked along carried ones; none where that leads to no end.
-    pub(super) fn walk(&self, motions: &[Motion<T>]) -> Option<Vec<[T; 2]>> {
+    pub(super) fn walk(&self, motions: &[Similarity<T>]) -> Option<Vec<[T; 2]>> {
         let start = (0..POINTS).find(|&i| self.shows[i] && !self.shows[(i + POINTS - 1) % POINTS])?;
         let mut out = Vec::with_capacity(2 * POINTS);
         let mut at = start;
@@ -34,7 +34,7 @@ impl<T: Real> Seen<'_, T> {
     }
 
     /// Walks from one seen point to another along carried stretches.
-    fn fill(&self, from: usize, end: usize, motions: &[Motion<T>], out: &mut Vec<[T; 2]>) -> Option<()> {
+    fn fill(&self, from: usize, end: usize, motions: &[Similarity<T>], out: &mut Vec<[T; 2]>) -> Option<()> {
         let goal = self.points[end];
         let close = |a: [T; 2], reach: T| (a[0] - goal[0]).hypot(a[1] - goal[1]) < reach;
         let mut here = self.points[from];
@@ -45,7 +45,7 @@ impl<T: Real> Seen<'_, T> {
             let ahead = ahead.max_by_key(|ahead| ahead.length)?;
             for i in 0..ahead.length {
                 let source = (ahead.first + if ahead.backward { POINTS - i } else { i }) % POINTS;
-                here = ahead.motion.carry(self.points[source]);
+                here = ahead.motion.point(self.points[source].into()).to_array();
                 // The last step may be one and a half.
                 if close(here, self.spacing * T::of(1.2)) {
                     return Some(());
@@ -60,9 +60,10 @@ impl<T: Real> Seen<'_, T> {
     }
 
     /// The stretch that the motion carries to where the point is; none if that is not the contour.
-    fn ahead<'b>(&self, motion: &'b Motion<T>, point: [T; 2]) -> Option<Ahead<'b, T>> {
-        let (.., before) = self.nearest(motion.back(point)).filter(|near| near.0.abs() < T::of(AGREES_PX))?;
-        let backward = motion.m[0][0] * motion.m[1][1] < motion.m[0][1] * motion.m[1][0];
+    fn ahead<'b>(&self, motion: &'b Similarity<T>, point: [T; 2]) -> Option<Ahead<'b, T>> {
+        let (.., before) =
+            self.nearest(motion.inverse()?.point(point.into())).filter(|near| near.0.abs() < T::of(AGREES_PX))?;
+        let backward = motion.reflected;
         let first = if backward { before } else { (before + 1) % POINTS };
         let at = |i: usize| (first + if backward { POINTS - i } else { i }) % POINTS;
         let length = (0..POINTS).take_while(|&i| self.shows[at(i)]).count();
@@ -73,7 +74,7 @@ impl<T: Real> Seen<'_, T> {
 
 /// A seen stretch and what carries it.
 struct Ahead<'a, T> {
-    motion: &'a Motion<T>,
+    motion: &'a Similarity<T>,
     first: usize,
     length: usize,
     /// Reflections run the other way.

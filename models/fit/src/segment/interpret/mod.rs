@@ -11,10 +11,10 @@ mod over;
 use alloc::vec::Vec;
 
 use dvp_core::Real;
+use dvp_core::geometry::DisjointSets;
 use dvp_core::render::Compositing;
 
 use super::color::{SAME_COLOR, distance};
-use super::disjoint::DisjointSets;
 use super::region::Region;
 use super::transition::Transition;
 pub(crate) use evidence::Evidence;

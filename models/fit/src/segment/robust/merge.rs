@@ -5,9 +5,9 @@ use alloc::collections::{BTreeMap, BinaryHeap};
 use alloc::vec::Vec;
 use core::cmp::Reverse;
 
+use dvp_core::contour::{Connectivity, label_by};
+use dvp_core::geometry::DisjointSets;
 use dvp_core::{ImageView, Real};
-
-use crate::segment::disjoint::DisjointSets;
 
 /// Every region pays as if it had this much more boundary (px): what an object costs whatever its size.
 const FIXED_LENGTH: f64 = 8.0;
@@ -64,35 +64,14 @@ impl<T: Real> Merger<T> {
         self.number(labels)
     }
 
-    #[expect(clippy::cast_possible_truncation, reason = "an image has at most 2^28 pixels")]
     fn find_zones(&mut self, smooth: &ImageView<'_, T>, tolerance: T, labels: &mut Vec<u32>) {
-        let (width, pixels) = (smooth.size().width(), smooth.size().pixels());
-        self.sets.reset(pixels as u32);
         let [r, g, b] = [0, 1, 2].map(|c| smooth.channel(c));
         let alike =
             |i: usize, j: usize| (r[i] - r[j]).abs().max((g[i] - g[j]).abs()).max((b[i] - b[j]).abs()) <= tolerance;
-        for i in 0..pixels {
-            if i % width != 0 && alike(i, i - 1) {
-                self.sets.unite(i as u32 - 1, i as u32);
-            }
-            if i >= width && alike(i, i - width) {
-                self.sets.unite((i - width) as u32, i as u32);
-            }
-        }
+        let zones = label_by(smooth.size(), Connectivity::Four, |_| true, alike);
         labels.clear();
-        labels.resize(pixels, 0);
-        let mut count = 0;
-        for i in 0..pixels {
-            // The first pixel of a zone is its root.
-            let top = self.sets.root(i as u32) as usize;
-            labels[i] = if top == i {
-                count += 1;
-                count - 1
-            } else {
-                labels[top]
-            };
-        }
-        self.left = count as usize;
+        labels.extend(zones.labels.into_iter().map(|label| label - 1));
+        self.left = zones.sizes.len();
     }
 
     /// From labels of zones to sums, boundaries and the queue of pairs.
