@@ -7,6 +7,7 @@ mod loss;
 mod optim;
 mod render_contour;
 mod scene;
+mod shape;
 mod shape_model;
 mod smooth;
 mod triangles;

@@ -15,6 +15,7 @@ mod prototypes;
 mod refine;
 mod render_contour;
 mod scene;
+mod shape;
 mod split;
 mod symmetry;
 mod triangles;

@@ -7,6 +7,7 @@ pub mod fixture;
 pub mod golden;
 pub mod hard_geometry;
 pub mod picture_set;
+pub mod shape_strategy;
 pub mod strategy;
 
 /// The README's example, compiled and run.

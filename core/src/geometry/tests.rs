@@ -1,6 +1,6 @@
 #![expect(clippy::float_cmp, reason = "numbers exact by construction")]
 
-use super::{DisjointSets, Nearest, Segment, Similarity, Vec2, convex_hull};
+use super::{DisjointSets, LineSegment, Nearest, Similarity, Vec2, convex_hull};
 
 #[test]
 fn turning_multiplies_complex_numbers() {
@@ -16,12 +16,12 @@ fn turning_multiplies_complex_numbers() {
 
 #[test]
 fn the_nearest_point_of_a_segment_is_at_an_end_or_across() {
-    let segment = Segment::new(Vec2::new(1.0, 1.0), Vec2::new(5.0, 1.0));
+    let segment = LineSegment::new(Vec2::new(1.0, 1.0), Vec2::new(5.0, 1.0));
     let at = |x, y| segment.nearest(Vec2::new(x, y));
     assert_eq!((at(2.0, 4.0).share, at(2.0, 4.0).distance()), (0.25, 3.0));
     assert_eq!((at(0.0, 1.0).share, at(9.0, 4.0).share), (0.0, 1.0));
     assert_eq!(at(9.0, 4.0).distance_squared(), 25.0);
-    let point = Segment::new(Vec2::new(1.0, 1.0), Vec2::new(1.0, 1.0));
+    let point = LineSegment::new(Vec2::new(1.0, 1.0), Vec2::new(1.0, 1.0));
     assert_eq!(point.nearest(Vec2::new(4.0, 5.0)), Nearest { share: 0.0, offset: Vec2::new(3.0, 4.0) });
 }
 

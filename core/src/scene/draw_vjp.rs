@@ -45,7 +45,6 @@ impl<T: Real> Scene<T> {
                 AnyShape::Efd(efd) | AnyShape::Prototype(Prototype { efd, .. }) => {
                     pull_back_descriptors(how.basis, object, efd, take(how.basis.vertex_count())?, grad_object);
                 }
-                #[expect(unreachable_patterns, reason = "kinds are being added")]
                 shape => {
                     let how = how.magnified(object.pose.scale);
                     unit.clear();

@@ -1,84 +1,31 @@
-//! Every kind of shape behind one trait, and the enum of all of them that scenes hold.
+//! A shape of any kind: the enum that scenes hold.
 
+use alloc::string::String;
 use alloc::vec::Vec;
 
-use super::{Efd, Flattening, Outline, OutlineBasis, ShapeError};
+use super::curve::Boundary;
+use super::kind::{Circle, Ellipse, Path, Polygon, PoseFreedom, Prototype, Rectangle, RegularPolygon, Shape, Star};
+use super::{Efd, Flattening, Outline, ShapeError};
 use crate::real::Real;
-
-/// A shape and its numbers.
-///
-/// The numbers are lengths and coordinates in the frame of the shape, which a [`Pose`](crate::Pose) carries to scene
-/// units: with the pose that leaves every point where it is, they are scene units themselves.
-pub trait Shape<T: Real> {
-    /// The name of the kind, as files have it.
-    fn kind(&self) -> &'static str;
-
-    /// How many numbers change the shape.
-    fn number_count(&self) -> usize;
-
-    /// Appends the numbers, in the order that the docs of the kind give.
-    fn numbers(&self, numbers: &mut Vec<T>);
-
-    /// Takes over numbers, in the same order.
-    ///
-    /// # Errors
-    /// [`ShapeError::Length`] if there are too few or too many, [`ShapeError::NotFinite`].
-    fn set_numbers(&mut self, numbers: &[T]) -> Result<(), ShapeError>;
-
-    /// Which parts of a pose move the shape in a way that its numbers do not.
-    fn pose_freedom(&self) -> PoseFreedom;
-
-    /// Whether the numbers are given from outside (those of a bank's prototype), so that fitting a scene leaves them.
-    fn is_given(&self) -> bool {
-        false
-    }
-
-    /// Appends the rings to `outline`.
-    ///
-    /// *Derivative*: [`Self::flatten_vjp`].
-    ///
-    /// # Errors
-    /// [`ShapeError`] if the numbers describe no shape; `outline` may then hold a part of it.
-    fn flatten(&self, how: &Flattening<'_, T>, outline: &mut Outline<T>) -> Result<(), ShapeError>;
-
-    /// Adds to `grad_numbers` the gradient of sum(`grad_vertices` x vertices), vertices as [`Self::flatten`] writes them
-    /// to an empty outline. Numbers of vertices are taken as constant.
-    ///
-    /// # Errors
-    /// [`ShapeError`] as in [`Self::flatten`], and [`ShapeError::Length`] if a slice has the wrong length.
-    fn flatten_vjp(
-        &self,
-        how: &Flattening<'_, T>,
-        grad_vertices: &[[T; 2]],
-        grad_numbers: &mut [T],
-    ) -> Result<(), ShapeError>;
-}
-
-/// Which parts of a pose say something that the numbers of a shape do not: the others are left as they are when a scene
-/// is fitted, or there would be two ways to say the same.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PoseFreedom {
-    /// Where it stands.
-    pub translation: bool,
-    /// How large it is.
-    pub scale: bool,
-    /// How it is turned.
-    pub rotation: bool,
-}
-
-/// Descriptors that are those of a bank's prototype.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Prototype<T> {
-    /// Index into the bank.
-    pub index: usize,
-    /// Its descriptors, or a mixture of the bank's that is nearest to it.
-    pub efd: Efd<T>,
-}
 
 /// A shape of any kind.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum AnyShape<T> {
+    /// A disk.
+    Circle(Circle<T>),
+    /// An ellipse.
+    Ellipse(Ellipse<T>),
+    /// A rectangle, its corners sharp or round.
+    Rectangle(Rectangle<T>),
+    /// A polygon of equal sides and angles.
+    RegularPolygon(RegularPolygon<T>),
+    /// A star.
+    Star(Star<T>),
+    /// Polygons.
+    Polygon(Polygon<T>),
+    /// Rings of lines, arcs and cubics.
+    Path(Path<T>),
     /// Elliptic Fourier descriptors.
     Efd(Efd<T>),
     /// A prototype of a bank.
@@ -100,6 +47,7 @@ impl<T: Real> AnyShape<T> {
     pub fn efd(&self) -> Option<&Efd<T>> {
         match self {
             Self::Efd(efd) | Self::Prototype(Prototype { efd, .. }) => Some(efd),
+            _ => None,
         }
     }
 
@@ -108,6 +56,7 @@ impl<T: Real> AnyShape<T> {
     pub fn efd_mut(&mut self) -> Option<&mut Efd<T>> {
         match self {
             Self::Efd(efd) | Self::Prototype(Prototype { efd, .. }) => Some(efd),
+            _ => None,
         }
     }
 
@@ -129,15 +78,27 @@ impl<T: Real> AnyShape<T> {
     #[must_use]
     pub fn cast<U: Real>(&self) -> AnyShape<U> {
         match self {
-            Self::Efd(efd) => AnyShape::Efd(efd.cast()),
-            Self::Prototype(Prototype { index, efd }) => {
-                AnyShape::Prototype(Prototype { index: *index, efd: efd.cast() })
-            }
+            Self::Circle(circle) => circle.cast().into(),
+            Self::Ellipse(ellipse) => ellipse.cast().into(),
+            Self::Rectangle(rectangle) => rectangle.cast().into(),
+            Self::RegularPolygon(polygon) => polygon.cast().into(),
+            Self::Star(star) => star.cast().into(),
+            Self::Polygon(polygon) => polygon.cast().into(),
+            Self::Path(path) => path.cast().into(),
+            Self::Efd(efd) => efd.cast().into(),
+            Self::Prototype(prototype) => prototype.cast().into(),
         }
     }
 
     fn of_kind(&self) -> &dyn Shape<T> {
         match self {
+            Self::Circle(circle) => circle,
+            Self::Ellipse(ellipse) => ellipse,
+            Self::Rectangle(rectangle) => rectangle,
+            Self::RegularPolygon(polygon) => polygon,
+            Self::Star(star) => star,
+            Self::Polygon(polygon) => polygon,
+            Self::Path(path) => path,
             Self::Efd(efd) => efd,
             Self::Prototype(prototype) => prototype,
         }
@@ -145,17 +106,30 @@ impl<T: Real> AnyShape<T> {
 
     fn of_kind_mut(&mut self) -> &mut dyn Shape<T> {
         match self {
+            Self::Circle(circle) => circle,
+            Self::Ellipse(ellipse) => ellipse,
+            Self::Rectangle(rectangle) => rectangle,
+            Self::RegularPolygon(polygon) => polygon,
+            Self::Star(star) => star,
+            Self::Polygon(polygon) => polygon,
+            Self::Path(path) => path,
             Self::Efd(efd) => efd,
             Self::Prototype(prototype) => prototype,
         }
     }
 }
 
-impl<T> From<Efd<T>> for AnyShape<T> {
-    fn from(efd: Efd<T>) -> Self {
-        Self::Efd(efd)
-    }
+/// Makes every kind a shape of any kind.
+macro_rules! from_kinds {
+    ($($kind:ident),+) => {$(
+        impl<T> From<$kind<T>> for AnyShape<T> {
+            fn from(shape: $kind<T>) -> Self {
+                Self::$kind(shape)
+            }
+        }
+    )+};
 }
+from_kinds!(Circle, Ellipse, Rectangle, RegularPolygon, Star, Polygon, Path, Efd, Prototype);
 
 impl<T: Real> Shape<T> for AnyShape<T> {
     fn kind(&self) -> &'static str {
@@ -168,6 +142,10 @@ impl<T: Real> Shape<T> for AnyShape<T> {
 
     fn numbers(&self, numbers: &mut Vec<T>) {
         self.of_kind().numbers(numbers);
+    }
+
+    fn number_names(&self) -> Vec<String> {
+        self.of_kind().number_names()
     }
 
     fn set_numbers(&mut self, numbers: &[T]) -> Result<(), ShapeError> {
@@ -194,100 +172,8 @@ impl<T: Real> Shape<T> for AnyShape<T> {
     ) -> Result<(), ShapeError> {
         self.of_kind().flatten_vjp(how, grad_vertices, grad_numbers)
     }
-}
 
-/// The numbers are a_1, b_1, c_1, d_1, a_2, ...
-impl<T: Real> Shape<T> for Efd<T> {
-    fn kind(&self) -> &'static str {
-        "efd"
+    fn boundary(&self) -> Result<Boundary<T>, ShapeError> {
+        self.of_kind().boundary()
     }
-
-    fn number_count(&self) -> usize {
-        4 * self.harmonic_count()
-    }
-
-    fn numbers(&self, numbers: &mut Vec<T>) {
-        numbers.extend_from_slice(self.rows().as_flattened());
-    }
-
-    fn set_numbers(&mut self, numbers: &[T]) -> Result<(), ShapeError> {
-        check_numbers(self.number_count(), numbers)?;
-        self.rows_mut().as_flattened_mut().copy_from_slice(numbers);
-        Ok(())
-    }
-
-    fn pose_freedom(&self) -> PoseFreedom {
-        PoseFreedom { translation: true, scale: false, rotation: false }
-    }
-
-    fn flatten(&self, how: &Flattening<'_, T>, outline: &mut Outline<T>) -> Result<(), ShapeError> {
-        outline.start_ring();
-        let first = outline.vertices.len();
-        outline.vertices.resize(first + how.basis.vertex_count(), [T::zero(); 2]);
-        how.basis.outline(self.rows(), &mut outline.vertices[first..])
-    }
-
-    fn flatten_vjp(
-        &self,
-        how: &Flattening<'_, T>,
-        grad_vertices: &[[T; 2]],
-        grad_numbers: &mut [T],
-    ) -> Result<(), ShapeError> {
-        check_length("gradient of the numbers", self.number_count(), grad_numbers.len())?;
-        OutlineBasis::outline_vjp(how.basis, grad_vertices, grad_numbers.as_chunks_mut().0)
-    }
-}
-
-/// The numbers are those of the descriptors; fits take them as given and move the pose.
-impl<T: Real> Shape<T> for Prototype<T> {
-    fn kind(&self) -> &'static str {
-        "prototype"
-    }
-
-    fn number_count(&self) -> usize {
-        self.efd.number_count()
-    }
-
-    fn numbers(&self, numbers: &mut Vec<T>) {
-        self.efd.numbers(numbers);
-    }
-
-    fn set_numbers(&mut self, numbers: &[T]) -> Result<(), ShapeError> {
-        self.efd.set_numbers(numbers)
-    }
-
-    fn pose_freedom(&self) -> PoseFreedom {
-        PoseFreedom { translation: true, scale: true, rotation: true }
-    }
-
-    fn is_given(&self) -> bool {
-        true
-    }
-
-    fn flatten(&self, how: &Flattening<'_, T>, outline: &mut Outline<T>) -> Result<(), ShapeError> {
-        self.efd.flatten(how, outline)
-    }
-
-    fn flatten_vjp(
-        &self,
-        how: &Flattening<'_, T>,
-        grad_vertices: &[[T; 2]],
-        grad_numbers: &mut [T],
-    ) -> Result<(), ShapeError> {
-        self.efd.flatten_vjp(how, grad_vertices, grad_numbers)
-    }
-}
-
-/// Refuses a wrong number of numbers and numbers that are not finite.
-pub(super) fn check_numbers<T: Real>(expected: usize, numbers: &[T]) -> Result<(), ShapeError> {
-    check_length("numbers of the shape", expected, numbers.len())?;
-    match numbers.iter().position(|number| !number.is_finite()) {
-        Some(index) => Err(ShapeError::NotFinite { index }),
-        None => Ok(()),
-    }
-}
-
-/// Refuses a wrong length.
-pub(super) fn check_length(what: &'static str, expected: usize, len: usize) -> Result<(), ShapeError> {
-    if len == expected { Ok(()) } else { Err(ShapeError::Length { what, expected, len }) }
 }

@@ -8,7 +8,9 @@
 //! | `efd_model` | [`EfdModel`], descriptors as a [`ShapeModel`] | same file |
 //! | `bank` | weights to a mixture of prototypes, [`PrototypeBank`], [`PrototypeModel`] | same file |
 //! | `mdshr` | the built-in bank, [`mdshr_bank`] | |
-//! | `any` | every kind of shape behind one trait: [`Shape`], [`AnyShape`] | same file |
+//! | `kind` | every kind of shape behind one trait, [`Shape`] | same files |
+//! | `curve` | boundaries of exact pieces, and what is worked out piece by piece | same folder |
+//! | `any` | a shape of any kind, [`AnyShape`] | same file |
 //! | `outline` | the polygons that renderers paint, [`Outline`], [`Rings`], and how curves become them, [`Flattening`] | |
 //! | `fourier` | closed polygon to descriptors, [`Efd::from_contour`] | none: data, not parameters |
 //! | `normalize` | descriptors to their normal form, [`Efd::normalize`] | `normalize_vjp` |
@@ -18,10 +20,12 @@
 
 mod any;
 mod bank;
+mod curve;
 mod efd;
 mod efd_model;
 mod efd_vjp;
 mod fourier;
+mod kind;
 mod mdshr;
 mod measure;
 mod normalize;
@@ -38,10 +42,15 @@ use alloc::vec::Vec;
 
 use crate::real::Real;
 
-pub use any::{AnyShape, PoseFreedom, Prototype, Shape};
+pub use any::AnyShape;
 pub use bank::{PrototypeBank, PrototypeModel};
+pub use curve::{Boundary, Piece, PieceGrad};
 pub use efd::OutlineBasis;
 pub use efd_model::EfdModel;
+pub use kind::{
+    Circle, Ellipse, MOST_CORNERS, Path, PathRing, Polygon, PoseFreedom, Prototype, Rectangle, RegularPolygon, Segment,
+    Shape, Star,
+};
 pub use mdshr::{MDSHR_NAMES, mdshr_bank};
 pub use normalize::Normalized;
 pub use normalize_op::NormalizeOp;
@@ -189,6 +198,20 @@ pub enum ShapeError {
         /// The kind of the shape.
         kind: &'static str,
     },
+    /// A length that must be positive is not, or is not finite.
+    NotPositive {
+        /// Which length.
+        what: &'static str,
+    },
+    /// A regular polygon or star with too few corners, or too many.
+    Corners {
+        /// Sides or points.
+        what: &'static str,
+        /// How many.
+        count: usize,
+    },
+    /// A smooth segment of a path has nothing before it whose direction it could continue.
+    NoDirection,
     /// The first harmonic vanishes, so that there is no size to normalize by.
     Degenerate,
 }
@@ -209,6 +232,14 @@ impl core::fmt::Display for ShapeError {
             Self::TooLarge => write!(f, "the contour's lengths overflow: scale its coordinates down"),
             Self::NoDescriptors { kind } => {
                 write!(f, "a {kind} is not made of descriptors; take those of its outline (`Shape::efd`)")
+            }
+            Self::NotPositive { what } => write!(f, "the {what} must be a positive number"),
+            Self::Corners { what, count } => write!(f, "{count} {what}, must be 3 to {MOST_CORNERS}"),
+            Self::NoDirection => {
+                write!(
+                    f,
+                    "a smooth segment has no direction to continue: begin the ring with a segment that has a corner before it"
+                )
             }
             Self::Degenerate => write!(f, "the first harmonic is zero: the shape has no size to normalize by"),
         }

@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 
 use dvp_core::contour::contains;
-use dvp_core::geometry::Segment;
+use dvp_core::geometry::LineSegment;
 use dvp_core::{ImageSize, Real, simd};
 
 use crate::free::foot::EdgeLanes;
@@ -179,7 +179,7 @@ pub(crate) fn hidden_share<'a, T: Real>(
 
 /// Whether every edge of a closed outline is farther from the point than `distance`.
 fn is_farther<T: Real>(outline: &[[T; 2]], point: [T; 2], distance: T) -> bool {
-    let mut edges = outline.windows(2).map(|edge| Segment::new(edge[0].into(), edge[1].into()));
+    let mut edges = outline.windows(2).map(|edge| LineSegment::new(edge[0].into(), edge[1].into()));
     edges.all(|edge| edge.nearest(point.into()).distance() > distance)
 }
 

@@ -6,7 +6,7 @@ use core::array;
 use super::profile::SquaredProfile;
 use super::triangulate::Face;
 use crate::dims::ImageSize;
-use crate::geometry::{Segment, Vec2};
+use crate::geometry::{LineSegment, Vec2};
 use crate::real::Real;
 use crate::render::tile::{ChunkState, LANES, Lanes, Tile, Window, grow, pixel_range, reserved_chunks};
 use crate::simd::Kernel;
@@ -74,7 +74,7 @@ impl<T: Real> Kernel for Cover<'_, T> {
 #[derive(Clone, Copy)]
 struct Triangle<T> {
     corners: [[T; 2]; 3],
-    edges: [Segment<T>; 3],
+    edges: [LineSegment<T>; 3],
     /// +1 or -1, so that inside is where all three sides times it are positive.
     turn: T,
 }
@@ -85,7 +85,7 @@ impl<T: Real> Triangle<T> {
     fn new([a, b, c]: [[T; 2]; 3], least_area: T) -> Option<Self> {
         let area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
         let turn = if area > T::zero() { T::one() } else { -T::one() };
-        let edge = |from: [T; 2], to: [T; 2]| Segment::new(from.into(), to.into());
+        let edge = |from: [T; 2], to: [T; 2]| LineSegment::new(from.into(), to.into());
         let edges = [edge(a, b), edge(b, c), edge(c, a)];
         (area.abs() > least_area).then_some(Self { corners: [a, b, c], edges, turn })
     }
@@ -94,7 +94,7 @@ impl<T: Real> Triangle<T> {
     #[inline(always)]
     fn measure(&self, x: T, y: T) -> (T, u32) {
         let point = Vec2::new(x, y);
-        let measure = |edge: Segment<T>| {
+        let measure = |edge: LineSegment<T>| {
             // Squared distance, and on which side the point lies.
             (edge.nearest(point).distance_squared(), edge.along.cross(point - edge.from))
         };

@@ -5,7 +5,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use dvp_core::contour::{centroid, signed_area};
-use dvp_core::geometry::{Segment, Vec2};
+use dvp_core::geometry::{LineSegment, Vec2};
 use dvp_core::{Real, simd};
 
 /// Cells per side of the grid, as a part of an index in lanes and as a count.
@@ -17,7 +17,7 @@ const SHORTEST_EDGE: f64 = 1e-12;
 /// One edge of the unit outline.
 #[derive(Clone, Copy, Debug)]
 struct Edge<T> {
-    segment: Segment<T>,
+    segment: LineSegment<T>,
     /// Unit normals, to the outside: of the vertex it starts at, its own, of the vertex it ends at. Those of a vertex are
     /// between those of its two edges: together they tell on which side of it a point is.
     normals: [[T; 2]; 3],
@@ -170,7 +170,7 @@ impl<T: Real> OutlineField<T> {
         for i in 0..N {
             if let Some(edges) = self.edges.get(before[i] as usize..).and_then(|edges| edges.first_chunk::<3>()) {
                 for k in 0..3 {
-                    let Segment { from, along, inverse_squared } = edges[k].segment;
+                    let LineSegment { from, along, inverse_squared } = edges[k].segment;
                     (fans[k][0][i], fans[k][1][i]) = (from.x, from.y);
                     (fans[k][2][i], fans[k][3][i]) = (along.x, along.y);
                     fans[k][4][i] = inverse_squared;
@@ -272,7 +272,7 @@ impl<T: Real> simd::Kernel for FillGrid<'_, T> {
 
 impl<T: Real> Edge<T> {
     fn new(start: [T; 2], end: [T; 2], counterclockwise: bool) -> Option<Self> {
-        let segment = Segment::new(start.into(), end.into());
+        let segment = LineSegment::new(start.into(), end.into());
         let squared = segment.along.length_squared();
         if squared.is_nan() || squared <= T::of(SHORTEST_EDGE) {
             return None;

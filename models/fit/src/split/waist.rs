@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 
 use dvp_core::contour::signed_area;
-use dvp_core::geometry::{Segment, Vec2, convex_hull};
+use dvp_core::geometry::{LineSegment, Vec2, convex_hull};
 use dvp_core::{ImageSize, Real};
 
 /// Turn (radians) over four edges from which an outline bends inward.
@@ -48,7 +48,7 @@ pub(crate) fn is_convex<T: Real>(contour: &[[T; 2]]) -> bool {
 
 /// How far inside a convex polygon of [`convex_hull`] a point lies.
 fn depth<T: Real>(hull: &[[T; 2]], point: [T; 2]) -> T {
-    Segment::closed(hull).fold(T::infinity(), |least, side| {
+    LineSegment::closed(hull).fold(T::infinity(), |least, side| {
         let across = side.along.cross(Vec2::from(point) - side.from);
         least.min(across / side.along.length().max(T::of(1e-9)))
     })

@@ -15,7 +15,7 @@ use alloc::vec::Vec;
 
 use dvp_core::Real;
 use dvp_core::contour::{resample, signed_area};
-use dvp_core::geometry::{Segment, Similarity, Vec2};
+use dvp_core::geometry::{LineSegment, Similarity, Vec2};
 
 use crate::Completion;
 use motion::Symmetry;
@@ -90,7 +90,7 @@ impl<T: Real> Seen<'_, T> {
             if !self.shows[i] || !self.shows[j] {
                 continue;
             }
-            let segment = Segment::new(self.points[i].into(), self.points[j].into());
+            let segment = LineSegment::new(self.points[i].into(), self.points[j].into());
             let offset = segment.nearest(point).offset;
             let distance = offset.length();
             if best.is_none_or(|(nearest, ..)| distance < nearest.abs()) {

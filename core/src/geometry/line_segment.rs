@@ -5,7 +5,7 @@ use crate::real::Real;
 
 /// A directed segment, with what the nearest point needs.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Segment<T> {
+pub struct LineSegment<T> {
     /// Where it starts.
     pub from: Vec2<T>,
     /// From its start to its end.
@@ -23,7 +23,7 @@ pub struct Nearest<T> {
     pub offset: Vec2<T>,
 }
 
-impl<T: Real> Segment<T> {
+impl<T: Real> LineSegment<T> {
     /// The segment between two points. Lengths whose square is no normal number count as 0.
     #[inline(always)]
     #[must_use]

@@ -1,0 +1,159 @@
+//! Cubics: where they are cut into edges, and the vertices of their polygons and of those of their parallels.
+
+use alloc::vec::Vec;
+
+use super::MOST_EDGES;
+use crate::geometry::Vec2;
+use crate::real::Real;
+
+/// Halvings until a cubic has [`MOST_EDGES`] edges.
+const DEEPEST: u32 = MOST_EDGES.ilog2();
+
+/// Most that the direction turns along an edge of a parallel, as a tangent: 45 degrees. What turns faster at the last
+/// halving is a cusp.
+const WIDEST_TURN: f64 = 1.0;
+
+/// Appends the parameters at which a cubic is cut, rising, 0 and 1 left out and at least one: middles of halves, quarters
+/// and so on, so that they do not move with the control points.
+///
+/// The polygon strays at most `tolerance` from the cubic, and those of its parallels at distances up to `distance` from
+/// them. Both control points of a part have at most the distance `tolerance` from its chord, and then the part three quarters
+/// of it; the vertices stand outside by at most 4/3 of that.
+pub(crate) fn cut<T: Real>(points: [Vec2<T>; 4], tolerance: T, distance: T, parameters: &mut Vec<T>) {
+    halve(points, [T::zero(), T::one()], 1, &|part| is_flat(part, tolerance, distance), parameters);
+}
+
+fn halve<T: Real>(
+    points: [Vec2<T>; 4],
+    [start, end]: [T; 2],
+    depth: u32,
+    is_flat: &dyn Fn(&[Vec2<T>; 4]) -> bool,
+    parameters: &mut Vec<T>,
+) {
+    let half = T::of(0.5);
+    let middle = (start + end) * half;
+    let [p, q, r, s] = points;
+    let [pq, qr, rs] = [p.lerp(q, half), q.lerp(r, half), r.lerp(s, half)];
+    let [pqr, qrs] = [pq.lerp(qr, half), qr.lerp(rs, half)];
+    let center = pqr.lerp(qrs, half);
+    let (before, after) = ([p, pq, pqr, center], [center, qrs, rs, s]);
+    if depth < DEEPEST && !is_flat(&before) {
+        halve(before, [start, middle], depth + 1, is_flat, parameters);
+    }
+    parameters.push(middle);
+    if depth < DEEPEST && !is_flat(&after) {
+        halve(after, [middle, end], depth + 1, is_flat, parameters);
+    }
+}
+
+fn is_flat<T: Real>(points: &[Vec2<T>; 4], tolerance: T, distance: T) -> bool {
+    let [from, first, second, to] = *points;
+    let near = |point| distance_to_segment(point, from, to) <= tolerance;
+    if !(near(first) && near(second)) {
+        return false;
+    }
+    if distance <= T::zero() {
+        return true;
+    }
+    let turn = turning(points);
+    // An arc of this length and turn has the height length x turn / 8, and three quarters of the tolerance are there for it.
+    let length = (first - from).length() + (second - first).length() + (to - second).length();
+    turn <= T::of(WIDEST_TURN) && turn * (length + distance * turn) <= T::of(6.0) * tolerance
+}
+
+/// The tangents of the angles at the control points, added up: at least the angle by which the direction turns.
+/// Infinite where it turns by a quarter or more at once.
+pub(crate) fn turning<T: Real>(points: &[Vec2<T>; 4]) -> T {
+    let legs = [points[1] - points[0], points[2] - points[1], points[3] - points[2]];
+    let mut turn = T::zero();
+    let mut before: Option<Vec2<T>> = None;
+    for leg in legs.into_iter().filter(|leg| leg.length_squared() > T::zero()) {
+        if let Some(before) = before {
+            let dot = before.dot(leg);
+            turn += if dot > T::zero() { before.cross(leg).abs() / dot } else { T::infinity() };
+        }
+        before = Some(leg);
+    }
+    turn
+}
+
+fn distance_to_segment<T: Real>(point: Vec2<T>, from: Vec2<T>, to: Vec2<T>) -> T {
+    let (chord, offset) = (to - from, point - from);
+    let share = offset.dot(chord) / chord.length_squared();
+    // Not a number where the chord has no length: then the nearest point is its start.
+    let nearest = if share > T::zero() { from + chord * share.min(T::one()) } else { from };
+    (point - nearest).length()
+}
+
+/// What the four points of a cubic are multiplied by to give its point, first and second derivative at `t`.
+pub(super) fn weights<T: Real>(t: T) -> [[T; 4]; 3] {
+    let (two, three, six) = (T::of(2.0), T::of(3.0), T::of(6.0));
+    let s = T::one() - t;
+    [
+        [s * s * s, three * t * s * s, three * t * t * s, t * t * t],
+        [-three * s * s, three * s * (s - two * t), three * t * (two * s - t), three * t * t],
+        [six * s, six * (t - two * s), six * (s - two * t), six * t],
+    ]
+}
+
+/// The sum of the points, each times its weight.
+fn mix<T: Real>(points: &[Vec2<T>; 4], weights: [T; 4]) -> Vec2<T> {
+    points[0] * weights[0] + points[1] * weights[1] + points[2] * weights[2] + points[3] * weights[3]
+}
+
+/// Point, first and second derivative at `t`.
+pub(crate) fn derivatives<T: Real>(points: &[Vec2<T>; 4], t: T) -> [Vec2<T>; 3] {
+    weights(t).map(|weights| mix(points, weights))
+}
+
+/// The share of the second derivative by which a vertex stands outside, given the steps of the parameter before and after
+/// it, and whether a fixed end is next: such an end leaves its part of the area to its neighbor.
+///
+/// An edge over a step h lacks the area h^3 |p' x p''| / 12; half of it is each end's, and a vertex that moves out by d
+/// adds d |p'| (h + h') / 2.
+pub(crate) fn push<T: Real>([before, after]: [T; 2], fixed: [bool; 2]) -> T {
+    let area = |step: T, fixed: bool| step * step * step * if fixed { T::of(2.0) } else { T::one() };
+    (area(before, fixed[0]) + area(after, fixed[1])) / (T::of(12.0) * (before + after))
+}
+
+/// The shares of [`push`] at all parameters of [`cut`], each with its parameter.
+pub(super) fn pushed<T: Real>(parameters: &[T]) -> impl Iterator<Item = (T, T)> + '_ {
+    let last = parameters.len().saturating_sub(1);
+    parameters.iter().enumerate().map(move |(i, &t)| {
+        let before = if i == 0 { T::zero() } else { parameters[i - 1] };
+        let after = if i == last { T::one() } else { parameters[i + 1] };
+        (t, push([t - before, after - t], [i == 0, i == last]))
+    })
+}
+
+/// A vertex of the polygon of a parallel of a cubic.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct CubicVertex<T> {
+    /// The parameter.
+    pub(crate) t: T,
+    /// Distance of the parallel, toward the normal: the direction of travel turned from +x to +y by a quarter. 0 for the
+    /// cubic itself.
+    pub(crate) distance: T,
+    /// From [`push`].
+    pub(crate) push: T,
+}
+
+impl<T: Real> CubicVertex<T> {
+    /// Where the vertex stands.
+    ///
+    /// A parallel at distance d has the speed |p'| - d w, w = (p' x p'') / |p'|^2 the speed at which the direction turns, so that
+    /// its vertices stand outside by push x (|p'| - d w) w. Where p' is zero there is no normal: the point itself.
+    pub(crate) fn place(&self, points: &[Vec2<T>; 4]) -> Vec2<T> {
+        let [point, first, second] = derivatives(points, self.t);
+        match first.normalized() {
+            Some(direction) => point + direction.perp() * self.along_normal(first, second),
+            None => point,
+        }
+    }
+
+    fn along_normal(&self, first: Vec2<T>, second: Vec2<T>) -> T {
+        let speed = first.length();
+        let turning = first.cross(second) / (speed * speed);
+        self.distance - self.push * (speed - self.distance * turning) * turning
+    }
+}
