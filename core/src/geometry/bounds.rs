@@ -23,6 +23,21 @@ impl<T: Real> Bounds<T> {
         Some(bounds)
     }
 
+    /// The box around the vertices of an outline; none if there are none.
+    #[must_use]
+    pub fn of_vertices(vertices: &[[T; 2]]) -> Option<Self> {
+        Self::of(vertices.iter().map(|&vertex| Vec2::from(vertex)))
+    }
+
+    /// Whether two boxes, one of them grown by `margin` on every side, have a point in common; boxes that touch have one.
+    #[must_use]
+    pub fn meets(&self, other: &Self, margin: T) -> bool {
+        self.min.x <= other.max.x + margin
+            && other.min.x <= self.max.x + margin
+            && self.min.y <= other.max.y + margin
+            && other.min.y <= self.max.y + margin
+    }
+
     /// Grows the box until `point` is inside.
     pub fn include(&mut self, point: Vec2<T>) {
         self.min = Vec2::new(self.min.x.min(point.x), self.min.y.min(point.y));

@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 
 use dvp_core::contour::contains;
-use dvp_core::geometry::LineSegment;
+use dvp_core::geometry::{Bounds, LineSegment};
 use dvp_core::{ImageSize, Real, simd};
 
 use crate::free::foot::EdgeLanes;
@@ -148,11 +148,8 @@ pub(crate) fn hidden_share<'a, T: Real>(
 ) -> f64 {
     let unit = T::of_usize(size.unit_px());
     let limits = [size.width(), size.height()].map(|v| T::of_usize(v) / unit);
-    let (low, high) = bounds(outline);
-    let reaches = |cover: &&[[T; 2]]| {
-        let (least, most) = bounds(cover);
-        (0..2).all(|c| least[c] < high[c] && low[c] < most[c])
-    };
+    let Some(bounds) = Bounds::of_vertices(outline) else { return 0.0 };
+    let reaches = |cover: &&[[T; 2]]| Bounds::of_vertices(cover).is_some_and(|cover| cover.meets(&bounds, T::zero()));
     let covers: Vec<&[[T; 2]]> = covers.filter(reaches).collect();
     if covers.is_empty() {
         return 0.0;
@@ -181,11 +178,4 @@ pub(crate) fn hidden_share<'a, T: Real>(
 fn is_farther<T: Real>(outline: &[[T; 2]], point: [T; 2], distance: T) -> bool {
     let mut edges = outline.windows(2).map(|edge| LineSegment::new(edge[0].into(), edge[1].into()));
     edges.all(|edge| edge.nearest(point.into()).distance() > distance)
-}
-
-/// Least and greatest x and y.
-fn bounds<T: Real>(outline: &[[T; 2]]) -> ([T; 2], [T; 2]) {
-    outline.iter().fold(([T::infinity(); 2], [T::neg_infinity(); 2]), |(low, high), v| {
-        ([low[0].min(v[0]), low[1].min(v[1])], [high[0].max(v[0]), high[1].max(v[1])])
-    })
 }

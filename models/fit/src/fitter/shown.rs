@@ -6,9 +6,10 @@
 
 use alloc::vec::Vec;
 
+use dvp_core::geometry::Bounds;
 use dvp_core::render::contour::ContourRenderer;
 use dvp_core::render::{Compositing, EdgeProfile, Renderer};
-use dvp_core::{Drawing, ImageSize, ImageView, Real};
+use dvp_core::{Drawing, ImageSize, ImageView, Real, Vec2};
 
 use crate::FitError;
 use crate::residual::{PixelBox, Residual};
@@ -105,10 +106,8 @@ impl<T: Real> Shown<T> {
             return Change::Nothing;
         }
         let unit = T::of_usize(size.unit_px());
-        let mut bounds = Bounds::nothing();
-        (first..m - last).for_each(|i| bounds.add(old.outline(i), unit));
-        (first..n - last).for_each(|j| bounds.add(new.outline(j), unit));
-        match bounds.pixels(reach_px(edge, unit), size) {
+        let changed = (first..m - last).map(|i| old.outline(i)).chain((first..n - last).map(|j| new.outline(j)));
+        match pixels_around(changed.flatten(), unit, reach_px(edge, unit), size) {
             None => Change::Nothing,
             Some(window) if 4 * window.pixels() <= LARGE_WINDOW * size.pixels() => Change::Window(window),
             Some(_) => Change::Everything,
@@ -131,9 +130,8 @@ impl<T: Real> Shown<T> {
         self.window.clear();
         self.window.background = drawing.background;
         for k in 0..drawing.object_count() {
-            let mut bounds = Bounds::nothing();
-            bounds.add(drawing.outline(k), unit);
-            if bounds.pixels(reach, size).is_some_and(|pixels| pixels.meets(&window)) {
+            let own = pixels_around(drawing.outline(k), unit, reach, size);
+            if own.is_some_and(|pixels| pixels.meets(&window)) {
                 self.outline.clear();
                 let to_here = |v: &[T; 2]| core::array::from_fn(|c| (v[c] * unit - origin[c]) / unit_here);
                 self.outline.extend(drawing.outline(k).iter().map(to_here));
@@ -180,32 +178,18 @@ fn window_error<T: Real>(pixels: &[T], image: &ImageView<'_, T>, window: PixelBo
     lines.map(|line| sum(line).as_f64()).sum()
 }
 
-/// A box around outlines, px.
-struct Bounds<T> {
-    low: [T; 2],
-    high: [T; 2],
-}
-
-impl<T: Real> Bounds<T> {
-    fn nothing() -> Self {
-        Self { low: [T::infinity(); 2], high: [T::neg_infinity(); 2] }
-    }
-
-    fn add(&mut self, outline: &[[T; 2]], unit: T) {
-        for v in outline {
-            for ((low, high), &x) in self.low.iter_mut().zip(&mut self.high).zip(v) {
-                *low = low.min(x * unit);
-                *high = high.max(x * unit);
-            }
-        }
-    }
-
-    /// The pixels of the image within `reach` of the box; none if there is none.
-    fn pixels(&self, reach: T, size: ImageSize) -> Option<PixelBox> {
-        let extent = [size.width(), size.height()];
-        let bound = |v: T, c: usize| v.max(T::zero()).min(T::of_usize(extent[c])).to_count();
-        let low: [usize; 2] = core::array::from_fn(|c| bound((self.low[c] - reach).floor(), c));
-        let high: [usize; 2] = core::array::from_fn(|c| bound((self.high[c] + reach).ceil(), c));
-        (low[0] < high[0] && low[1] < high[1]).then_some(PixelBox { low, high })
-    }
+/// The pixels of the image within `reach` (px) of the box around vertices; none if there is none.
+fn pixels_around<'a, T: Real>(
+    vertices: impl IntoIterator<Item = &'a [T; 2]>,
+    unit: T,
+    reach: T,
+    size: ImageSize,
+) -> Option<PixelBox> {
+    let bounds = Bounds::of(vertices.into_iter().map(|&vertex| Vec2::from(vertex) * unit))?;
+    let (min, max) = (bounds.min.to_array(), bounds.max.to_array());
+    let extent = [size.width(), size.height()];
+    let bound = |v: T, c: usize| v.max(T::zero()).min(T::of_usize(extent[c])).to_count();
+    let low: [usize; 2] = core::array::from_fn(|c| bound((min[c] - reach).floor(), c));
+    let high: [usize; 2] = core::array::from_fn(|c| bound((max[c] + reach).ceil(), c));
+    (low[0] < high[0] && low[1] < high[1]).then_some(PixelBox { low, high })
 }

@@ -4,6 +4,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use dvp_core::contour::contains;
+use dvp_core::geometry::Bounds;
 use dvp_core::render::Compositing;
 use dvp_core::shape::{OutlineBasis, REFERENCE_VERTICES, ShapeError};
 use dvp_core::{ImageSize, Real, Scene};
@@ -87,8 +88,8 @@ fn is_whole(outlines: &[Vec<[f64; 2]>], object: usize, hides: bool, size: ImageS
 }
 
 fn are_apart(a: &[[f64; 2]], b: &[[f64; 2]]) -> bool {
-    let ([low_a, high_a], [low_b, high_b]) = (bounds(a), bounds(b));
-    if (0..2).any(|c| high_a[c] + CLEARANCE_PX < low_b[c] || high_b[c] + CLEARANCE_PX < low_a[c]) {
+    let boxes = Bounds::of_vertices(a).zip(Bounds::of_vertices(b));
+    if boxes.is_none_or(|(a, b)| !a.meets(&b, CLEARANCE_PX)) {
         return true;
     }
     let near = |p: &[f64; 2], q: &[f64; 2]| {
@@ -97,11 +98,4 @@ fn are_apart(a: &[[f64; 2]], b: &[[f64; 2]]) -> bool {
     };
     let touch = a.iter().any(|p| b.iter().any(|q| near(p, q)));
     !touch && !a.iter().any(|&p| contains(b, p)) && !b.iter().any(|&q| contains(a, q))
-}
-
-/// Least and greatest x and y.
-fn bounds(outline: &[[f64; 2]]) -> [[f64; 2]; 2] {
-    outline.iter().fold([[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]], |[low, high], v| {
-        [[low[0].min(v[0]), low[1].min(v[1])], [high[0].max(v[0]), high[1].max(v[1])]]
-    })
 }

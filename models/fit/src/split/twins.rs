@@ -6,6 +6,7 @@
 use alloc::vec::Vec;
 
 use dvp_core::contour::{Connectivity, resample, signed_area, trace_level};
+use dvp_core::geometry::Bounds;
 use dvp_core::shape::REFERENCE_VERTICES;
 use dvp_core::{ImageSize, Real};
 
@@ -160,15 +161,10 @@ fn closed<T: Real>(contour: &[[T; 2]]) -> Vec<[T; 2]> {
 
 /// The largest outline where `distance` is 0, looked for around `contour`.
 fn traced<T: Real>(contour: &[[T; 2]], distance: impl Fn([T; 2]) -> T, values: &mut Vec<T>) -> Option<Vec<[T; 2]>> {
-    let (mut low, mut high) = ([T::infinity(); 2], [-T::infinity(); 2]);
-    for v in contour {
-        for c in 0..2 {
-            low[c] = low[c].min(v[c]);
-            high[c] = high[c].max(v[c]);
-        }
-    }
+    let bounds = Bounds::of_vertices(contour)?;
     let margin = T::of_usize(MARGIN);
-    let low = low.map(|v| v.floor() - margin);
+    let low = bounds.min.to_array().map(|v| v.floor() - margin);
+    let high = bounds.max.to_array();
     let [columns, rows] = [0, 1].map(|c| (high[c] + margin - low[c]).ceil().to_count());
     let half = T::of(0.5);
     values.clear();
