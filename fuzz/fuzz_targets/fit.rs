@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 use arbitrary::{Arbitrary, Result, Unstructured};
 use dvp_core::render::{ContourRenderer, Renderer};
 use dvp_core::shape::mdshr_bank;
-use dvp_core::{Image, ImageSize};
+use dvp_core::{Image, ImageSize, Shape as _};
 use dvp_fit::{Bank, FitOptions, Fitter};
 use dvp_fuzz::{Painting, size};
 use libfuzzer_sys::fuzz_target;
@@ -59,7 +59,9 @@ fuzz_target!(|input: Input| {
         for object in &fit.scene.objects {
             let pose = &object.pose;
             let numbers = pose.translation.iter().chain([&pose.scale, &pose.rotation, &object.confidence]);
-            let numbers = numbers.chain(&object.color).chain(object.efd.rows().as_flattened());
+            let (color, mut shape) = (object.color(), Vec::new());
+            object.shape.numbers(&mut shape);
+            let numbers = numbers.chain(&color).chain(&shape);
             assert!(numbers.into_iter().all(|v| v.is_finite()), "{object:?}");
         }
     }

@@ -1,5 +1,6 @@
 //! Scenes in one graph: parameters, activations, prototypes, outlines, images, losses; and a fit by Adam.
 
+use dvp::method::cast_scene;
 use dvp_core::diff_op::Atan2;
 use dvp_core::loss::{SceneLoss, SceneLossOp};
 use dvp_core::optim::AdamSettings;
@@ -14,7 +15,7 @@ use crate::check::{Computation, check};
 use crate::input::{Domain, inputs};
 use crate::network::numbers;
 use crate::registry::{Outcome, Tally, Tested, for_cases, on_every_backend};
-use crate::step::cases::{scene_of, soft};
+use crate::step::cases::soft;
 use crate::step::{Step, step};
 use crate::training::same_losses;
 
@@ -90,7 +91,7 @@ impl Graph {
         graph.targets = graph.image(&activated, &descriptors)?.to_f64()?;
         let truths = scenes(&activated, &descriptors)?;
         graph.scene_loss = step!(T => {
-            let truths = truths.iter().map(scene_of::<T>).collect();
+            let truths = truths.iter().map(cast_scene).collect();
             SceneLossOp::new(SceneLoss::<T>::reference(VERTICES, HARMONICS).unwrap(), truths, OBJECTS, HARMONICS)
                 .unwrap()
         });

@@ -42,12 +42,12 @@ fn known_shapes_are_found_where_they_are() {
             let apart = |other: &dvp_core::Object<f64>| {
                 let [dx, dy] = [0, 1].map(|i| other.pose.translation[i] - object.pose.translation[i]);
                 // A hundredth of the image is 1.3 px.
-                dx.hypot(dy) < 0.01 && other.prototype == object.prototype
+                dx.hypot(dy) < 0.01 && other.prototype() == object.prototype()
             };
             assert!(found.objects.iter().any(apart), "{}: {object:?} is not in {found:?}", sample.stem);
         }
         let symmetries = json.objects.iter().map(|object| object.symmetry.unwrap());
-        assert!(symmetries.zip(&found.objects).all(|(k, object)| [1, 4, 2][object.prototype.unwrap()] == k));
+        assert!(symmetries.zip(&found.objects).all(|(k, object)| [1, 4, 2][object.prototype().unwrap()] == k));
     }
 }
 

@@ -9,11 +9,12 @@ use std::io::Write as _;
 
 use cpu_time::ThreadTime;
 use dvp::format::mdshr_bank;
+use dvp::generate::{cropped, twins};
 use dvp_core::Image;
 use dvp_core::loss::ImagePair;
 use dvp_core::metric::Tally;
 use dvp_fit::{FitOptions, FitScratch, Fitter};
-use dvp_tests::hard_geometry::{all_found, cropped, ownership, paint, rounded, twins};
+use dvp_tests::hard_geometry::{all_found, ownership, paint, rounded};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -29,7 +30,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let (mut tally, mut exact, mut found, mut mae) = (Tally::default(), 0, 0, 0.0);
         let mut times = Vec::new();
         for index in 0..count {
-            let truth = if crop { cropped(level, index) } else { twins(level, index) };
+            let truth = if crop { cropped(level, index)? } else { twins(level, index) };
             let image: Image<f32> = rounded(&paint(&truth));
             let clock = ThreadTime::now();
             let fit = fitter.fit(image.view(), &mut scratch)?;
@@ -42,7 +43,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let pair = ImagePair::new(painted.view(), image.view())?;
             tally.add(pair, &ownership(&fit.scene), &ownership(&truth))?;
             if verbose && !all {
-                let shapes: Vec<_> = truth.objects.iter().map(|object| object.prototype).collect();
+                let shapes: Vec<_> = truth.objects.iter().map(|object| object.prototype()).collect();
                 writeln!(out, "  {index}: {shapes:?}, {} objects, mae {:.5}", fit.scene.objects.len(), fit.loss)?;
             }
         }

@@ -7,12 +7,13 @@ use std::path::Path;
 
 use dvp::format::mdshr_bank;
 use dvp::generate::{SceneSettings, sample_scene};
+use dvp::method::cast_scene;
 use dvp::paint::{Painter, RendererName};
 use dvp_core::loss::ImagePair;
 use dvp_core::metric::{Ownership, Scores, Tally, visible_object_count};
 use dvp_core::render::{ContourRenderer, Renderer};
 use dvp_core::shape::{OutlineBasis, REFERENCE_VERTICES};
-use dvp_core::{Drawing, Efd, Image, ImageSize, Object, Pose, Real, Scene};
+use dvp_core::{Drawing, Image, ImageSize, Object, Scene};
 use dvp_fit::{FitOptions, FitScratch, Fitter};
 use dvp_tests::fixture;
 
@@ -79,28 +80,7 @@ fn own_scenes(count: u64) -> Vec<Case> {
 }
 
 fn truths(shared: &Path, count: usize) -> Vec<Scene<f32>> {
-    let to_f32 = |scene: Scene<f64>| Scene {
-        objects: scene
-            .objects
-            .iter()
-            .map(|object| {
-                let pose = Pose {
-                    translation: object.pose.translation.map(|v| v.as_f32()),
-                    scale: object.pose.scale.as_f32(),
-                    rotation: object.pose.rotation.as_f32(),
-                };
-                Object::of_efd(
-                    pose,
-                    object.color.map(|v| v.as_f32()),
-                    object.confidence.as_f32(),
-                    Efd::new(object.efd.rows().iter().map(|row| row.map(|v| v.as_f32())).collect()),
-                    object.prototype,
-                )
-            })
-            .collect(),
-        ..Scene::empty(scene.background.map(|v| v.as_f32()))
-    };
-    fixture::mdshr_val(shared, count).into_iter().map(to_f32).collect()
+    fixture::mdshr_val(shared, count).iter().map(cast_scene).collect()
 }
 
 fn float_cases(shared: &Path) -> Vec<Case> {

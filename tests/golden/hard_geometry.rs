@@ -3,11 +3,12 @@
 #![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test with a line number")]
 
 use dvp::format::mdshr_bank;
+use dvp::generate::{cropped, twins};
 use dvp_core::Scene;
 use dvp_core::loss::ImagePair;
 use dvp_core::metric::Tally;
 use dvp_fit::{FitOptions, FitScratch, Fitter};
-use dvp_tests::hard_geometry::{all_found, cropped, ownership, paint, rounded, twins};
+use dvp_tests::hard_geometry::{all_found, ownership, paint, rounded};
 
 const PICTURES: u64 = 24;
 /// Mask IoU at which an object is found.
@@ -57,7 +58,7 @@ fn twins_without_a_bank() {
 fn cropped_objects() {
     for hidden in [0.3, 0.5, 0.7] {
         for options in [known(), FitOptions::default()] {
-            let (_, ari) = score(options, |index| cropped(hidden, index));
+            let (_, ari) = score(options, |index| cropped(hidden, index).unwrap());
             assert!(ari >= 0.98, "{hidden} hidden: {ari}");
         }
     }

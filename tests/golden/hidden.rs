@@ -129,7 +129,7 @@ fn guess(shape: &str, cover: &str) -> Option<Guess> {
     let (whole, image) = (draw(shape, ""), draw(shape, cover));
     let fit: Fit<f64> = fit_image(image.view(), &FitOptions::default()).unwrap();
     let is_behind = |color: [f64; 3]| (0..3).all(|c| (color[c] - BEHIND[c]).abs() < 0.05);
-    let mut behind = (0..fit.scene.objects.len()).filter(|&k| is_behind(fit.scene.objects[k].color));
+    let mut behind = (0..fit.scene.objects.len()).filter(|&k| is_behind(fit.scene.objects[k].color()));
     let object = behind.next().filter(|_| behind.next().is_none())?;
     let mut drawing = Drawing::default();
     fit.scene.draw(&OutlineBasis::new(REFERENCE_VERTICES, 31).unwrap(), &mut drawing).unwrap();
@@ -225,7 +225,7 @@ fn each_object_says_what_it_buys() {
     ];
     let ranking = fit.ranking();
     for (&object, (color, squares)) in ranking.iter().zip(expected) {
-        let found = fit.scene.objects[object].color.map(|v| v * 255.0);
+        let found = fit.scene.objects[object].color().map(|v| v * 255.0);
         assert!((0..3).all(|c| (found[c] - f64::from(color[c])).abs() < 4.0), "{found:?} in place of {color:?}");
         let (bought, expected) = (fit.buys[object], squares / variance);
         // Pixels at the rim count in whole or not at all: the smaller the object, the more of it is rim.
@@ -244,7 +244,7 @@ fn too_many_objects_are_cut_to_those_that_buy_most() {
         assert!(fit.unexplained < left, "{} of {left}", fit.unexplained);
         left = fit.unexplained;
         let is_light = |color: [f64; 3]| color.iter().all(|&v| v > 0.86);
-        assert_eq!(fit.scene.objects.iter().any(|object| is_light(object.color)), max_objects > 1);
+        assert_eq!(fit.scene.objects.iter().any(|object| is_light(object.color())), max_objects > 1);
     }
     assert!(left < 1e-3, "{left}");
 }

@@ -3,12 +3,12 @@
 #![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test with a line number")]
 
 use dvp::format::mdshr_bank;
+use dvp::generate::spoil::{add_noise, jpeg};
 use dvp::generate::{SceneSettings, sample_scene};
 use dvp::paint::Painter;
 use dvp_core::metric::visible_object_count;
 use dvp_core::{Image, ImageSize, Real};
 use dvp_fit::{Fit, FitOptions, FitScratch, Fitter, StopReason, fit_image};
-use dvp_tests::picture_set::{add_noise, jpeg};
 use image::RgbImage;
 
 const SIDE: u32 = 128;

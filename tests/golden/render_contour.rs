@@ -55,7 +55,7 @@ fn gradients(fixture: &FixtureScene, target: &Image<f64>, loss: PixelLoss) -> [V
         r.extend(pair);
         c.extend(object.color);
         f.push(object.confidence);
-        e.extend(object.efd.as_flattened());
+        e.extend(&object.numbers);
     }
     fields
 }

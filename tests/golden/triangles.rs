@@ -207,7 +207,7 @@ fn gradients(shared: &Path, loss: PixelLoss, files: &str) -> Vec<Group> {
             found[2].extend(pair);
             found[3].extend(object.color);
             found[4].push(object.confidence);
-            found[6].extend(object.efd.as_flattened());
+            found[6].extend(&object.numbers);
         }
     }
     assert!(dims[0] >= 8);

@@ -8,7 +8,7 @@ use dvp_core::loss::{ContourLength, ImagePair, Loss, Pyramid, RotationTerm, Scen
 use dvp_core::render::PixelLoss;
 use dvp_core::scene::ObjectGrad;
 use dvp_core::shape::OutlineBasis;
-use dvp_core::{ImageSize, ImageView, Object, Scene, SceneGrad};
+use dvp_core::{ImageSize, ImageView, Object, Paint, Scene, SceneGrad, Shape as _};
 use dvp_tests::finite_difference::compare;
 use dvp_tests::strategy;
 use proptest::collection::vec;
@@ -64,18 +64,18 @@ proptest! {
         let mut scratch = Default::default();
         let mut grads: Vec<ObjectGrad<f64>> = objects
             .iter()
-            .map(|object| ObjectGrad { efd: vec![[0.5; 4]; object.efd.harmonic_count()], ..ObjectGrad::default() })
+            .map(|object| ObjectGrad { numbers: vec![0.5; object.shape.number_count()], ..ObjectGrad::default() })
             .collect();
         loss.vjp(&objects, -2.0, &mut scratch, &mut grads).unwrap();
-        let x: Vec<f64> = objects.iter().flat_map(|o| o.efd.rows().as_flattened().to_vec()).collect();
-        let grad: Vec<f64> = grads.iter().flat_map(|g| g.efd.as_flattened().to_vec()).map(|g| g - 0.5).collect();
+        let x: Vec<f64> = objects.iter().flat_map(|o| o.efd_rows().as_flattened().to_vec()).collect();
+        let grad: Vec<f64> = grads.iter().flat_map(|g| g.numbers.clone()).map(|g| g - 0.5).collect();
         if objects.is_empty() {
             prop_assert!(loss.value(&objects, &mut scratch).unwrap().abs() < 1e-15);
             return Ok(());
         }
         let mut moved = objects.clone();
         compare(&x, &grad, 1e-7, |mut x| {
-            for value in moved.iter_mut().flat_map(|o| o.efd.rows_mut().as_flattened_mut()) {
+            for value in moved.iter_mut().flat_map(|o| o.shape.efd_mut().unwrap().rows_mut().as_flattened_mut()) {
                 *value = *x.split_off_first().unwrap();
             }
             -2.0 * loss.value(&moved, &mut scratch).unwrap()
@@ -139,9 +139,11 @@ fn numbers(scene: &mut Scene<f64>) -> Vec<&mut f64> {
     for object in &mut scene.objects {
         all.extend(&mut object.pose.translation);
         all.extend([&mut object.pose.scale, &mut object.pose.rotation]);
-        all.extend(&mut object.color);
+        if let Paint::Flat(color) = &mut object.paint {
+            all.extend(color);
+        }
         all.push(&mut object.confidence);
-        all.extend(object.efd.rows_mut().as_flattened_mut());
+        all.extend(object.shape.efd_mut().unwrap().rows_mut().as_flattened_mut());
     }
     all
 }
@@ -153,7 +155,7 @@ fn flat_grad(grad: &SceneGrad<f64>) -> Vec<f64> {
         all.extend([object.scale, object.rotation]);
         all.extend(object.color);
         all.push(object.confidence);
-        all.extend(object.efd.as_flattened());
+        all.extend(&object.numbers);
     }
     all
 }

@@ -81,6 +81,7 @@ fn unflat(x: &[f64], like: &Drawing<f64>) -> Drawing<f64> {
         background: background.try_into().unwrap(),
         vertices: vertices.as_chunks().0.to_vec(),
         starts: like.starts.clone(),
+        breaks: like.breaks.clone(),
         colors: colors.as_chunks().0.to_vec(),
         confidences: confidences.to_vec(),
     }

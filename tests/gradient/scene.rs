@@ -13,9 +13,9 @@ fn flat(scene: &Scene<f64>) -> Vec<f64> {
     for object in &scene.objects {
         x.extend(object.pose.translation);
         x.extend([object.pose.scale, object.pose.rotation]);
-        x.extend(object.color);
+        x.extend(object.color());
         x.push(object.confidence);
-        x.extend(object.efd.rows().as_flattened());
+        x.extend(object.efd_rows().as_flattened());
     }
     x
 }
@@ -28,9 +28,11 @@ fn unflat(scene: &mut Scene<f64>, mut x: &[f64]) {
         object.pose.translation.fill_with(&mut next);
         object.pose.scale = next();
         object.pose.rotation = next();
-        object.color.fill_with(&mut next);
+        object.color_mut().fill_with(&mut next);
         object.confidence = next();
-        object.efd.rows_mut().as_flattened_mut().fill_with(&mut next);
+        if let Some(efd) = object.shape.efd_mut() {
+            efd.rows_mut().as_flattened_mut().fill_with(&mut next);
+        }
     }
 }
 
@@ -41,7 +43,7 @@ fn flat_grad(grad: &SceneGrad<f64>) -> Vec<f64> {
         x.extend([object.scale, object.rotation]);
         x.extend(object.color);
         x.push(object.confidence);
-        x.extend(object.efd.as_flattened());
+        x.extend(&object.numbers);
     }
     x
 }

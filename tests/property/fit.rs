@@ -79,18 +79,18 @@ fn agrees<T: Real>(fit: &Fit<T>, truth: &Scene<f64>) -> Result<(), TestCaseError
         let Some(found) = at(fit, object) else {
             return Err(TestCaseError::fail(format!("nothing at {:?}", object.pose)));
         };
-        prop_assert_eq!(found.prototype, object.prototype);
+        prop_assert_eq!(found.prototype(), object.prototype());
         // A tenth of a pixel, a percent, a degree.
         for c in 0..2 {
             let off = found.pose.translation[c].as_f64() - object.pose.translation[c];
             prop_assert!(off.abs() < 0.1 / 128.0, "{:?} {:?}", found.pose, object.pose);
         }
         prop_assert!((found.pose.scale.as_f64() / object.pose.scale - 1.0).abs() < 0.01);
-        let turn = TAU / ORDERS[object.prototype.unwrap()];
+        let turn = TAU / ORDERS[object.prototype().unwrap()];
         let off = (found.pose.rotation.as_f64() - object.pose.rotation) / turn;
         prop_assert!(((off - off.round()) * turn).abs() < 0.02, "{:?} {:?}", found.pose, object.pose);
-        for (a, b) in found.color.iter().zip(object.color) {
-            prop_assert!((a.as_f64() - b).abs() < 1.0 / 255.0, "{:?} {:?}", found.color, object.color);
+        for (a, b) in found.color().iter().zip(object.color()) {
+            prop_assert!((a.as_f64() - b).abs() < 1.0 / 255.0, "{:?} {:?}", found.color(), object.color());
         }
     }
     for (a, b) in fit.scene.background.iter().zip(truth.background) {
@@ -108,10 +108,10 @@ fn to_f32(scene: &Scene<f64>) -> Scene<f32> {
         };
         Object::of_efd(
             pose,
-            object.color.map(|v| v.as_f32()),
+            object.color().map(|v| v.as_f32()),
             1.0,
-            mdshr_bank(HARMONICS).prototypes()[object.prototype.unwrap()].clone(),
-            object.prototype,
+            mdshr_bank(HARMONICS).prototypes()[object.prototype().unwrap()].clone(),
+            object.prototype(),
         )
     });
     Scene { objects: objects.collect(), ..Scene::empty(scene.background.map(|v| v.as_f32())) }
@@ -156,7 +156,7 @@ fn arbitrary_image() -> impl Strategy<Value = Image<f32>> {
 fn numbers(fit: &Fit<f32>) -> Vec<f32> {
     let objects = fit.scene.objects.iter().flat_map(|object| {
         let Pose { translation: [x, y], scale, rotation } = object.pose;
-        [x, y, scale, rotation].into_iter().chain(object.color).chain(object.efd.rows().iter().flatten().copied())
+        [x, y, scale, rotation].into_iter().chain(object.color()).chain(object.efd_rows().iter().flatten().copied())
     });
     let rest = fit.covariance.iter().flatten().copied();
     [fit.loss, fit.bits.as_f32()].into_iter().chain(fit.scene.background).chain(objects).chain(rest).collect()
@@ -183,8 +183,8 @@ proptest! {
         for object in &scene.objects {
             let Some(found) = at(&fit, object) else { return Err(TestCaseError::fail("an object is missing")) };
             let area = |size: f64, area: f64| size * size * area.abs();
-            let ours = area(found.pose.scale.as_f64(), found.efd.signed_area().as_f64());
-            let theirs = area(object.pose.scale, object.efd.signed_area());
+            let ours = area(found.pose.scale.as_f64(), found.shape.efd().unwrap().signed_area().as_f64());
+            let theirs = area(object.pose.scale, object.shape.efd().unwrap().signed_area());
             prop_assert!((ours / theirs - 1.0).abs() < 0.02, "{ours} {theirs}");
         }
     }
@@ -221,7 +221,7 @@ proptest! {
         let (a, b) = (fit(&scene), fit(&turned));
         prop_assert_eq!(a.scene.objects.len(), b.scene.objects.len());
         for (a, b) in a.scene.objects.iter().zip(&b.scene.objects) {
-            prop_assert_eq!(a.prototype, b.prototype);
+            prop_assert_eq!(a.prototype(), b.prototype());
             prop_assert!((a.pose.translation[0] - b.pose.translation[0]).abs() < 1e-6);
         }
     }

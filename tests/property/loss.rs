@@ -142,7 +142,8 @@ proptest! {
         let loss = SceneLoss::reference(32, 6).unwrap();
         let mut turned = truth.clone();
         for (object, turn) in turned.objects.iter_mut().zip(turns) {
-            let order = object.efd.reference_symmetry_order(REFERENCE_SYMMETRY_HARMONICS, REFERENCE_SYMMETRY_THRESHOLD);
+            let efd = object.shape.efd().unwrap();
+            let order = efd.reference_symmetry_order(REFERENCE_SYMMETRY_HARMONICS, REFERENCE_SYMMETRY_THRESHOLD);
             object.pose.rotation += f64::from(turn) * TAU / f64::from(u32::try_from(order).unwrap());
         }
         prop_assert!(scene_terms(&loss, &turned, &truth).rotation.abs() < 1e-12);

@@ -47,7 +47,7 @@ fn perturbed() -> Scene<f32> {
         object.pose.translation[1] -= 0.015;
         object.pose.scale *= 1.0 + 0.1 * sign;
         object.pose.rotation += 0.2 * sign;
-        object.color[1] += 0.05;
+        object.color_mut()[1] += 0.05;
     }
     scene.background[2] -= 0.05;
     scene
@@ -56,7 +56,7 @@ fn perturbed() -> Scene<f32> {
 fn bits(scene: &Scene<f32>) -> Vec<u32> {
     let objects = scene.objects.iter().flat_map(|object| {
         let Pose { translation: [x, y], scale, rotation } = object.pose;
-        [x, y, scale, rotation].into_iter().chain(object.color).chain(object.efd.rows().iter().flatten().copied())
+        [x, y, scale, rotation].into_iter().chain(object.color()).chain(object.efd_rows().iter().flatten().copied())
     });
     scene.background.into_iter().chain(objects).map(f32::to_bits).collect()
 }
@@ -65,7 +65,7 @@ proptest! {
     #[test]
     fn renormalizing_keeps_the_outline(object in strategy::object(1..9), size in 0.2..5.0_f64, turn in -3.0..3.0_f64) {
         let basis = OutlineBasis::new(VERTICES, 9).unwrap();
-        let mut efd = object.efd;
+        let mut efd = object.shape.efd().unwrap().clone();
         efd.rotate_scale(turn, size);
         let mut before = vec![[0.0; 2]; VERTICES];
         basis.outline(efd.rows(), &mut before).unwrap();
@@ -95,7 +95,7 @@ proptest! {
         for object in &scene.objects {
             prop_assert!(object.pose.translation.iter().all(|t| (0.05..0.95).contains(t)));
             prop_assert!((0.1..0.3).contains(&object.pose.scale));
-            prop_assert!(object.color.iter().all(|c| (0.0..1.0).contains(c)));
+            prop_assert!(object.color().iter().all(|c| (0.0..1.0).contains(c)));
         }
     }
 }
@@ -179,7 +179,7 @@ fn numbers_that_are_none_are_refused() {
     let refused = OptP::default().fit(&mut descent, image.view(), &start).unwrap_err();
     assert!(matches!(refused, DescentError::Render(_)), "{refused}");
     let mut many = perturbed();
-    many.objects[0].efd = Efd::zeros(2);
+    many.objects[0].shape = Efd::zeros(2).into();
     let refused = OptP::default().fit(&mut descent, image.view(), &many).unwrap_err();
     assert!(matches!(refused, DescentError::Shape(_)), "{refused}");
     image.data_mut()[7] = f32::NAN;

@@ -79,8 +79,8 @@ fn the_truth_stays_and_memory_has_no_effect() {
 fn symmetry_and_crop_are_told() {
     let mut truth = scene(&mut ChaCha8Rng::seed_from_u64(2));
     truth.objects.truncate(2);
-    truth.objects[0].efd = Efd::new(vec![[1.0, 0.0, 0.0, -0.5]]);
-    truth.objects[1].efd = mdshr_bank(HARMONICS).prototypes()[0].clone();
+    truth.objects[0].shape = Efd::new(vec![[1.0, 0.0, 0.0, -0.5]]).into();
+    truth.objects[1].shape = mdshr_bank(HARMONICS).prototypes()[0].clone().into();
     truth.objects[1].pose.translation[0] = 0.98;
     let image = paint(&truth);
     let fit = Refine::default().fit(image.view(), &truth, &mut RefineScratch::default()).unwrap();
@@ -98,7 +98,7 @@ fn bad_input_is_refused() {
     let mut start = truth.clone();
     start.objects[1].pose.scale = -0.1;
     assert_eq!(refuse(Refine::default(), &start), FitError::Scale { index: 1 });
-    start.objects[1] = Object { efd: Efd::zeros(3), ..truth.objects[1].clone() };
+    start.objects[1] = Object { shape: Efd::zeros(3).into(), ..truth.objects[1].clone() };
     assert_eq!(refuse(Refine::default(), &start), FitError::FlatObject { index: 1 });
     start.objects[1].pose.rotation = f32::NAN;
     assert!(matches!(refuse(Refine::default(), &start), FitError::Render(_)));

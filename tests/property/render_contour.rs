@@ -128,6 +128,7 @@ proptest! {
             background: drawing.background.map(f32::of),
             vertices: drawing.vertices.iter().map(|v| v.map(f32::of)).collect(),
             starts: drawing.starts.clone(),
+            breaks: drawing.breaks.clone(),
             colors: drawing.colors.iter().map(|c| c.map(f32::of)).collect(),
             confidences: drawing.confidences.iter().map(|&f| f32::of(f)).collect(),
         };

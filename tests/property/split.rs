@@ -6,7 +6,7 @@ use core::f64::consts::{FRAC_PI_2, TAU};
 
 use dvp_core::contour::contains;
 use dvp_core::shape::{OutlineBasis, REFERENCE_VERTICES, mdshr_bank};
-use dvp_core::{Drawing, Image, Object, Pose, Scene};
+use dvp_core::{AnyShape, Drawing, Image, Object, Pose, Scene};
 use dvp_fit::{Bank, Fit, FitOptions, FitScratch, Fitter};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
@@ -65,13 +65,13 @@ fn outlines(scene: &Scene<f64>) -> Vec<Vec<[f64; 2]>> {
 fn nearest(fit: &Fit<f64>, object: &Object<f64>) -> f64 {
     let off = |found: &Object<f64>| {
         let (a, b) = (&found.pose, &object.pose);
-        let turn = TAU / ORDERS[object.prototype.unwrap()];
+        let turn = TAU / ORDERS[object.prototype().unwrap()];
         let angle = (a.rotation - b.rotation) / turn;
         let angle = (angle - angle.round()) * turn;
         let [x, y] = [0, 1].map(|c| a.translation[c] - b.translation[c]);
         128.0 * x.hypot(y).max((a.scale - b.scale).abs()).max(angle.abs() * b.scale)
     };
-    let alike = fit.scene.objects.iter().filter(|found| found.prototype == object.prototype);
+    let alike = fit.scene.objects.iter().filter(|found| found.prototype() == object.prototype());
     alike.map(off).fold(f64::INFINITY, f64::min)
 }
 
@@ -168,7 +168,9 @@ fn the_order_of_the_bank_is_not_seen() {
     for (image, objects) in parted() {
         let mut fit = fitted(&fitter, &image);
         for object in &mut fit.scene.objects {
-            object.prototype = object.prototype.map(|k| ORDERS.len() - 1 - k);
+            if let AnyShape::Prototype(prototype) = &mut object.shape {
+                prototype.index = ORDERS.len() - 1 - prototype.index;
+            }
         }
         assert!(has(&fit, &objects, ALIKE_PX), "{objects:?}");
     }

@@ -1,84 +1,15 @@
-//! Scenes of hard geometry at 128 x 128: twins of one color and objects that leave the image, and how they are scored.
+//! How fits of the hard scenes of `dvp::generate` are scored at 128 x 128.
 
 #![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test with a line number")]
 
-use dvp::format::mdshr_bank;
 use dvp_core::contour::contains;
 use dvp_core::metric::Ownership;
 use dvp_core::render::{ContourRenderer, Renderer};
 use dvp_core::shape::{OutlineBasis, REFERENCE_VERTICES};
-use dvp_core::{Drawing, Image, ImageSize, Object, Pose, Scene};
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
+use dvp_core::{Drawing, Image, ImageSize, Scene};
 
 const SIDE: usize = 128;
 const HARMONICS: usize = 64;
-
-/// Two objects of one prototype and color, scale 0.1, their centers `gap` apart; rotations are independent.
-#[must_use]
-pub fn twins(gap: f32, index: u64) -> Scene<f32> {
-    let mut rng = ChaCha8Rng::seed_from_u64(0x7717 + index);
-    let background: [f32; 3] = rng.random();
-    let color = contrasting(&mut rng, background);
-    let bank = mdshr_bank();
-    let prototype = rng.random_range(0..bank.prototypes.len());
-    let angle = rng.random_range(0.0..core::f32::consts::TAU);
-    let middle = [rng.random_range(0.25..0.75), rng.random_range(0.25..0.75)];
-    let objects = [0.5, -0.5].map(|side| {
-        let pose = Pose {
-            translation: [middle[0] + side * gap * angle.cos(), middle[1] + side * gap * angle.sin()],
-            scale: 0.1,
-            rotation: rng.random_range(0.0..core::f32::consts::TAU),
-        };
-        Object::of_efd(pose, color, 1.0, bank.prototypes[prototype].1.clone(), Some(prototype))
-    });
-    Scene { objects: objects.into(), ..Scene::empty(background) }
-}
-
-/// One object of which the share `hidden` (within 0.03) lies outside the image, and one that is wholly inside.
-#[must_use]
-pub fn cropped(hidden: f32, index: u64) -> Scene<f32> {
-    let mut rng = ChaCha8Rng::seed_from_u64(0xc409 + index);
-    let background: [f32; 3] = rng.random();
-    let bank = mdshr_bank();
-    let basis = basis();
-    loop {
-        let prototype = rng.random_range(0..bank.prototypes.len());
-        let pose = Pose {
-            translation: [rng.random_range(-0.3..1.3), rng.random_range(-0.3..1.3)],
-            scale: rng.random_range(0.1..0.3),
-            rotation: rng.random_range(0.0..core::f32::consts::TAU),
-        };
-        let efd = bank.prototypes[prototype].1.clone();
-        let color = contrasting(&mut rng, background);
-        let object = Object::of_efd(pose, color, 1.0, efd, Some(prototype));
-        let scene = Scene { objects: vec![object], ..Scene::empty(background) };
-        if (1.0 - visible_area(&scene, &basis) - hidden).abs() > 0.03 {
-            continue;
-        }
-        let [x, y] = pose.translation;
-        let other = Pose { translation: [1.0 - x.clamp(0.2, 0.8), 1.0 - y.clamp(0.2, 0.8)], scale: 0.1, rotation: x };
-        if (x - other.translation[0]).hypot(y - other.translation[1]) < pose.scale * 1.3 + 0.15 {
-            continue;
-        }
-        let prototype = rng.random_range(0..bank.prototypes.len());
-        let color = contrasting(&mut rng, background);
-        let efd = bank.prototypes[prototype].1.clone();
-        let mut scene = scene;
-        scene.objects.push(Object::of_efd(other, color, 1.0, efd, Some(prototype)));
-        return scene;
-    }
-}
-
-/// A color at least 0.15 off the background in some channel.
-fn contrasting(rng: &mut ChaCha8Rng, background: [f32; 3]) -> [f32; 3] {
-    loop {
-        let color: [f32; 3] = rng.random();
-        if (0..3).any(|c| (color[c] - background[c]).abs() > 0.15) {
-            return color;
-        }
-    }
-}
 
 fn basis() -> OutlineBasis<f32> {
     OutlineBasis::new(REFERENCE_VERTICES, HARMONICS).unwrap()
@@ -92,16 +23,6 @@ fn draw(scene: &Scene<f32>, basis: &OutlineBasis<f32>) -> Drawing<f32> {
 
 fn size() -> ImageSize {
     ImageSize::new(SIDE, SIDE).unwrap()
-}
-
-/// Share of the first object's area that lies in the image.
-fn visible_area(scene: &Scene<f32>, basis: &OutlineBasis<f32>) -> f32 {
-    let drawing = draw(scene, basis);
-    let inside = mask(drawing.outline(0)).iter().filter(|&&covered| covered).count();
-    let area = dvp_core::contour::signed_area(drawing.outline(0)).abs();
-    #[expect(clippy::cast_precision_loss, reason = "few pixels")]
-    let share = inside as f32 / (area * (SIDE * SIDE) as f32);
-    share
 }
 
 /// Pixels whose centers the outline encloses.

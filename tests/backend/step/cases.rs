@@ -1,5 +1,6 @@
 //! Cases of each step, away from where it has no derivative.
 
+use dvp::method::cast_scene;
 use dvp_core::diff_op::Atan2;
 use dvp_core::loss::{ImageLossOp, Pyramid, SceneLoss, SceneLossOp, Ssim};
 use dvp_core::render::{Compositing, ContourRenderer, EdgeProfile, ExactRenderer, PixelLoss, RenderLossOp, RenderOp};
@@ -8,7 +9,7 @@ use dvp_core::shape::{
     EfdModel, MixOp, NormalizeOp, OutlineBasis, OutlineOp, PrototypeBank, PrototypeModel, mdshr_bank,
 };
 use dvp_core::tensor::{Stride, Unfold};
-use dvp_core::{Efd, Image, ImageSize, Object, Pose, Real, Scene};
+use dvp_core::{Image, ImageSize, Real};
 use dvp_tests::strategy;
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -209,31 +210,12 @@ fn ssim() -> Cases {
         .boxed()
 }
 
-/// A scene in another number type.
-pub(crate) fn scene_of<T: Real>(scene: &Scene<f64>) -> Scene<T> {
-    let objects = scene.objects.iter().map(|object| {
-        let pose = Pose {
-            translation: object.pose.translation.map(T::of),
-            scale: T::of(object.pose.scale),
-            rotation: T::of(object.pose.rotation),
-        };
-        Object::of_efd(
-            pose,
-            object.color.map(T::of),
-            T::of(object.confidence),
-            Efd::new(object.efd.rows().iter().map(|row| row.map(T::of)).collect()),
-            object.prototype,
-        )
-    });
-    Scene { objects: objects.collect(), ..Scene::empty(scene.background.map(T::of)) }
-}
-
 fn scene_loss() -> Cases {
     let harmonics = 4;
     vec(strategy::scene(1..3, 4..5), batch())
         .prop_flat_map(move |truths| {
             step!(T => {
-                let truths = truths.iter().map(scene_of::<T>).collect();
+                let truths = truths.iter().map(cast_scene).collect();
                 SceneLossOp::new(SceneLoss::<T>::reference(12, harmonics).unwrap(), truths, 3, harmonics).unwrap()
             })
             .with_inputs(

@@ -52,7 +52,8 @@ fn proof() -> Result<(), i32> {
 
     let size = ImageSize::new(64, 64).map_err(|_| 6)?;
     let mut scene = Scene::empty([0.1_f32, 0.2, 0.3]);
-    scene.objects.push(Object::of_efd(Pose { translation: [0.5, 0.5], scale: 0.2, rotation: 0.3 }, [0.9, 0.5, 0.1], 1.0, efd, None));
+    let pose = Pose { translation: [0.5, 0.5], scale: 0.2, rotation: 0.3 };
+    scene.objects.push(Object::of_efd(pose, [0.9, 0.5, 0.1], 1.0, efd, None));
     let basis = OutlineBasis::new(64, 16).map_err(|_| 7)?;
     let mut drawing = Drawing::default();
     scene.draw(&basis, &mut drawing).map_err(|_| 8)?;

@@ -4,13 +4,13 @@ use std::fs;
 use std::path::Path;
 
 use dvp::format::{Place, SCENES_FILE, SceneJson, encode_png};
+use dvp::generate::spoil::{add_noise, blurred, jpeg};
 use dvp_core::Scene;
 use image::imageops::{FilterType, resize};
 use image::{DynamicImage, GrayImage, RgbImage};
 
 use super::drawn::{draw_enlarged, draw_with_labels};
 use super::random::{cropped, crowd, mds_hr, paint_mds_hr, twins};
-use super::spoil::{add_noise, blurred, jpeg};
 
 type Failure = Box<dyn core::error::Error>;
 

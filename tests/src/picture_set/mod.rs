@@ -1,5 +1,5 @@
 //! Pictures of our own that no renderer of ours drew: SVGs drawn by resvg with the label maps that go with them, random
-//! families, and what happens to pictures on their way (noise, blur, JPEG).
+//! families; the noise, blur and JPEG that happen to pictures on their way are those of `dvp::generate::spoil`.
 //!
 //! ```text
 //! tests/pictures/*/*.svg | random -> drawn -> spoil -> dvp fit -> dvp evaluate -> a table of cases
@@ -9,7 +9,6 @@
 //! |---|---|
 //! | `drawn.rs` | SVG to pixels and label map |
 //! | `random.rs` | crowds, MDS-HR, twins, cropped objects |
-//! | `spoil.rs` | noise, blur, JPEG |
 //! | `cases.rs` | the cases with their thresholds, written as data sets |
 //! | `score.rs` | fits and scores them |
 //!
@@ -24,10 +23,8 @@ mod cases;
 mod drawn;
 mod random;
 mod score;
-mod spoil;
 
 pub use cases::{CASES, Case, Finish, Source};
 pub use drawn::{Drawn, draw_enlarged, draw_with_labels};
 pub use random::{cropped, crowd, mds_hr, paint_mds_hr, twins};
 pub use score::{CaseScore, PictureScore, score_case, score_folder, table_head};
-pub use spoil::{add_noise, blurred, jpeg};

@@ -158,7 +158,7 @@ fn pull_back_object<T: Real>(grad: &ObjectGrad<T>, values: &[T], slot: &mut [T])
     slot[3..5].copy_from_slice(&pair);
     slot[5..POSE_AND_COLOR].copy_from_slice(&grad.color);
     if slot.len() > POSE_AND_COLOR {
-        slot[POSE_AND_COLOR..].copy_from_slice(&grad.numbers);
+        slot[POSE_AND_COLOR..].copy_from_slice(grad.efd_rows().as_flattened());
     }
 }
 

@@ -4,7 +4,7 @@ use anyhow::Result;
 use dvp_core::loss::{ImagePair, Loss};
 use dvp_core::metric::{Ownership, OwnershipRule, RandIndexScratch, adjusted_rand_index};
 use dvp_core::render::{ContourRenderer, PixelLoss};
-use dvp_core::{ImageSize, Scene};
+use dvp_core::{ImageSize, Scene, Shape as _};
 use dvp_fit::{Doubts, Fit, StopReason};
 
 use super::calibration::Stated;
@@ -170,7 +170,9 @@ fn is_finite(fit: &Fit<f32>) -> bool {
     let objects = fit.scene.objects.iter().flat_map(|object| {
         let pose = &object.pose;
         let pose = [pose.translation[0], pose.translation[1], pose.scale, pose.rotation, object.confidence];
-        pose.into_iter().chain(object.color()).chain(object.efd_rows().as_flattened().iter().copied())
+        let mut numbers = Vec::new();
+        object.shape.numbers(&mut numbers);
+        pose.into_iter().chain(object.color()).chain(numbers)
     });
     let covariance = fit.covariance.iter().flatten().copied();
     objects.chain(fit.scene.background).chain(covariance).all(f32::is_finite)
