@@ -93,9 +93,12 @@ impl<T: Real, const BACKWARD: bool> Cover<'_, T, BACKWARD> {
         record.edges.clear();
         record.edges.reserve(self.rings_px.vertices.len());
         for ring in self.rings_px.ranges() {
-            for from in ring.clone() {
-                let to = if from + 1 < ring.end { from + 1 } else { ring.start };
-                let (a, b) = (&self.rings_px.vertices[from], &self.rings_px.vertices[to]);
+            let first = ring.start;
+            let ring = &self.rings_px.vertices[ring];
+            for (from, a) in ring.iter().enumerate() {
+                let to = if from + 1 < ring.len() { from + 1 } else { 0 };
+                let b = &ring[to];
+                let (from, to) = (first + from, first + to);
                 let (a, b) = ([a[0] - origin[0], a[1] - origin[1]], [b[0] - origin[0], b[1] - origin[1]]);
                 let along = [b[0] - a[0], b[1] - a[1]];
                 let squared = along[0] * along[0] + along[1] * along[1];

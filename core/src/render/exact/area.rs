@@ -47,8 +47,14 @@ impl<T: Real> Kernel for Cover<'_, T> {
         record.prepare(rings_px.vertices, [window.left(), window.top], chunks * window.rows, window.rows, size);
         let ExactRecord { vertices, orientation, winding, carry, entry } = record;
         let mut sums = Accumulate { tile: &mut *tile, winding, carry, entry, chunks };
-        for (from, to) in orientation.edges(rings_px) {
-            for_each_piece(vertices[from], vertices[to], width, window.rows, &mut sums);
+        for (ring, reversed) in (Rings { vertices, ..rings_px }).iter().zip(orientation.reversed()) {
+            let Some(&last) = ring.last() else { continue };
+            let mut a = last;
+            for &b in ring {
+                let (from, to) = if reversed { (b, a) } else { (a, b) };
+                a = b;
+                for_each_piece(from, to, width, window.rows, &mut sums);
+            }
         }
         for (row, &entry) in entry.iter().enumerate() {
             let mut sum = entry;
@@ -133,7 +139,8 @@ fn even_odd<T: Real>(winding: T) -> T {
 /// that do not cross each other lie: winding from 0 to 1.
 #[inline(always)]
 pub(super) fn even_odd_slope<T: Real>(winding: T) -> T {
-    let tie = T::of(1e-5);
+    // What rounding leaves of a sum along a row.
+    let tie = T::of(100.0) * T::epsilon();
     let folded = winding - ((winding + T::one() - tie) * T::of(0.5)).floor() * T::of(2.0);
     if folded > -tie { T::one() } else { -T::one() }
 }

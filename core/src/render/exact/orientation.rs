@@ -55,10 +55,16 @@ impl<T: Real> Orientation<T> {
         }
     }
 
+    /// Per ring, whether it is walked against the order of its vertices.
+    #[inline(always)]
+    pub(super) fn reversed(&self) -> impl Iterator<Item = bool> {
+        self.reversed.iter().copied()
+    }
+
     /// The edges of the rings as indices of two vertices, in the directions that were found.
     #[inline(always)]
     pub(super) fn edges(&self, rings: Rings<'_, T>) -> impl Iterator<Item = (usize, usize)> {
-        rings.ranges().zip(&self.reversed).flat_map(|(ring, &reversed)| {
+        rings.ranges().zip(self.reversed()).flat_map(|(ring, reversed)| {
             let (start, end) = (ring.start, ring.end);
             ring.map(move |k| {
                 let next = if k + 1 == end { start } else { k + 1 };
