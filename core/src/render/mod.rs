@@ -51,12 +51,18 @@ pub enum PixelLoss {
     Mse,
 }
 
-/// Paints drawings.
+/// Paints drawings, as RGB on their background or as RGBA on nothing.
+///
+/// RGBA is planar and premultiplied, as [`RgbaImage`](crate::image::RgbaImage) is: red x alpha, green x alpha, blue x alpha,
+/// alpha. Where nothing covers a pixel it is transparent, all four are 0; the background of the drawing is not looked at and
+/// gets no gradient. [`RgbaImage::on`](crate::image::RgbaImage::on) a background is the RGB image on that background.
 pub trait Renderer<T: Real> {
     /// Memory kept between calls; after the first call of a size nothing is allocated.
     type Scratch: Default + Send;
 
     /// Paints `drawing` into planar `image` (3 x height x width).
+    ///
+    /// *Derivative*: [`Self::render_vjp`].
     ///
     /// # Errors
     /// [`RenderError`] if a number is not finite, a slice has the wrong length or a setting is out of range.
@@ -82,16 +88,45 @@ pub trait Renderer<T: Real> {
         grad: &mut DrawingGrad<T>,
     ) -> Result<(), RenderError>;
 
-    /// The pixel loss against `target`.
+    /// Paints `drawing` without its background into planar, premultiplied `image` (4 x height x width).
+    ///
+    /// *Derivative*: [`Self::render_rgba_vjp`].
+    ///
+    /// # Errors
+    /// As [`Self::render`].
+    fn render_rgba(
+        &self,
+        drawing: &Drawing<T>,
+        size: ImageSize,
+        scratch: &mut Self::Scratch,
+        image: &mut [T],
+    ) -> Result<(), RenderError>;
+
+    /// Adds to `grad` the gradient of sum(grad_image x image) with respect to the drawing, image as
+    /// [`Self::render_rgba`] paints it: with respect to the premultiplied values. Nothing is added for the background.
+    ///
+    /// # Errors
+    /// As [`Self::render`].
+    fn render_rgba_vjp(
+        &self,
+        drawing: &Drawing<T>,
+        size: ImageSize,
+        scratch: &mut Self::Scratch,
+        grad_image: &[T],
+        grad: &mut DrawingGrad<T>,
+    ) -> Result<(), RenderError>;
+
+    /// The pixel loss against `target`: an RGB image, or an RGBA image, whose four premultiplied channels are then compared
+    /// with those of [`Self::render_rgba`] and count alike.
     ///
     /// *Derivative*: [`Self::loss_and_grad`].
     ///
     /// # Errors
     /// As [`Self::render`].
-    fn loss(
+    fn loss<const N: usize>(
         &self,
         drawing: &Drawing<T>,
-        target: ImageView<'_, T>,
+        target: ImageView<'_, T, N>,
         loss: PixelLoss,
         scratch: &mut Self::Scratch,
     ) -> Result<T, RenderError>;
@@ -100,10 +135,10 @@ pub trait Renderer<T: Real> {
     ///
     /// # Errors
     /// As [`Self::render`].
-    fn loss_and_grad(
+    fn loss_and_grad<const N: usize>(
         &self,
         drawing: &Drawing<T>,
-        target: ImageView<'_, T>,
+        target: ImageView<'_, T, N>,
         loss: PixelLoss,
         scratch: &mut Self::Scratch,
         grad: &mut DrawingGrad<T>,

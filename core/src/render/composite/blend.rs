@@ -1,15 +1,15 @@
 //! A chunk of several objects under blend: with S = sum w p, the color is m = sum w p c / max(S, 1e-7), alpha is
-//! 1 - prod (1 - p f), the pixel b + alpha (m - b).
+//! 1 - prod (1 - p f), the pixel b + alpha (m - b). Where alpha is painted, it is that of the formula.
 
 use super::sink::PixelSink;
-use super::{Pass, Place};
+use super::{Pass, Place, ground};
 use crate::image::CHANNELS;
 use crate::real::Real;
 use crate::render::Compositing;
 use crate::render::tile::{LANES, Lanes};
 use crate::simd::lanes;
 
-impl<T: Real, S: PixelSink<T>> Pass<'_, '_, T, S> {
+impl<T: Real, S: PixelSink<T>, const N: usize> Pass<'_, '_, T, S, N> {
     /// Paints the chunk of `scratch.layers`.
     #[inline(always)]
     pub(super) fn blend(&mut self, place: Place) {
@@ -41,17 +41,24 @@ impl<T: Real, S: PixelSink<T>> Pass<'_, '_, T, S> {
         let (mut lift, mut pull) = ([zero; LANES], [zero; LANES]);
         let mut g = [[zero; LANES]; CHANNELS];
         for channel in 0..CHANNELS {
-            let b = drawing.background[channel];
+            let b = ground::<T, N>(drawing, channel);
             let m: Lanes<T> = lanes(|i| mean[channel][i] * share[i]);
             let values = lanes(|i| b + (one - clear[i]) * (m[i] - b));
             g[channel] = self.sink.chunk(channel, place, &values);
             if S::BACKWARD {
                 let g = &g[channel];
-                let background = &mut self.scratch.background[channel];
-                *background = lanes(|i| background[i] + g[i] * clear[i]);
+                if Self::OPAQUE {
+                    let background = &mut self.scratch.background[channel];
+                    *background = lanes(|i| background[i] + g[i] * clear[i]);
+                }
                 lift = lanes(|i| lift[i] + g[i] * (m[i] - b));
                 pull = lanes(|i| pull[i] + g[i] * m[i] * live[i]);
             }
+        }
+        if !Self::OPAQUE {
+            // The mean of ones, whether the guard acts or not.
+            let g = self.sink.chunk(CHANNELS, place, &lanes(|i| one - clear[i]));
+            lift = lanes(|i| lift[i] + g[i]);
         }
         if !S::BACKWARD {
             return;

@@ -9,10 +9,12 @@
 //! | `mod.rs` | [`Composition`], the walk, the spans |
 //! | `single.rs` | a chunk with one object in it |
 //! | `blend.rs`, `over.rs` | a chunk with several, for each way of mixing |
+//! | `channels.rs` | red, green, blue, and alpha where it is wanted |
 //! | `sink.rs` | what happens to pixels: stored, or compared with a target |
 //! | `scratch.rs` | sums per object, and their way into the gradient |
 
 mod blend;
+mod channels;
 mod over;
 mod scratch;
 mod single;
@@ -30,6 +32,7 @@ use crate::render::Compositing;
 use crate::render::tile::{ChunkState, LANES, Tile};
 use crate::scene::Drawing;
 use crate::simd::{Kernel, dispatch};
+use channels::{ground, tint};
 use sink::PixelSink;
 
 /// What there is to composite.
@@ -93,22 +96,22 @@ struct Span {
 }
 
 impl<'a, T: Real> Composition<'a, T> {
-    /// Paints into `sink` and returns its loss (0 if it has none). Backward sinks leave gradients in the tiles (coverage)
-    /// and in `scratch` (everything else).
-    pub(super) fn run<S: PixelSink<T>>(self, scratch: &mut CompositeScratch<T>, sink: S) -> T {
+    /// Paints `N` channels, RGB or premultiplied RGBA, into `sink` and returns its loss (0 if it has none). Backward sinks
+    /// leave gradients in the tiles (coverage) and in `scratch` (everything else).
+    pub(super) fn run<S: PixelSink<T>, const N: usize>(self, scratch: &mut CompositeScratch<T>, sink: S) -> T {
         scratch.reset(self.drawing, self.compositing, self.smallest_coverage);
-        dispatch(Pass { composition: self, scratch, sink })
+        dispatch(Pass::<T, S, N> { composition: self, scratch, sink })
     }
 }
 
 /// The walk, ready to be compiled per instruction set.
-struct Pass<'a, 's, T, S> {
+struct Pass<'a, 's, T, S, const N: usize> {
     composition: Composition<'a, T>,
     scratch: &'s mut CompositeScratch<T>,
     sink: S,
 }
 
-impl<T: Real, S: PixelSink<T>> Kernel for Pass<'_, '_, T, S> {
+impl<T: Real, S: PixelSink<T>, const N: usize> Kernel for Pass<'_, '_, T, S, N> {
     type Output = T;
 
     #[inline(always)]
@@ -152,7 +155,10 @@ impl<T: Real, S: PixelSink<T>> Kernel for Pass<'_, '_, T, S> {
     }
 }
 
-impl<T: Real, S: PixelSink<T>> Pass<'_, '_, T, S> {
+impl<T: Real, S: PixelSink<T>, const N: usize> Pass<'_, '_, T, S, N> {
+    /// Whether nothing is the background, not clear.
+    const OPAQUE: bool = N == CHANNELS;
+
     /// Lists the objects whose window holds the row.
     #[inline(always)]
     fn find_active(&mut self, row: usize) {
@@ -203,12 +209,14 @@ impl<T: Real, S: PixelSink<T>> Pass<'_, '_, T, S> {
             return;
         }
         let drawing = self.composition.drawing;
-        for channel in 0..CHANNELS {
-            let b = drawing.background[channel];
-            let value = span.object.map_or(b, |k| b + drawing.confidences[k] * (drawing.colors[k][channel] - b));
+        for channel in 0..N {
+            let b = ground::<T, N>(drawing, channel);
+            let value = span.object.map_or(b, |k| b + drawing.confidences[k] * (tint(drawing, k, channel) - b));
             let sum = self.sink.span(channel, span.start, span.len, value);
             if S::BACKWARD {
-                self.scratch.background[channel][0] += sum;
+                if Self::OPAQUE {
+                    self.scratch.background[channel][0] += sum;
+                }
                 if let Some(k) = span.object {
                     self.scratch.objects[k].covered[channel][0] += sum;
                 }

@@ -1,9 +1,9 @@
-//! Sums per object, and their way into the gradient of the drawing.
+//! Sums per object, and their way into the gradient of the drawing. There is room for alpha, used or not.
 
 use alloc::vec::Vec;
 
-use super::{Active, Layer};
-use crate::image::CHANNELS;
+use super::{Active, Layer, ground, tint};
+use crate::image::{CHANNELS, RGBA_CHANNELS};
 use crate::real::Real;
 use crate::render::Compositing;
 use crate::render::tile::{LANES, Lanes};
@@ -33,7 +33,7 @@ pub(super) struct Sums<T> {
     pub(super) plain: bool,
     /// Where the object is alone: sum of p g per channel. There pixel = b + p f (c - b), so that the gradient of c is
     /// f x this, that of f is this . (c - b), and that of b is sum g - f x this.
-    pub(super) covered: [Lanes<T>; CHANNELS],
+    pub(super) covered: [Lanes<T>; RGBA_CHANNELS],
     /// Elsewhere: the gradient of the color.
     pub(super) color: [Lanes<T>; CHANNELS],
     /// Elsewhere: the gradient of the confidence.
@@ -45,7 +45,7 @@ pub(super) struct Sums<T> {
 pub(super) struct Kept<T> {
     pub(super) coverage: Lanes<T>,
     /// What lies below: the product of 1 - p f of earlier layers (blend), or their color per channel (over).
-    pub(super) below: [Lanes<T>; CHANNELS],
+    pub(super) below: [Lanes<T>; RGBA_CHANNELS],
 }
 
 impl<T: Real> Default for CompositeScratch<T> {
@@ -78,24 +78,29 @@ impl<T: Real> CompositeScratch<T> {
         }
     }
 
-    /// Adds the gradient of background, colors and confidences.
-    pub(in crate::render) fn add_grad(&self, drawing: &Drawing<T>, grad: &mut DrawingGrad<T>) {
-        for channel in 0..CHANNELS {
-            grad.background[channel] += total(self.background[channel]);
+    /// Adds the gradient of background, colors and confidences from a pass over `N` channels. Images with alpha have no
+    /// background.
+    pub(in crate::render) fn add_grad<const N: usize>(&self, drawing: &Drawing<T>, grad: &mut DrawingGrad<T>) {
+        for (sum, &own) in grad.background.iter_mut().zip(&self.background) {
+            *sum += total(own);
         }
         for (k, sums) in self.objects.iter().enumerate() {
             let f = drawing.confidences[k];
             grad.confidences[k] += total(sums.confidence);
-            for channel in 0..CHANNELS {
+            for channel in 0..N {
                 let covered = total(sums.covered[channel]);
-                grad.background[channel] -= f * covered;
-                grad.colors[k][channel] += f * covered + total(sums.color[channel]);
-                grad.confidences[k] += (drawing.colors[k][channel] - drawing.background[channel]) * covered;
+                grad.confidences[k] += (tint(drawing, k, channel) - ground::<T, N>(drawing, channel)) * covered;
+                if channel < CHANNELS {
+                    grad.colors[k][channel] += f * covered + total(sums.color[channel]);
+                }
+                if N == CHANNELS {
+                    grad.background[channel] -= f * covered;
+                }
             }
         }
     }
 }
 
-fn zeros<T: Real>() -> [Lanes<T>; CHANNELS] {
-    [[T::zero(); LANES]; CHANNELS]
+fn zeros<T: Real, const N: usize>() -> [Lanes<T>; N] {
+    [[T::zero(); LANES]; N]
 }

@@ -1,13 +1,12 @@
 //! A chunk on the edge of one object: pixel = b + p f (c - b), whichever way objects mix.
 
 use super::sink::PixelSink;
-use super::{Pass, Place};
-use crate::image::CHANNELS;
+use super::{Pass, Place, ground, tint};
 use crate::real::Real;
 use crate::render::tile::LANES;
 use crate::simd::lanes;
 
-impl<T: Real, S: PixelSink<T>> Pass<'_, '_, T, S> {
+impl<T: Real, S: PixelSink<T>, const N: usize> Pass<'_, '_, T, S, N> {
     /// Paints chunk `chunk` of the tile of `object`.
     #[inline(always)]
     pub(super) fn edge(&mut self, place: Place, object: usize, chunk: usize) {
@@ -17,13 +16,15 @@ impl<T: Real, S: PixelSink<T>> Pass<'_, '_, T, S> {
         let p = tile.coverage[chunk];
         let sums = &mut self.scratch.objects[object].covered;
         let mut grad = [T::zero(); LANES];
-        for channel in 0..CHANNELS {
-            let b = drawing.background[channel];
-            let contrast = f * (drawing.colors[object][channel] - b);
+        for channel in 0..N {
+            let b = ground::<T, N>(drawing, channel);
+            let contrast = f * (tint(drawing, object, channel) - b);
             let g = self.sink.chunk(channel, place, &lanes(|i| b + p[i] * contrast));
             if S::BACKWARD {
-                let background = &mut self.scratch.background[channel];
-                *background = lanes(|i| background[i] + g[i]);
+                if Self::OPAQUE {
+                    let background = &mut self.scratch.background[channel];
+                    *background = lanes(|i| background[i] + g[i]);
+                }
                 sums[channel] = lanes(|i| sums[channel][i] + p[i] * g[i]);
                 grad = lanes(|i| grad[i] + g[i] * contrast);
             }

@@ -3,7 +3,6 @@
 use core::marker::PhantomData;
 
 use super::Place;
-use crate::image::CHANNELS;
 use crate::real::Real;
 use crate::render::tile::{LANES, Lanes};
 use crate::simd::{lanes, total};
@@ -26,6 +25,8 @@ pub(in crate::render) trait PixelSink<T: Real> {
 /// Stores the image.
 pub(in crate::render) struct Forward<'a, T> {
     pub(in crate::render) image: &'a mut [T],
+    /// Pixels of a plane.
+    pub(in crate::render) pixels: usize,
 }
 
 impl<T: Real> PixelSink<T> for Forward<'_, T> {
@@ -33,8 +34,7 @@ impl<T: Real> PixelSink<T> for Forward<'_, T> {
 
     #[inline(always)]
     fn chunk(&mut self, channel: usize, place: Place, values: &Lanes<T>) -> Lanes<T> {
-        let pixels = self.image.len() / CHANNELS;
-        let start = channel * pixels + place.start;
+        let start = channel * self.pixels + place.start;
         if place.len == LANES {
             self.image[start..start + LANES].copy_from_slice(values);
         } else {
@@ -45,7 +45,7 @@ impl<T: Real> PixelSink<T> for Forward<'_, T> {
 
     #[inline(always)]
     fn span(&mut self, channel: usize, start: usize, len: usize, value: T) -> T {
-        let start = channel * (self.image.len() / CHANNELS) + start;
+        let start = channel * self.pixels + start;
         self.image[start..start + len].fill(value);
         T::zero()
     }
@@ -59,6 +59,8 @@ impl<T: Real> PixelSink<T> for Forward<'_, T> {
 /// Pulls a given gradient of the image back.
 pub(in crate::render) struct Pull<'a, T> {
     pub(in crate::render) grad_image: &'a [T],
+    /// Pixels of a plane.
+    pub(in crate::render) pixels: usize,
 }
 
 impl<T: Real> PixelSink<T> for Pull<'_, T> {
@@ -66,12 +68,12 @@ impl<T: Real> PixelSink<T> for Pull<'_, T> {
 
     #[inline(always)]
     fn chunk(&mut self, channel: usize, place: Place, _: &Lanes<T>) -> Lanes<T> {
-        load(self.grad_image, channel, place, &[T::zero(); LANES])
+        load(self.grad_image, channel * self.pixels, place, &[T::zero(); LANES])
     }
 
     #[inline(always)]
     fn span(&mut self, channel: usize, start: usize, len: usize, _: T) -> T {
-        let start = channel * (self.grad_image.len() / CHANNELS) + start;
+        let start = channel * self.pixels + start;
         let mut sums = [T::zero(); LANES];
         let (blocks, rest) = self.grad_image[start..start + len].as_chunks::<LANES>();
         for block in blocks {
@@ -130,6 +132,8 @@ impl<T: Real> ValueLoss<T> for Mse {
 /// The mean of a loss per value against a target; with its gradient if `BACKWARD`.
 pub(in crate::render) struct Loss<'a, T, L, const BACKWARD: bool> {
     target: &'a [T],
+    /// Pixels of a plane.
+    pixels: usize,
     /// 1 / number of values.
     share: T,
     sum: f64,
@@ -138,10 +142,10 @@ pub(in crate::render) struct Loss<'a, T, L, const BACKWARD: bool> {
 }
 
 impl<'a, T: Real, L: ValueLoss<T>, const BACKWARD: bool> Loss<'a, T, L, BACKWARD> {
-    /// Against planar `target`.
-    pub(in crate::render) fn new(target: &'a [T]) -> Self {
+    /// Against planar `target` with planes of `pixels`.
+    pub(in crate::render) fn new(target: &'a [T], pixels: usize) -> Self {
         let share = T::one() / T::of_usize(target.len());
-        Self { target, share, sum: 0.0, lanes: [T::zero(); LANES], loss: PhantomData }
+        Self { target, pixels, share, sum: 0.0, lanes: [T::zero(); LANES], loss: PhantomData }
     }
 }
 
@@ -150,7 +154,7 @@ impl<T: Real, L: ValueLoss<T>, const BACKWARD: bool> PixelSink<T> for Loss<'_, T
 
     #[inline(always)]
     fn chunk(&mut self, channel: usize, place: Place, values: &Lanes<T>) -> Lanes<T> {
-        let target = load(self.target, channel, place, values);
+        let target = load(self.target, channel * self.pixels, place, values);
         let difference: Lanes<T> = lanes(|i| values[i] - target[i]);
         self.lanes = lanes(|i| self.lanes[i] + L::value(difference[i]));
         if BACKWARD { lanes(|i| L::slope(difference[i]) * self.share) } else { [T::zero(); LANES] }
@@ -158,7 +162,7 @@ impl<T: Real, L: ValueLoss<T>, const BACKWARD: bool> PixelSink<T> for Loss<'_, T
 
     #[inline(always)]
     fn span(&mut self, channel: usize, start: usize, len: usize, value: T) -> T {
-        let start = channel * (self.target.len() / CHANNELS) + start;
+        let start = channel * self.pixels + start;
         let (blocks, rest) = self.target[start..start + len].as_chunks::<LANES>();
         let (mut losses, mut slopes) = ([T::zero(); LANES], [T::zero(); LANES]);
         for block in blocks {
@@ -184,10 +188,10 @@ impl<T: Real, L: ValueLoss<T>, const BACKWARD: bool> PixelSink<T> for Loss<'_, T
     }
 }
 
-/// A chunk of a plane; lanes beyond its length are taken from `beyond`.
+/// A chunk of the plane that starts at `plane`; lanes beyond its length are taken from `beyond`.
 #[inline(always)]
-fn load<T: Real>(planes: &[T], channel: usize, place: Place, beyond: &Lanes<T>) -> Lanes<T> {
-    let start = channel * (planes.len() / CHANNELS) + place.start;
+fn load<T: Real>(planes: &[T], plane: usize, place: Place, beyond: &Lanes<T>) -> Lanes<T> {
+    let start = plane + place.start;
     let mut lanes = *beyond;
     if place.len == LANES {
         lanes.copy_from_slice(&planes[start..start + LANES]);

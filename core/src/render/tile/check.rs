@@ -1,7 +1,6 @@
 //! The checks at the border: nothing behind it meets a number that is not finite or a slice of the wrong length.
 
 use crate::dims::ImageSize;
-use crate::image::CHANNELS;
 use crate::real::Real;
 use crate::render::RenderError;
 use crate::scene::{Drawing, DrawingGrad};
@@ -41,9 +40,13 @@ pub(super) fn check_drawing<T: Real>(drawing: &Drawing<T>) -> Result<(), RenderE
     wild.map_or(Ok(()), |value| Err(RenderError::Setting { what: "confidence", value, must: "in [0, 1]" }))
 }
 
-/// Checks the length of planar image data.
-pub(super) fn check_image<T>(what: &'static str, data: &[T], size: ImageSize) -> Result<(), RenderError> {
-    check_length(what, CHANNELS * size.pixels(), data.len())
+/// Checks the length of planar image data of `N` channels.
+pub(super) fn check_image<T, const N: usize>(
+    what: &'static str,
+    data: &[T],
+    size: ImageSize,
+) -> Result<(), RenderError> {
+    check_length(what, N * size.pixels(), data.len())
 }
 
 /// Checks that image data is finite.

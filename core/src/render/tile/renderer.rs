@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use super::check::{check_drawing, check_finite, check_grad, check_image};
 use super::{CoverageModel, FARTHEST_PX, Tile, Window};
 use crate::dims::ImageSize;
-use crate::image::ImageView;
+use crate::image::{CHANNELS, ImageView, RGBA_CHANNELS};
 use crate::real::Real;
 use crate::render::composite::{CompositeScratch, Composition, Forward, Loss, Mae, Mse, Pull};
 use crate::render::{Compositing, PixelLoss, RenderError, Renderer};
@@ -83,8 +83,9 @@ impl<C> TileRenderer<C> {
         Ok(())
     }
 
-    /// Pulls the tiles' gradients back to the vertices and adds everything to `grad`.
-    fn pull_back<T: Real>(
+    /// Pulls the gradients that a pass over `N` channels left in the tiles back to the vertices, and adds everything to
+    /// `grad`.
+    fn pull_back<T: Real, const N: usize>(
         &self,
         drawing: &Drawing<T>,
         size: ImageSize,
@@ -94,7 +95,7 @@ impl<C> TileRenderer<C> {
         C: CoverageModel<T>,
     {
         let objects = drawing.object_count();
-        scratch.composite.add_grad(drawing, grad);
+        scratch.composite.add_grad::<N>(drawing, grad);
         scratch.grad_px.clear();
         scratch.grad_px.resize(drawing.vertices.len(), [T::zero(); 2]);
         for (k, (tile, record)) in scratch.tiles[..objects].iter_mut().zip(&mut scratch.records).enumerate() {
@@ -124,10 +125,10 @@ impl<C> TileRenderer<C> {
     }
 
     /// Paints the tiles against `target`; if `BACKWARD`, [`Self::pull_back`] is to follow.
-    fn compare<T: Real, const BACKWARD: bool>(
+    fn compare<T: Real, const N: usize, const BACKWARD: bool>(
         &self,
         drawing: &Drawing<T>,
-        target: ImageView<'_, T>,
+        target: ImageView<'_, T, N>,
         loss: PixelLoss,
         scratch: &mut TileScratch<T, C::Record>,
     ) -> T
@@ -135,11 +136,51 @@ impl<C> TileRenderer<C> {
         C: CoverageModel<T>,
     {
         let composition = self.composition(drawing, target.size(), &mut scratch.tiles[..drawing.object_count()]);
-        let (target, scratch) = (target.data(), &mut scratch.composite);
+        let (target, pixels, scratch) = (target.data(), target.size().pixels(), &mut scratch.composite);
         match loss {
-            PixelLoss::Mae => composition.run(scratch, Loss::<T, Mae, BACKWARD>::new(target)),
-            PixelLoss::Mse => composition.run(scratch, Loss::<T, Mse, BACKWARD>::new(target)),
+            PixelLoss::Mae => composition.run::<_, N>(scratch, Loss::<T, Mae, BACKWARD>::new(target, pixels)),
+            PixelLoss::Mse => composition.run::<_, N>(scratch, Loss::<T, Mse, BACKWARD>::new(target, pixels)),
         }
+    }
+
+    /// Paints `N` channels.
+    fn paint<T: Real, const N: usize>(
+        &self,
+        drawing: &Drawing<T>,
+        size: ImageSize,
+        scratch: &mut TileScratch<T, C::Record>,
+        image: &mut [T],
+    ) -> Result<(), RenderError>
+    where
+        C: CoverageModel<T>,
+    {
+        check_image::<T, N>("image", image, size)?;
+        self.cover_all(drawing, size, scratch, false)?;
+        let composition = self.composition(drawing, size, &mut scratch.tiles[..drawing.object_count()]);
+        composition.run::<_, N>(&mut scratch.composite, Forward { image, pixels: size.pixels() });
+        Ok(())
+    }
+
+    /// The way back of [`Self::paint`].
+    fn paint_vjp<T: Real, const N: usize>(
+        &self,
+        drawing: &Drawing<T>,
+        size: ImageSize,
+        scratch: &mut TileScratch<T, C::Record>,
+        grad_image: &[T],
+        grad: &mut DrawingGrad<T>,
+    ) -> Result<(), RenderError>
+    where
+        C: CoverageModel<T>,
+    {
+        check_image::<T, N>("grad_image", grad_image, size)?;
+        check_finite("grad_image", grad_image)?;
+        check_grad(drawing, grad)?;
+        self.cover_all(drawing, size, scratch, true)?;
+        let composition = self.composition(drawing, size, &mut scratch.tiles[..drawing.object_count()]);
+        composition.run::<_, N>(&mut scratch.composite, Pull { grad_image, pixels: size.pixels() });
+        self.pull_back::<T, N>(drawing, size, scratch, grad);
+        Ok(())
     }
 }
 
@@ -153,11 +194,17 @@ impl<T: Real, C: CoverageModel<T>> Renderer<T> for TileRenderer<C> {
         scratch: &mut Self::Scratch,
         image: &mut [T],
     ) -> Result<(), RenderError> {
-        check_image("image", image, size)?;
-        self.cover_all(drawing, size, scratch, false)?;
-        let composition = self.composition(drawing, size, &mut scratch.tiles[..drawing.object_count()]);
-        composition.run(&mut scratch.composite, Forward { image });
-        Ok(())
+        self.paint::<T, CHANNELS>(drawing, size, scratch, image)
+    }
+
+    fn render_rgba(
+        &self,
+        drawing: &Drawing<T>,
+        size: ImageSize,
+        scratch: &mut Self::Scratch,
+        image: &mut [T],
+    ) -> Result<(), RenderError> {
+        self.paint::<T, RGBA_CHANNELS>(drawing, size, scratch, image)
     }
 
     fn render_vjp(
@@ -168,31 +215,35 @@ impl<T: Real, C: CoverageModel<T>> Renderer<T> for TileRenderer<C> {
         grad_image: &[T],
         grad: &mut DrawingGrad<T>,
     ) -> Result<(), RenderError> {
-        check_image("grad_image", grad_image, size)?;
-        check_finite("grad_image", grad_image)?;
-        check_grad(drawing, grad)?;
-        self.cover_all(drawing, size, scratch, true)?;
-        let composition = self.composition(drawing, size, &mut scratch.tiles[..drawing.object_count()]);
-        composition.run(&mut scratch.composite, Pull { grad_image });
-        self.pull_back(drawing, size, scratch, grad);
-        Ok(())
+        self.paint_vjp::<T, CHANNELS>(drawing, size, scratch, grad_image, grad)
     }
 
-    fn loss(
+    fn render_rgba_vjp(
         &self,
         drawing: &Drawing<T>,
-        target: ImageView<'_, T>,
+        size: ImageSize,
+        scratch: &mut Self::Scratch,
+        grad_image: &[T],
+        grad: &mut DrawingGrad<T>,
+    ) -> Result<(), RenderError> {
+        self.paint_vjp::<T, RGBA_CHANNELS>(drawing, size, scratch, grad_image, grad)
+    }
+
+    fn loss<const N: usize>(
+        &self,
+        drawing: &Drawing<T>,
+        target: ImageView<'_, T, N>,
         loss: PixelLoss,
         scratch: &mut Self::Scratch,
     ) -> Result<T, RenderError> {
         self.cover_all(drawing, target.size(), scratch, false)?;
-        Ok(self.compare::<T, false>(drawing, target, loss, scratch))
+        Ok(self.compare::<T, N, false>(drawing, target, loss, scratch))
     }
 
-    fn loss_and_grad(
+    fn loss_and_grad<const N: usize>(
         &self,
         drawing: &Drawing<T>,
-        target: ImageView<'_, T>,
+        target: ImageView<'_, T, N>,
         loss: PixelLoss,
         scratch: &mut Self::Scratch,
         grad: &mut DrawingGrad<T>,
@@ -200,8 +251,8 @@ impl<T: Real, C: CoverageModel<T>> Renderer<T> for TileRenderer<C> {
         check_grad(drawing, grad)?;
         let size = target.size();
         self.cover_all(drawing, size, scratch, true)?;
-        let value = self.compare::<T, true>(drawing, target, loss, scratch);
-        self.pull_back(drawing, size, scratch, grad);
+        let value = self.compare::<T, N, true>(drawing, target, loss, scratch);
+        self.pull_back::<T, N>(drawing, size, scratch, grad);
         Ok(value)
     }
 }

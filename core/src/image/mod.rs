@@ -1,7 +1,17 @@
-//! RGB images, planar: all of red, then green, then blue, each row by row from the top.
+//! Images, planar: all of red, then green, then blue, each row by row from the top; those with alpha have it as a fourth
+//! plane.
 //!
 //! Planes are what vector units, losses and networks read; [`Image::from_interleaved`] and [`Image::to_interleaved`]
 //! convert from and to the r, g, b, r, g, b order of files.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `mod.rs` | RGB: [`Image`], [`ImageView`] |
+//! | `rgba.rs` | RGBA, premultiplied: [`RgbaImage`], [`RgbaView`] |
+
+mod rgba;
+#[cfg(test)]
+mod tests;
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -11,12 +21,16 @@ use crate::dims::ImageSize;
 use crate::real::Real;
 use crate::simd;
 
+pub use rgba::{RGBA_CHANNELS, RgbaImage, RgbaView};
+
 /// Color channels of every image.
 pub const CHANNELS: usize = 3;
 
-/// An owned RGB image; every value finite, \[0, 1\] by convention.
+/// An owned image, RGB unless `N` says otherwise; every value finite, \[0, 1\] by convention.
+///
+/// There are images of 3 channels, RGB, and of [`RGBA_CHANNELS`], see [`RgbaImage`].
 #[derive(Clone, Debug, PartialEq)]
-pub struct Image<T> {
+pub struct Image<T, const N: usize = CHANNELS> {
     size: ImageSize,
     data: Vec<T>,
 }
@@ -58,10 +72,12 @@ impl<T: Real> Image<T> {
         let pixels = self.size.pixels();
         (0..pixels).flat_map(|i| (0..CHANNELS).map(move |c| (c, i))).map(|(c, i)| self.data[c * pixels + i]).collect()
     }
+}
 
+impl<T: Real, const N: usize> Image<T, N> {
     /// A checked view of the whole image.
     #[must_use]
-    pub fn view(&self) -> ImageView<'_, T> {
+    pub fn view(&self) -> ImageView<'_, T, N> {
         ImageView { size: self.size, data: &self.data }
     }
 
@@ -71,7 +87,7 @@ impl<T: Real> Image<T> {
         self.size
     }
 
-    /// Planar data, 3 x height x width.
+    /// Planar data, channels x height x width.
     #[must_use]
     pub fn data(&self) -> &[T] {
         &self.data
@@ -84,9 +100,9 @@ impl<T: Real> Image<T> {
     }
 }
 
-/// A borrowed RGB image, planar, all values finite when made by [`ImageView::new`].
+/// A borrowed image, RGB unless `N` says otherwise, planar, all values finite when made.
 #[derive(Clone, Copy, Debug)]
-pub struct ImageView<'a, T> {
+pub struct ImageView<'a, T, const N: usize = CHANNELS> {
     size: ImageSize,
     data: &'a [T],
 }
@@ -97,39 +113,7 @@ impl<'a, T: Real> ImageView<'a, T> {
     /// # Errors
     /// [`ImageError`] if the length is not 3 x pixels or a value is not finite.
     pub fn new(size: ImageSize, data: &'a [T]) -> Result<Self, ImageError> {
-        let expected = size.pixels() * CHANNELS;
-        if data.len() != expected {
-            return Err(ImageError::Length { expected, len: data.len() });
-        }
-        // A sum is finite only if all of it are: one pass that vectorizes. One that overflowed is looked through as well.
-        if !simd::sum(data).is_finite()
-            && let Some(index) = data.iter().position(|v| !v.is_finite())
-        {
-            return Err(ImageError::NotFinite { index });
-        }
-        Ok(Self { size, data })
-    }
-
-    /// Width and height.
-    #[must_use]
-    pub fn size(&self) -> ImageSize {
-        self.size
-    }
-
-    /// Planar data, 3 x height x width.
-    #[must_use]
-    pub fn data(&self) -> &'a [T] {
-        self.data
-    }
-
-    /// One channel (0 red, 1 green, 2 blue), height x width.
-    ///
-    /// # Panics
-    /// If `channel` is above 2.
-    #[must_use]
-    pub fn channel(&self, channel: usize) -> &'a [T] {
-        let pixels = self.size.pixels();
-        &self.data[channel * pixels..(channel + 1) * pixels]
+        Self::checked(size, data)
     }
 
     /// The color of the pixel with index row x width + column.
@@ -144,13 +128,56 @@ impl<'a, T: Real> ImageView<'a, T> {
     }
 }
 
+impl<'a, T: Real, const N: usize> ImageView<'a, T, N> {
+    fn checked(size: ImageSize, data: &'a [T]) -> Result<Self, ImageError> {
+        check(size.pixels() * N, data)?;
+        Ok(Self { size, data })
+    }
+
+    /// Width and height.
+    #[must_use]
+    pub fn size(&self) -> ImageSize {
+        self.size
+    }
+
+    /// Planar data, channels x height x width.
+    #[must_use]
+    pub fn data(&self) -> &'a [T] {
+        self.data
+    }
+
+    /// One channel (0 red, 1 green, 2 blue, 3 alpha), height x width.
+    ///
+    /// # Panics
+    /// If there is no such channel.
+    #[must_use]
+    pub fn channel(&self, channel: usize) -> &'a [T] {
+        let pixels = self.size.pixels();
+        &self.data[channel * pixels..(channel + 1) * pixels]
+    }
+}
+
+/// Checks length and values of image data.
+fn check<T: Real>(expected: usize, data: &[T]) -> Result<(), ImageError> {
+    if data.len() != expected {
+        return Err(ImageError::Length { expected, len: data.len() });
+    }
+    // A sum is finite only if all of it are: one pass that vectorizes. One that overflowed is looked through as well.
+    if !simd::sum(data).is_finite()
+        && let Some(index) = data.iter().position(|v| !v.is_finite())
+    {
+        return Err(ImageError::NotFinite { index });
+    }
+    Ok(())
+}
+
 /// Why a slice is no image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ImageError {
     /// The slice has the wrong length.
     Length {
-        /// 3 x width x height.
+        /// Channels x width x height.
         expected: usize,
         /// What came.
         len: usize,
@@ -166,7 +193,7 @@ impl fmt::Display for ImageError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Length { expected, len } => {
-                write!(f, "image data has {len} values, needs {expected} (3 x width x height)")
+                write!(f, "image data has {len} values, needs {expected} (channels x width x height)")
             }
             Self::NotFinite { index } => {
                 write!(f, "image value {index} is NaN or infinite; replace it before the call")
