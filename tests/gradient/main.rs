@@ -6,6 +6,7 @@ mod hard;
 mod loss;
 mod optim;
 mod render_contour;
+mod rings;
 mod scene;
 mod shape;
 mod shape_model;

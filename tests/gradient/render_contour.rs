@@ -57,7 +57,7 @@ fn cotangent() -> impl Strategy<Value = Vec<f64>> {
     prop::collection::vec(-1.0..1.0, 3 * 27 * 22)
 }
 
-fn flat(drawing: &Drawing<f64>) -> Vec<f64> {
+pub(crate) fn flat(drawing: &Drawing<f64>) -> Vec<f64> {
     let mut x = drawing.background.to_vec();
     x.extend(drawing.vertices.as_flattened());
     x.extend(drawing.colors.as_flattened());
@@ -65,7 +65,7 @@ fn flat(drawing: &Drawing<f64>) -> Vec<f64> {
     x
 }
 
-fn flat_grad(grad: &DrawingGrad<f64>) -> Vec<f64> {
+pub(crate) fn flat_grad(grad: &DrawingGrad<f64>) -> Vec<f64> {
     let mut x = grad.background.to_vec();
     x.extend(grad.vertices.as_flattened());
     x.extend(grad.colors.as_flattened());
@@ -73,7 +73,7 @@ fn flat_grad(grad: &DrawingGrad<f64>) -> Vec<f64> {
     x
 }
 
-fn unflat(x: &[f64], like: &Drawing<f64>) -> Drawing<f64> {
+pub(crate) fn unflat(x: &[f64], like: &Drawing<f64>) -> Drawing<f64> {
     let (background, x) = x.split_at(3);
     let (vertices, x) = x.split_at(2 * like.vertices.len());
     let (colors, confidences) = x.split_at(3 * like.colors.len());

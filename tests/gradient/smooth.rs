@@ -8,6 +8,7 @@
 #![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
 
 use dvp_core::render::{ContourRenderer, EdgeLaw};
+use dvp_core::shape::Rings;
 use dvp_core::{Drawing, ImageSize};
 use dvp_tests::finite_difference::step;
 
@@ -34,8 +35,8 @@ pub(crate) fn smooth(renderer: &ContourRenderer<f64>, drawing: &Drawing<f64>, si
     let mut smooth = vec![true; size.pixels()];
     for object in 0..drawing.object_count() {
         let mut alone = Drawing::default();
-        let outline = &drawing.vertices[drawing.starts[object]..drawing.starts[object + 1]];
-        alone.push(outline, drawing.colors[object], drawing.confidences[object]);
+        let outline = drawing.outline(object);
+        alone.push_rings(drawing.rings(object), drawing.colors[object], drawing.confidences[object]);
         let here = followed(renderer, &alone, size);
         for (smooth, &(_, bends)) in smooth.iter_mut().zip(&here) {
             *smooth &= !bends;
@@ -68,18 +69,21 @@ fn followed(renderer: &ContourRenderer<f64>, drawing: &Drawing<f64>, size: Image
             return (Follows::Full, false);
         }
         let center = [i % size.width(), i / size.width()].map(|k| (k as f64 + 0.5) / unit);
-        let (follows, distance) = closest(&drawing.vertices, center);
+        let (follows, distance) = closest(drawing.rings(0), center);
         (follows, bends(distance) && matches!(follows, Follows::Vertex(_)))
     };
     coverage.iter().enumerate().map(pixel).collect()
 }
 
-/// The closest part of a closed outline, and how far it is.
-fn closest(outline: &[[f64; 2]], [x, y]: [f64; 2]) -> (Follows, f64) {
+/// The closest part of closed rings, and how far it is.
+fn closest(rings: Rings<'_, f64>, [x, y]: [f64; 2]) -> (Follows, f64) {
     let mut least = (Follows::Beyond, f64::INFINITY);
-    for (from, a) in outline.iter().enumerate() {
-        let to = (from + 1) % outline.len();
-        let along = [outline[to][0] - a[0], outline[to][1] - a[1]];
+    let edges = rings
+        .ranges()
+        .flat_map(|ring| ring.clone().map(move |k| (k, if k + 1 < ring.end { k + 1 } else { ring.start })));
+    for (from, to) in edges {
+        let (a, b) = (rings.vertices[from], rings.vertices[to]);
+        let along = [b[0] - a[0], b[1] - a[1]];
         let away = [x - a[0], y - a[1]];
         let position = (away[0] * along[0] + away[1] * along[1]) / (along[0] * along[0] + along[1] * along[1]);
         let (follows, u) = if position <= 0.0 {

@@ -14,6 +14,8 @@ mod optim;
 mod prototypes;
 mod refine;
 mod render_contour;
+mod rgba;
+mod rings;
 mod scene;
 mod shape;
 mod split;

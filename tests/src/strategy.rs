@@ -3,7 +3,7 @@
 use core::f64::consts::PI;
 use core::ops::Range;
 
-use dvp_core::shape::OutlineBasis;
+use dvp_core::shape::{Outline, OutlineBasis};
 use dvp_core::{Efd, Object, Pose, Scene};
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -106,4 +106,51 @@ pub fn outline(efd: &Efd<f64>, vertex_count: usize) -> Vec<[f64; 2]> {
     let written = OutlineBasis::new(vertex_count, efd.harmonic_count().max(1))
         .and_then(|basis| basis.outline(efd.rows(), &mut outline));
     if written.is_ok() { outline } else { Vec::new() }
+}
+
+/// One to four rings, each inside of the one before and not touching it, as thin as 1/50 of their size, in pixels, wholly
+/// inside of an image of 24 x 24; any direction and first vertex.
+pub fn nested_rings_px() -> impl Strategy<Value = Vec<Vec<[f64; 2]>>> {
+    let inner = (0.3..0.98, any::<bool>(), any::<prop::sample::Index>());
+    (star_polygon(4..25), 2.0..8.0, prop::array::uniform2(9.0..15.0), vec(inner, 1..5)).prop_map(
+        |(star, radius, center, rings)| {
+            let mut size: f64 = radius;
+            let ring = |(factor, reversed, start): (f64, bool, prop::sample::Index)| {
+                // From four rays on the center lies inside, and a star is seen whole from there: a smaller one is inside of it.
+                let mut ring: Vec<_> = star.iter().map(|[x, y]| [size * x + center[0], size * y + center[1]]).collect();
+                size *= factor;
+                ring.rotate_left(start.index(star.len()));
+                if reversed {
+                    ring.reverse();
+                }
+                ring
+            };
+            rings.into_iter().map(ring).collect()
+        },
+    )
+}
+
+/// Objects of several rings around an image of 24 x 24, in pixels: nested ones and others that may cross them.
+pub fn rings_px() -> impl Strategy<Value = Outline<f64>> {
+    let shifted = |star: Vec<[f64; 2]>, [dx, dy]: [f64; 2]| star.iter().map(|[x, y]| [x + dx, y + dy]).collect();
+    let other = (star_px(), prop::array::uniform2(-9.0..9.0)).prop_map(move |(star, shift)| shifted(star, shift));
+    (nested_rings_px(), vec(other, 0..3)).prop_map(|(nested, others)| outline_of(nested.into_iter().chain(others)))
+}
+
+/// Rings that nobody should draw: those of [`wild_outline`], cut anywhere, so that rings may have any number of vertices.
+pub fn wild_rings() -> impl Strategy<Value = Outline<f64>> {
+    (wild_outline(), vec(any::<prop::sample::Index>(), 0..5)).prop_map(|(vertices, breaks)| {
+        let mut breaks: Vec<usize> = breaks.iter().map(|at| at.index(vertices.len() + 1)).collect();
+        breaks.sort_unstable();
+        Outline { vertices, breaks }
+    })
+}
+
+/// Rings as one outline.
+pub fn outline_of(rings: impl IntoIterator<Item = Vec<[f64; 2]>>) -> Outline<f64> {
+    let mut outline = Outline::default();
+    for ring in rings {
+        outline.push_ring(ring);
+    }
+    outline
 }
