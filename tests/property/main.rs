@@ -17,6 +17,7 @@ mod render_contour;
 mod rgba;
 mod rings;
 mod scene;
+mod scene_refine;
 mod shape;
 mod split;
 mod symmetry;

@@ -25,6 +25,7 @@ pub mod parameters;
 pub mod prototypes;
 pub mod rand_opt_p;
 pub mod refine;
+pub mod scene_refine;
 
 mod block_code;
 mod buys;
@@ -40,6 +41,7 @@ mod price;
 mod residual;
 mod segment;
 mod split;
+mod split_mix;
 #[cfg(test)]
 mod tests;
 mod verdict;

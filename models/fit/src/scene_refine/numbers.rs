@@ -1,0 +1,115 @@
+//! All numbers of a scene that may move, as one vector, and back.
+
+use alloc::vec::Vec;
+
+use dvp_core::shape::{Shape as _, ShapeError};
+use dvp_core::{Object, Real, Scene, SceneGrad};
+
+/// Writes the numbers of `scene` that may move to `values`.
+///
+/// Background unless there is none; per object what of its pose its shape does not say itself, the numbers of its shape
+/// unless they are given from outside, its color, and its confidence where it is an opacity: neither 0 nor 1.
+pub(super) fn load<T: Real>(scene: &Scene<T>, values: &mut Vec<T>) {
+    values.clear();
+    if !scene.transparent {
+        values.extend(scene.background);
+    }
+    for object in &scene.objects {
+        let (pose, free) = (object.pose, object.shape.pose_freedom());
+        values.extend(pose.translation.iter().filter(|_| free.translation));
+        values.extend(free.scale.then_some(pose.scale));
+        values.extend(free.rotation.then_some(pose.rotation));
+        if !object.shape.is_given() {
+            object.shape.numbers(values);
+        }
+        values.extend(object.color());
+        values.extend(is_opacity(object).then_some(object.confidence));
+    }
+}
+
+/// Writes the range of each number to `bounds`, in the order of [`load`]: colors and opacities lie in \[0, 1\], scales are
+/// not negative.
+pub(super) fn bounds<T: Real>(scene: &Scene<T>, bounds: &mut Vec<[T; 2]>) {
+    let (zero, one) = (T::zero(), T::one());
+    let (anything, unit) = ([T::neg_infinity(), T::infinity()], [zero, one]);
+    bounds.clear();
+    if !scene.transparent {
+        bounds.extend([unit; 3]);
+    }
+    for object in &scene.objects {
+        let free = object.shape.pose_freedom();
+        bounds.extend([anything; 2].into_iter().filter(|_| free.translation));
+        bounds.extend(free.scale.then_some([zero, T::infinity()]));
+        bounds.extend(free.rotation.then_some(anything));
+        if !object.shape.is_given() {
+            bounds.extend((0..object.shape.number_count()).map(|_| anything));
+        }
+        bounds.extend([unit; 3]);
+        bounds.extend(is_opacity(object).then_some(unit));
+    }
+}
+
+/// Writes the gradient of each number to `values`, in the order of [`load`].
+pub(super) fn load_grad<T: Real>(scene: &Scene<T>, grad: &SceneGrad<T>, values: &mut Vec<T>) {
+    values.clear();
+    if !scene.transparent {
+        values.extend(grad.background);
+    }
+    for (object, grad) in scene.objects.iter().zip(&grad.objects) {
+        let free = object.shape.pose_freedom();
+        values.extend(grad.translation.iter().filter(|_| free.translation));
+        values.extend(free.scale.then_some(grad.scale));
+        values.extend(free.rotation.then_some(grad.rotation));
+        if !object.shape.is_given() {
+            values.extend_from_slice(&grad.numbers);
+        }
+        values.extend(grad.color);
+        values.extend(is_opacity(object).then_some(grad.confidence));
+    }
+}
+
+/// Writes `values`, in the order of [`load`], to a scene of the same structure. `start` tells which confidences are
+/// opacities.
+///
+/// # Errors
+/// [`ShapeError`] if a shape refuses its numbers.
+pub(super) fn store<T: Real>(values: &[T], start: &Scene<T>, scene: &mut Scene<T>) -> Result<(), ShapeError> {
+    let mut rest = values.iter().copied();
+    let mut take = |place: &mut T| {
+        if let Some(value) = rest.next() {
+            *place = value;
+        }
+    };
+    if !scene.transparent {
+        scene.background.iter_mut().for_each(&mut take);
+    }
+    let mut numbers = Vec::new();
+    for (object, before) in scene.objects.iter_mut().zip(&start.objects) {
+        let free = object.shape.pose_freedom();
+        if free.translation {
+            object.pose.translation.iter_mut().for_each(&mut take);
+        }
+        if free.scale {
+            take(&mut object.pose.scale);
+        }
+        if free.rotation {
+            take(&mut object.pose.rotation);
+        }
+        if !object.shape.is_given() {
+            numbers.clear();
+            object.shape.numbers(&mut numbers);
+            numbers.iter_mut().for_each(&mut take);
+            object.shape.set_numbers(&numbers)?;
+        }
+        object.color_mut().iter_mut().for_each(&mut take);
+        if is_opacity(before) {
+            take(&mut object.confidence);
+        }
+    }
+    Ok(())
+}
+
+/// Whether a confidence says how opaque an object is, not whether it is there.
+fn is_opacity<T: Real>(object: &Object<T>) -> bool {
+    object.confidence > T::zero() && object.confidence < T::one()
+}
