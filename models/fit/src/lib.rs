@@ -13,6 +13,7 @@
 //! | `fitter` | all of it | a [`Fit`] |
 //! | [`prototypes`] | fits without a bank | the few shapes they share, a [`Bank`] |
 //! | [`refine`] | an image, a start | a [`Fit`] by Levenberg-Marquardt |
+//! | [`scene_refine`] | an image, a drawing near it | the drawing with every number refined |
 //! | [`opt_p`], [`opt_iter`], [`rand_opt_p`] | an image, for OptP and Rand-OptP a start | a [`Fit`] by the paper's Adam |
 #![no_std]
 
