@@ -104,7 +104,7 @@ fn every_method_runs_and_the_number_of_threads_changes_nothing() {
 }
 
 #[test]
-fn what_is_hidden_and_what_objects_buy_is_said() {
+fn what_is_hidden_and_marginal_gains_are_said() {
     let folder = tempfile::tempdir().unwrap();
     let svg = concat!(
         r#"<svg xmlns="http://www.w3.org/2000/svg" width="128" height="128">"#,
@@ -122,9 +122,10 @@ fn what_is_hidden_and_what_objects_buy_is_said() {
     let hidden = found["ambiguity"].as_array().unwrap().iter().find(|open| open["kind"] == "hidden").unwrap();
     assert_eq!((&hidden["by"], &hidden["order"]), (&Value::from("rotation"), &Value::from(0)));
     assert!((hidden["share"].as_f64().unwrap() - 0.5).abs() < 0.03, "{hidden}");
-    let buys: Vec<f64> = found["buys"].as_array().unwrap().iter().map(|value| value.as_f64().unwrap()).collect();
+    let gains: Vec<f64> =
+        found["marginal_gain"].as_array().unwrap().iter().map(|value| value.as_f64().unwrap()).collect();
     // The square is darker and larger than what is seen of the disk, which is painted first.
-    assert!(buys.len() == 2 && buys[1] > buys[0] && buys[0] > 0.1, "{buys:?}");
+    assert!(gains.len() == 2 && gains[1] > gains[0] && gains[0] > 0.1, "{gains:?}");
     assert_eq!(found["ranking"], serde_json::json!([1, 0]));
     assert!(said["summary"]["unexplained"].as_f64().unwrap() < 0.01);
     let table = dvp_done(arguments);

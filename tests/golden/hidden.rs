@@ -190,7 +190,7 @@ fn hidden_parts_are_completed() {
 }
 
 /// A large disk, a small one on it of nearly the color of the background, a square beside, a faint dot.
-const BOUGHT: &str = concat!(
+const NESTED: &str = concat!(
     r#"<svg xmlns="http://www.w3.org/2000/svg" width="128" height="128">"#,
     r##"<rect width="128" height="128" fill="#f0f0f0"/><circle cx="50" cy="60" r="36" fill="#202020"/>"##,
     r##"<circle cx="50" cy="60" r="14" fill="#e0e8f0"/><rect x="96" y="20" width="20" height="20" fill="#c04040"/>"##,
@@ -198,10 +198,10 @@ const BOUGHT: &str = concat!(
 );
 
 #[test]
-fn each_object_says_what_it_buys() {
-    let image = draw_svg(BOUGHT).unwrap();
+fn each_object_states_its_marginal_gain() {
+    let image = draw_svg(NESTED).unwrap();
     let fit = fit_image(image.view(), &FitOptions::default()).unwrap();
-    assert_eq!((fit.scene.objects.len(), fit.buys.len()), (4, 4));
+    assert_eq!((fit.scene.objects.len(), fit.marginal_gain.len()), (4, 4));
     // Without an object its pixels show what is behind it: count times squared difference, over the variance.
     let view = image.view();
     let pixels = f64::of_usize(view.size().pixels());
@@ -227,15 +227,15 @@ fn each_object_says_what_it_buys() {
     for (&object, (color, squares)) in ranking.iter().zip(expected) {
         let found = fit.scene.objects[object].color().map(|v| v * 255.0);
         assert!((0..3).all(|c| (found[c] - f64::from(color[c])).abs() < 4.0), "{found:?} in place of {color:?}");
-        let (bought, expected) = (fit.buys[object], squares / variance);
+        let (gain, expected) = (fit.marginal_gain[object], squares / variance);
         // Pixels at the rim count in whole or not at all: the smaller the object, the more of it is rim.
-        assert!((bought / expected - 1.0).abs() < 0.08, "{bought} in place of {expected}");
+        assert!((gain / expected - 1.0).abs() < 0.08, "{gain} in place of {expected}");
     }
 }
 
 #[test]
-fn too_many_objects_are_cut_to_those_that_buy_most() {
-    let image = draw_svg(BOUGHT).unwrap();
+fn too_many_objects_are_cut_to_those_of_the_largest_marginal_gain() {
+    let image = draw_svg(NESTED).unwrap();
     let mut left = 1.0;
     for max_objects in 1..=4 {
         let fit = fit_image(image.view(), &FitOptions { max_objects, ..FitOptions::default() }).unwrap();

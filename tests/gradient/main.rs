@@ -1,5 +1,6 @@
 //! The gradient tests; a module per concern.
 
+mod compositing;
 mod efd;
 mod exact;
 mod hard;

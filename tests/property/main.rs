@@ -1,5 +1,6 @@
 //! The property tests; a module per concern.
 
+mod compositing;
 mod contour;
 mod cross_render;
 mod edge;

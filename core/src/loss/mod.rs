@@ -182,7 +182,16 @@ impl fmt::Display for LossError {
     }
 }
 
-impl core::error::Error for LossError {}
+impl core::error::Error for LossError {
+    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
+        match self {
+            Self::Image(error) => Some(error),
+            Self::Shape(error) => Some(error),
+            Self::Matching(error) => Some(error),
+            _ => None,
+        }
+    }
+}
 
 impl From<ImageError> for LossError {
     fn from(error: ImageError) -> Self {

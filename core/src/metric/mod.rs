@@ -59,7 +59,15 @@ impl fmt::Display for MetricError {
     }
 }
 
-impl core::error::Error for MetricError {}
+impl core::error::Error for MetricError {
+    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
+        match self {
+            Self::Length { .. } => None,
+            Self::Render(error) => Some(error),
+            Self::Image(error) => Some(error),
+        }
+    }
+}
 
 impl From<LossError> for MetricError {
     fn from(error: LossError) -> Self {

@@ -1,8 +1,12 @@
+use alloc::string::ToString;
 use alloc::vec::Vec;
+use core::error::Error;
 
 use super::{MaskOverlap, MetricError, Ownership, OwnershipRule, RandIndexScratch, Tally, adjusted_rand_index};
+use crate::image::ImageError;
+use crate::loss::LossError;
 use crate::render::hard::{HardMask, HardScratch};
-use crate::render::{Compositing, TileRenderer};
+use crate::render::{Compositing, RenderError, TileRenderer};
 use crate::{Drawing, ImageSize};
 
 fn ari(a: &[u32], b: &[u32]) -> f64 {
@@ -110,4 +114,18 @@ fn rand_index_without_contrast() {
 #[test]
 fn a_tally_of_nothing_has_no_scores() {
     assert_eq!(Tally::<f32>::default().scores(), None);
+}
+
+#[test]
+fn errors_hand_on_what_caused_them() {
+    let image = LossError::from(ImageError::NotFinite { index: 3 });
+    let metric = MetricError::from(image.clone());
+    assert_eq!(metric.source().map(ToString::to_string), Some(image.to_string()));
+    let cause = ImageError::NotFinite { index: 3 };
+    assert_eq!(image.source().map(ToString::to_string), Some(cause.to_string()));
+    assert_eq!(
+        MetricError::from(RenderError::Starts).source().map(ToString::to_string),
+        Some(RenderError::Starts.to_string())
+    );
+    assert!(MetricError::Length { what: "coverage", expected: 8, len: 7 }.source().is_none());
 }

@@ -5,7 +5,7 @@
 //! | `pose` | unit outline to scene units, [`Pose::transform`]; (sin, cos) pair to angle | `pose_vjp` |
 //! | `pose_op` | poses as a step of a batch, [`PoseOp`] | same file |
 //! | `edge` | how coverage falls off, [`EdgeProfile`] | |
-//! | `compositing` | how objects mix, [`Compositing`] | |
+//! | `compositing` | how objects mix, [`Compositing`] | same file, [`Compositing::slopes`] |
 //! | `draw` | scene to drawing, [`Scene::draw`] | `draw_vjp`, [`Scene::draw_vjp`] |
 
 mod compositing;
@@ -23,7 +23,7 @@ use alloc::vec::Vec;
 use crate::real::Real;
 use crate::shape::{AnyShape, Efd, Rings, Shape as _};
 
-pub use compositing::Compositing;
+pub use compositing::{Compositing, Layer};
 pub use edge::{EdgeLaw, EdgeProfile, PixelProfile};
 pub use pose::rotation_from_pair;
 pub use pose_op::PoseOp;

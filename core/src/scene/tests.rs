@@ -74,3 +74,19 @@ fn a_gradient_of_another_layout_is_refused() {
     let refused = scene.draw_vjp(&basis, &grad_drawing, &mut grad);
     assert_eq!(refused, Err(ShapeError::Length { what: "gradient of the numbers", expected: 12, len: 11 }));
 }
+
+#[test]
+fn shares_of_two_objects() {
+    // Coverages 1 and 1/2, confidences 1/2 and 1. Over: 1/2 x 1/2 of the first shows, 1/2 of the second, 1/4 of the background.
+    let layers = [Layer::new([0.0; 3], 1.0, 0.5), Layer::new([1.0; 3], 0.5, 1.0)];
+    let mut shares = [0.0; 2];
+    assert_eq!(Compositing::Over.shares(&layers, &mut shares), 0.25);
+    assert_eq!(shares, [0.25, 0.5]);
+    // Blend: weights exp(-5) and 1/2 share what is not background.
+    assert_eq!(Compositing::Blend.shares(&layers, &mut shares), 0.25);
+    let total = (-5.0_f64).exp() + 0.5;
+    assert!(
+        (shares[0] - 0.75 * (-5.0_f64).exp() / total).abs() < 1e-15 && (shares[0] + shares[1] - 0.75).abs() < 1e-15
+    );
+    assert_eq!(Compositing::Blend.shares::<f64>(&[], &mut []), 1.0);
+}

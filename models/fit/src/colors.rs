@@ -6,6 +6,8 @@
 
 use alloc::vec::Vec;
 
+use dvp_core::render::Compositing;
+use dvp_core::scene::Layer;
 use dvp_core::{ImageView, Real};
 
 use crate::cholesky::{factor, packed, solve};
@@ -27,6 +29,8 @@ pub(crate) struct ColorScratch<T> {
     pub(crate) coverage: Vec<T>,
     matrix: Vec<T>,
     sides: [Vec<T>; 3],
+    layers: Vec<Layer<T>>,
+    /// Of the objects, then of the background.
     shares: Vec<T>,
 }
 
@@ -70,18 +74,16 @@ pub(crate) fn refine_colors<T: Real>(
     for i in 0..n {
         scratch.matrix[packed(i, i)] = prior;
     }
+    scratch.layers.clear();
+    scratch.layers.extend(colors[..objects].iter().map(|&color| Layer::new(color, T::zero(), T::one())));
+    scratch.shares.clear();
+    scratch.shares.resize(n, T::zero());
     for index in pixels {
-        scratch.shares.clear();
-        let (mut total, mut clear) = (T::zero(), T::one());
-        for k in 0..objects {
-            let p = scratch.coverage[k * plane + index];
-            total += p;
-            clear *= T::one() - p;
-            scratch.shares.push(p);
+        let coverage = &scratch.coverage;
+        for (k, layer) in scratch.layers.iter_mut().enumerate() {
+            layer.coverage = coverage[k * plane + index];
         }
-        let scale = if total > T::zero() { (T::one() - clear) / total } else { T::zero() };
-        scratch.shares.iter_mut().for_each(|share| *share *= scale);
-        scratch.shares.push(clear);
+        scratch.shares[objects] = Compositing::Blend.shares(&scratch.layers, &mut scratch.shares[..objects]);
         let target = image.pixel(index);
         let mut residual = target;
         for (color, &share) in colors.iter().zip(&scratch.shares) {

@@ -9,8 +9,8 @@ use dvp_core::{ImageSize, Real, simd};
 use crate::free::foot::EdgeLanes;
 use crate::segment::EdgeSample;
 
-/// Standard deviations assumed before looking: position and log scale 1, rotation that of a uniform angle. They keep the
-/// covariance finite where the image says nothing (the angle of a disk).
+/// Variances of (x, y in scene units, log scale, rotation) assumed before looking: 1, 1, 1, and pi^2 / 3, that of a uniform
+/// angle. They keep the covariance finite where the image says nothing (the angle of a disk).
 pub(crate) const PRIOR_VARIANCE: [f64; 4] = [1.0, 1.0, 1.0, 3.29];
 
 /// Samples that miss the outline by more (px) are those of another object.

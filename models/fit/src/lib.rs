@@ -29,13 +29,13 @@ pub mod refine;
 pub mod scene_refine;
 
 mod block_code;
-mod buys;
 mod cholesky;
 mod colors;
 mod doubt;
 mod fitter;
 mod free;
 mod joint;
+mod marginal_gain;
 mod options;
 mod pose;
 mod price;
@@ -155,10 +155,10 @@ pub struct Fit<T> {
     pub ambiguity: Vec<Ambiguity>,
     /// Share of the picture's variance that neither the scene nor noise explains, [0, 1]; NaN if it was not counted.
     pub unexplained: f64,
-    /// Per object, what it buys: the share of the picture's variance that would be unexplained as well without it, the others
-    /// staying. Negative if the picture would be met better without it; empty if it was not counted. Pixels count as covered
-    /// in whole or not at all.
-    pub buys: Vec<f64>,
+    /// Per object, the share of the picture's variance that would be unexplained in addition if it alone were left out.
+    /// Negative if the picture would be met better without it; empty if it was not counted. Pixels count as covered in whole
+    /// or not at all.
+    pub marginal_gain: Vec<f64>,
     /// Standard deviation of a channel that was taken for noise: at least the rounding of 8 bits; NaN if it was not estimated.
     pub noise: T,
     /// Description length of the scene and what it leaves unexplained, in bits.
@@ -167,7 +167,7 @@ pub struct Fit<T> {
 
 impl<T: Real> Fit<T> {
     /// A scene of any origin, drawn as `drawing` and painted as `painted` (planar, as long as the image's data): what it
-    /// leaves unexplained and what its objects buy. It knows neither loss (NaN) nor steps (0, at their limit), covariance,
+    /// leaves unexplained and the marginal gain of its objects. It knows neither loss (NaN) nor steps (0, at their limit), covariance,
     /// ambiguity or description length (NaN).
     #[must_use]
     pub fn of_painted(scene: Scene<T>, drawing: &Drawing<T>, image: &ImageView<'_, T>, painted: &[T]) -> Self {
@@ -179,7 +179,7 @@ impl<T: Real> Fit<T> {
             covariance: Vec::new(),
             ambiguity: Vec::new(),
             unexplained: share,
-            buys: buys::buys(drawing, image, scene.compositing, variance),
+            marginal_gain: marginal_gain::marginal_gains(drawing, image, scene.compositing, variance),
             noise,
             bits: f64::NAN,
             scene,
@@ -188,9 +188,9 @@ impl<T: Real> Fit<T> {
 }
 
 impl<T> Fit<T> {
-    /// Indices of the objects, those that buy most first. The scene itself is in the order in which it is painted.
+    /// Indices of the objects by falling marginal gain. The scene itself is in the order in which it is painted.
     #[must_use]
     pub fn ranking(&self) -> Vec<usize> {
-        buys::ranking(&self.buys)
+        marginal_gain::ranking(&self.marginal_gain)
     }
 }

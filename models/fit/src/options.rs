@@ -22,7 +22,7 @@ pub struct Bank<T> {
 pub struct FitOptions<T> {
     /// The shapes objects have; none: shapes are unknown and fitted freely.
     pub bank: Option<Bank<T>>,
-    /// More objects than this are not reported; those that buy most stay.
+    /// More objects than this are not reported; those of the largest marginal gain stay.
     pub max_objects: usize,
     /// Most harmonics of a free shape.
     pub max_harmonics: usize,
@@ -118,7 +118,15 @@ impl core::fmt::Display for FitError {
     }
 }
 
-impl core::error::Error for FitError {}
+impl core::error::Error for FitError {
+    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
+        match self {
+            Self::Prototype { source, .. } | Self::Shape(source) => Some(source),
+            Self::Render(source) => Some(source),
+            _ => None,
+        }
+    }
+}
 
 impl From<ShapeError> for FitError {
     fn from(error: ShapeError) -> Self {

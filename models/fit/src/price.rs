@@ -7,7 +7,7 @@ use num_traits::Float;
 const COLOR_BITS: f64 = 24.0;
 /// Bits of a pose: position to a hundredth of a pixel of 128, scale and angle alike.
 const POSE_BITS: f64 = 4.0 * 12.0;
-/// Bits of one coefficient of a free shape: its precision is about a 200th of the object.
+/// Bits of one coefficient of a free shape: its precision is 1/256 of the object.
 const COEFFICIENT_BITS: f64 = 8.0;
 
 /// Bits of an object but for its shape.
@@ -87,7 +87,7 @@ fn choice_bits(bank: usize) -> f64 {
     Float::log2(f64::of_usize(bank.max(1)))
 }
 
-/// Bits of the coefficients of a free shape if small ones cost less: each as many as tell it to a 200th of the first
+/// Bits of the coefficients of a free shape if small ones cost less: each as many as tell it to 1/256 of the first
 /// harmonic. Unlike the number of harmonics, which a hidden stretch may raise, this compares shapes by how simple they are.
 pub(crate) fn coefficient_bits<T: Real>(rows: &[[T; 4]]) -> f64 {
     let square = |row: &[T; 4]| row.iter().map(|&v| v * v).sum::<T>();

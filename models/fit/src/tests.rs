@@ -1,10 +1,12 @@
 //! Of the modules that are one file each.
 
+use alloc::string::ToString;
 use alloc::vec;
 use alloc::vec::Vec;
+use core::error::Error;
 
-use dvp_core::render::{Compositing, ContourRenderer, Renderer};
-use dvp_core::shape::OutlineBasis;
+use dvp_core::render::{Compositing, ContourRenderer, RenderError, Renderer};
+use dvp_core::shape::{OutlineBasis, ShapeError};
 use dvp_core::{Drawing, Efd, Image, ImageSize, Object, Pose, Scene};
 
 use crate::cholesky::{factor, packed, solve};
@@ -14,7 +16,7 @@ use crate::free::foot::EdgeLanes;
 use crate::price::{Prices, scene_bits};
 use crate::residual::Residual;
 use crate::segment::EdgeSample;
-use crate::{Ambiguity, Doubts, Fit, FitOptions, StopReason, fit_image};
+use crate::{Ambiguity, Doubts, Fit, FitError, FitOptions, StopReason, fit_image};
 
 #[test]
 fn cholesky_of_two_equations() {
@@ -206,8 +208,8 @@ fn objects_that_may_be_one_too_many_are_doubted() {
         changed.doubts().redundant
     };
     assert!(!redundant(&|_| {}));
-    assert!(redundant(&|fit| fit.buys[1] = 9e-4));
-    assert!(redundant(&|fit| fit.buys[0] = -0.1));
+    assert!(redundant(&|fit| fit.marginal_gain[1] = 9e-4));
+    assert!(redundant(&|fit| fit.marginal_gain[0] = -0.1));
     // The second disk beside the first one, in its color or in another.
     let moved = |fit: &mut Fit<f64>, apart: f64| {
         let [x, y] = fit.scene.objects[0].pose.translation;
@@ -229,4 +231,15 @@ fn objects_that_may_be_one_too_many_are_doubted() {
         fit.scene.compositing = compositing;
     };
     assert!(redundant(&|fit| third(fit, Compositing::Blend)) && !redundant(&|fit| third(fit, Compositing::Over)));
+}
+
+#[test]
+fn errors_hand_on_what_caused_them() {
+    let prototype = FitError::Prototype { index: 2, source: ShapeError::Degenerate };
+    for error in [prototype, ShapeError::Degenerate.into()] {
+        assert_eq!(error.source().map(ToString::to_string), Some(ShapeError::Degenerate.to_string()), "{error}");
+    }
+    let render = FitError::from(RenderError::Starts);
+    assert_eq!(render.source().map(ToString::to_string), Some(RenderError::Starts.to_string()));
+    assert!(FitError::NotFinite { index: 0 }.source().is_none());
 }

@@ -17,7 +17,7 @@ const WIDE_SIZE: f64 = 0.05;
 /// Of a picture that a scene explains, less is left.
 const UNEXPLAINED: f64 = 0.01;
 
-/// An object that buys a smaller share of the picture's variance may as well not be there.
+/// An object whose marginal gain is a smaller share of the picture's variance may as well not be there.
 const IDLE: f64 = 1e-3;
 /// Colors closer than this, in every channel, may be one.
 const ONE_COLOR: f64 = 0.02;
@@ -36,7 +36,7 @@ pub struct Doubts {
     pub stop: bool,
     /// More than a hundredth of the picture's variance is explained neither by the scene nor by noise.
     pub unexplained: bool,
-    /// There may be one object fewer: one buys less than a thousandth of the picture's variance, or touches another of its
+    /// There may be one object fewer: the marginal gain of one is below a thousandth, or it touches another of its
     /// color, or, where overlaps blend, has the mean color of two that it touches and that touch each other.
     pub redundant: bool,
     /// The color of an object is less than five steps of 8 bits from that of the background.
@@ -83,7 +83,7 @@ impl<T: Real> Fit<T> {
                 StopReason::Stalled | StopReason::NotFlat => true,
             },
             unexplained: self.unexplained > UNEXPLAINED,
-            redundant: self.buys.iter().any(|&share| share < IDLE) || may_be_fewer(&self.scene),
+            redundant: self.marginal_gain.iter().any(|&share| share < IDLE) || may_be_fewer(&self.scene),
             faint: self.scene.objects.iter().any(is_faint),
         }
     }

@@ -61,7 +61,7 @@ impl<T: Real> CompositeScratch<T> {
         self.background = zeros();
         self.objects.clear();
         self.objects.extend(drawing.confidences.iter().map(|&f| {
-            let weight = (T::of(Compositing::SHARPNESS) * (f - T::one())).exp();
+            let weight = Compositing::weight(f);
             Sums {
                 weight,
                 plain: compositing == Compositing::Over

@@ -54,7 +54,7 @@ pub(super) fn fit<A: Real, B: Real>(fit: &Fit<A>) -> Fit<B> {
         covariance: fit.covariance.iter().map(|block| block.map(number)).collect(),
         ambiguity: fit.ambiguity.clone(),
         unexplained: fit.unexplained,
-        buys: fit.buys.clone(),
+        marginal_gain: fit.marginal_gain.clone(),
         noise: number(fit.noise),
         bits: fit.bits,
     }

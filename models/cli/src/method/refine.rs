@@ -9,12 +9,12 @@ use dvp_fit::refine::{Refine, RefineScratch};
 /// A mean error below this is that of rounding to 8 bits: the edges are right.
 const ROUNDING: f32 = 1.0 / 255.0;
 
-/// Rounds in which objects that buy nothing are taken out.
+/// Rounds in which objects without a marginal gain are taken out.
 const ROUNDS: usize = 3;
 
 /// The scene that Levenberg-Marquardt finds from `start`, with the edges that explain the picture best: those of the
 /// reference or, where those do not meet it, area coverage. Objects without which the picture would be met better go, and of
-/// more than `max_objects` those that buy least.
+/// more than `max_objects` those of the smallest marginal gain.
 ///
 /// # Errors
 /// As [`Refine::fit`].
@@ -39,7 +39,7 @@ pub fn refine(
     }
     for _ in 0..ROUNDS {
         let ranking = best.ranking().into_iter().take(max_objects);
-        let kept: Vec<usize> = ranking.filter(|&index| best.buys[index] > 0.0).collect();
+        let kept: Vec<usize> = ranking.filter(|&index| best.marginal_gain[index] > 0.0).collect();
         if kept.len() == best.scene.objects.len() {
             break;
         }

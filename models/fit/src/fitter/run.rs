@@ -8,9 +8,9 @@ use dvp_core::render::{Compositing, EdgeLaw, EdgeProfile};
 use dvp_core::{ImageView, Object, Real, Scene};
 
 use super::{FitScratch, Fitter};
-use crate::buys::{buys, ranking, squared_errors};
 use crate::colors::{MAX_COVERAGE_VALUES, is_rounded, refine_colors};
 use crate::doubt::covariance;
+use crate::marginal_gain::{marginal_gains, ranking, squared_errors};
 use crate::residual::Residual;
 use crate::segment::EdgeKind;
 use crate::segment::color::distance;
@@ -159,10 +159,21 @@ impl<T: Real> Run<'_, T> {
         let noise = self.noise();
         let bits = self.bits(&scene, noise);
         let (unexplained, total) = Residual::unexplained(&self.image, self.scratch.shown.pixels(), noise);
-        let buys = buys(&self.scratch.drawing, &self.image, self.compositing, total);
+        let marginal_gain = marginal_gains(&self.scratch.drawing, &self.image, self.compositing, total);
         let stop =
             if scene.objects.is_empty() && found.stop != StopReason::NotFlat { StopReason::Empty } else { found.stop };
-        Ok(Fit { scene, loss, steps: found.steps, stop, covariance, ambiguity, unexplained, buys, noise, bits })
+        Ok(Fit {
+            scene,
+            loss,
+            steps: found.steps,
+            stop,
+            covariance,
+            ambiguity,
+            unexplained,
+            marginal_gain,
+            noise,
+            bits,
+        })
     }
 
     pub(super) fn scene_of(&self, found: &Found<T>) -> Scene<T> {
@@ -175,8 +186,8 @@ impl<T: Real> Run<'_, T> {
         }
     }
 
-    /// If there are too many objects, keeps those that buy most. What one buys depends on which others there are, so they go
-    /// in rounds; the order in which they are painted stays.
+    /// If there are too many objects, keeps those of the largest marginal gain. It depends on which others there are, so they
+    /// go in rounds; the order in which they are painted stays.
     fn keep_the_best(&mut self, found: &mut Found<T>) -> Result<(), FitError> {
         let most = self.fitter.options.max_objects;
         while found.objects.len() > most {

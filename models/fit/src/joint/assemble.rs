@@ -3,9 +3,8 @@
 use alloc::vec::Vec;
 
 use dvp_core::Real;
-use dvp_core::scene::PixelProfile;
+use dvp_core::scene::{Compositing, Layer, PixelProfile};
 
-use super::composite::{Cover, composite};
 use super::{JointProblem, JointScene, PER_OBJECT};
 use crate::cholesky::packed;
 use crate::pose::gauss_newton::Frame;
@@ -28,7 +27,25 @@ pub(crate) struct JointScratch<T> {
     frames: Vec<Frame<T>>,
     /// Per object: first and last column and row (exclusive) it can cover.
     boxes: Vec<[usize; 4]>,
+    /// Per object: its weight where objects blend.
+    weights: Vec<T>,
+    /// The objects at the pixel, and how they mix there.
     covers: Vec<Cover<T>>,
+    layers: Vec<Layer<T>>,
+    shares: Vec<T>,
+    slopes: Vec<[T; 3]>,
+}
+
+/// An object at a pixel.
+#[derive(Clone, Copy, Debug)]
+struct Cover<T> {
+    object: usize,
+    /// Derivative of the coverage with respect to x, y, log scale, rotation.
+    slope: [T; 4],
+    /// Derivative of each channel of the pixel with respect to the same channel of the object's color.
+    to_color: T,
+    /// Derivative of each channel of the pixel with respect to the coverage.
+    to_coverage: [T; 3],
 }
 
 /// The edge profile in pixels.
@@ -93,6 +110,7 @@ impl<T: Real> JointScratch<T> {
         let size = problem.image.size();
         self.frames.clear();
         self.boxes.clear();
+        self.weights.clear();
         for object in &scene.objects {
             let frame = Frame::new(&object.pose);
             let field = &problem.shapes[object.shape].field;
@@ -107,6 +125,7 @@ impl<T: Real> JointScratch<T> {
             let (top, bottom) = bounds(object.pose.translation[1], size.height());
             self.frames.push(frame);
             self.boxes.push([left, top, right, bottom]);
+            self.weights.push(Compositing::weight(object.confidence));
         }
     }
 
@@ -140,6 +159,7 @@ impl<T: Real> JointScratch<T> {
         let half = T::of(0.5);
         let point = [T::of_usize(column) + half, T::of_usize(row) + half];
         self.covers.clear();
+        self.layers.clear();
         for (k, object) in scene.objects.iter().enumerate() {
             if !self.inside_box(k, column, row) {
                 continue;
@@ -157,10 +177,11 @@ impl<T: Real> JointScratch<T> {
                 frame.scale * (distance - normal[0] * u[0] - normal[1] * u[1]) * change,
                 frame.scale * (normal[0] * u[1] - normal[1] * u[0]) * change,
             ];
-            let to_coverage = [T::zero(); 3];
-            self.covers.push(Cover { object: k, coverage, slope, to_color: T::zero(), to_coverage });
+            self.covers.push(Cover { object: k, slope, to_color: T::zero(), to_coverage: [T::zero(); 3] });
+            let (color, confidence, weight) = (object.color, object.confidence, self.weights[k]);
+            self.layers.push(Layer { color, coverage, confidence, weight });
         }
-        let (color, to_background) = composite(problem.compositing, scene, &mut self.covers);
+        let (color, to_background) = self.mix(problem.compositing, scene.background);
         let target = problem.image.pixel(index);
         let inverse = T::one() / (problem.width * problem.width);
         let mut cost = T::zero();
@@ -196,6 +217,26 @@ impl<T: Real> JointScratch<T> {
             self.add_colors(scene.objects.len() * PER_OBJECT, to_background, residuals, weights);
         }
         cost
+    }
+
+    /// Color of the pixel of `layers`, and its derivative with respect to the background; those with respect to the objects go
+    /// to `covers`.
+    #[inline(always)]
+    fn mix(&mut self, compositing: Compositing, background: [T; 3]) -> ([T; 3], T) {
+        self.shares.resize(self.layers.len(), T::zero());
+        self.slopes.resize(self.layers.len(), [T::zero(); 3]);
+        let to_background = compositing.shares(&self.layers, &mut self.shares);
+        compositing.slopes(background, &self.layers, &mut self.slopes);
+        let mut color = background.map(|value| value * to_background);
+        for (((cover, layer), &share), &slope) in
+            self.covers.iter_mut().zip(&self.layers).zip(&self.shares).zip(&self.slopes)
+        {
+            (cover.to_color, cover.to_coverage) = (share, slope);
+            for (value, own) in color.iter_mut().zip(layer.color) {
+                *value += share * own;
+            }
+        }
+        (color, to_background)
     }
 
     /// What a pixel says of colors: those of its objects, and that of the background at `base`.

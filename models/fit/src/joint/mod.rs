@@ -1,12 +1,10 @@
 //! Joint refinement of all poses and colors by Levenberg-Marquardt on pixels, with analytic Jacobians.
 //!
 //! In: an image and objects near the truth. Out: the same objects, moved. `assemble` makes the normal equations from the
-//! pixels near outlines, whose colors `composite` knows, [`refine`] takes damped steps, and [`continue_sigma`] does so at
-//! softer edges first, which widens the basin from about a pixel to several.
+//! pixels near outlines, [`refine`] takes damped steps, and [`continue_sigma`] does so at softer edges first, which widens the
+//! basin from about a pixel to several.
 
 mod assemble;
-#[expect(clippy::needless_range_loop, reason = "loops over channels walk several arrays")]
-mod composite;
 #[cfg(test)]
 mod tests;
 
@@ -118,8 +116,9 @@ pub(crate) fn refine<T: Real>(
     result
 }
 
-/// Refines at `factors` x sigma (their roots, where sigma is no square), one after the other; the last one should be 1. The width grows with the root of the factor:
-/// a soft edge is off by more.
+/// Refines at softer edges first: at sigma times each of `factors` (times its square root where the edge's law takes sigma as a
+/// length), one after the other. The last factor should be 1. The width of the robust loss grows with the root of the factor,
+/// because a soft edge is off by more.
 pub(crate) fn continue_sigma<T: Real>(
     problem: &JointProblem<'_, T>,
     scene: &mut JointScene<T>,

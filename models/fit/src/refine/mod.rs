@@ -10,8 +10,8 @@ mod scratch;
 
 use dvp_core::{ImageView, Real, Scene};
 
-use crate::buys::buys;
 use crate::joint::{JointProblem, continue_sigma};
+use crate::marginal_gain::marginal_gains;
 use crate::options::check_finite;
 use crate::pose::search::Prototype;
 use crate::price::scene_bits;
@@ -78,9 +78,9 @@ impl Refine {
         let ambiguity = scratch.ambiguities(&posed, image, unit);
         let noise = noise_level(&image, &mut scratch.differences).max(T::of(PIXEL_NOISE));
         let (unexplained, total) = Residual::unexplained(&image, &scratch.pixels, noise);
-        let buys = buys(&scratch.drawing, &image, scene.compositing, total);
+        let marginal_gain = marginal_gains(&scratch.drawing, &image, scene.compositing, total);
         let (steps, stop) = (result.steps, result.stop);
-        Ok(Fit { scene, loss, steps, stop, covariance, ambiguity, unexplained, buys, noise, bits })
+        Ok(Fit { scene, loss, steps, stop, covariance, ambiguity, unexplained, marginal_gain, noise, bits })
     }
 
     fn problem<'a, T: Real>(

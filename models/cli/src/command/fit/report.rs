@@ -35,9 +35,9 @@ pub(super) struct FoundScene {
     edge: EdgeReport,
     /// Share of the picture's variance that neither the scene nor noise explains; null for methods that do not count it.
     unexplained: Option<f64>,
-    /// Per object: the share of the picture's variance that would be unexplained as well without it.
-    buys: Vec<f64>,
-    /// Objects, those that buy most first.
+    /// Per object: the share of the picture's variance that would be unexplained in addition without it.
+    marginal_gain: Vec<f64>,
+    /// Objects by falling marginal gain.
     ranking: Vec<usize>,
     /// What the fit says against itself: `pose`, `ambiguity`, `stop`, `unexplained`, `redundant`, `faint`.
     doubts: Vec<&'static str>,
@@ -105,7 +105,7 @@ impl FoundScene {
             },
             edge: EdgeReport::of(&fit.scene.edge, size),
             unexplained: fit.unexplained.is_finite().then_some(fit.unexplained),
-            buys: fit.buys.clone(),
+            marginal_gain: fit.marginal_gain.clone(),
             ranking: fit.ranking(),
             doubts: fit.doubts().named().into_iter().filter_map(|(name, is)| is.then_some(name)).collect(),
             noise: fit.noise.is_finite().then_some(fit.noise),

@@ -57,7 +57,8 @@ fn second_difference<T: Real>(a: &[T], b: &[T]) -> T {
     (T::of(0.5) * ((a[0] - a[1]) - (b[0] - b[1]))).abs()
 }
 
-/// Fills the second differences of every so many blocks; returns how many of them are 0.
+/// The kernel that fills `differences` with the second differences of every so many blocks of 2 x 2 pixels; its output is how
+/// many of them are 0.
 struct Differences<'a, T> {
     image: &'a ImageView<'a, T>,
     rows: usize,

@@ -1,13 +1,17 @@
-//! What each object buys: by how much more the picture would be missed without it.
+//! Marginal gain of each object: the error that the picture would have in addition if this object alone were left out.
 //!
 //! In: a drawing and its picture. Out: per object the sum of squared errors that it takes away, counted over pixels whose
 //! centers it covers. Rows are cut where outlines cross them; between two cuts the same objects cover every pixel, so a sum
-//! over the pixels is all it takes, and no rendering.
+//! over the pixels is all it takes, and no rendering. `tests` holds it against renderings with and without each object.
+
+#[cfg(test)]
+mod tests;
 
 use alloc::vec;
 use alloc::vec::Vec;
 
 use dvp_core::render::Compositing;
+use dvp_core::scene::Layer;
 use dvp_core::{Drawing, ImageSize, ImageView, Real, simd};
 
 /// Where a row enters or leaves an object: its first pixel with a center beyond the crossing.
@@ -18,8 +22,8 @@ struct Cut {
     object: usize,
 }
 
-/// Per object, the share of the picture's variance (`total`, a sum of squares) that would be unexplained as well without it.
-pub(crate) fn buys<T: Real>(
+/// Per object, the share of the picture's variance (`total`, a sum of squares) that would be unexplained in addition without it.
+pub(crate) fn marginal_gains<T: Real>(
     drawing: &Drawing<T>,
     image: &ImageView<'_, T>,
     compositing: Compositing,
@@ -45,6 +49,7 @@ pub(crate) fn squared_errors<T: Real>(
     }
     cuts.sort_unstable();
     let mut active = Vec::new();
+    let mut mixture = Mixture::new(drawing, compositing);
     for cuts in cuts.chunk_by(|a, b| a.row == b.row) {
         active.clear();
         for (i, cut) in cuts.iter().enumerate() {
@@ -63,9 +68,9 @@ pub(crate) fn squared_errors<T: Real>(
             let pixels = line + cut.column..line + end;
             let sums = [0, 1, 2].map(|c| simd::sum(&image.channel(c)[pixels.clone()]).as_f64());
             let n = f64::of_usize(pixels.len());
-            let shown = color(drawing, compositing, &active, None);
+            let shown = mixture.color(&active, None);
             for &object in &active {
-                let without = color(drawing, compositing, &active, Some(object));
+                let without = mixture.color(&active, Some(object));
                 // (x - without)^2 - (x - shown)^2, summed.
                 out[object] += (0..3)
                     .map(|c| (shown[c] - without[c]) * (2.0 * sums[c] - n * (shown[c] + without[c])))
@@ -101,34 +106,38 @@ fn cut<T: Real>(outline: &[[T; 2]], object: usize, size: ImageSize, cuts: &mut V
     }
 }
 
-/// What a pixel shows that the objects (ascending) cover in whole, but for one of them.
-fn color<T: Real>(drawing: &Drawing<T>, compositing: Compositing, objects: &[usize], but: Option<usize>) -> [f64; 3] {
-    let mut shown = drawing.background.map(|v| v.as_f64());
-    let parts = objects.iter().filter(|&&object| Some(object) != but);
-    let parts = parts.map(|&k| (drawing.colors[k].map(|v| v.as_f64()), drawing.confidences[k].as_f64()));
-    match compositing {
-        Compositing::Over => {
-            for (color, confidence) in parts {
-                for (shown, color) in shown.iter_mut().zip(color) {
-                    *shown += confidence * (color - *shown);
-                }
-            }
-        }
-        Compositing::Blend => {
-            let (mut sum, mut weight, mut clear) = ([0.0; 3], 0.0, 1.0);
-            for (color, confidence) in parts {
-                for (sum, color) in sum.iter_mut().zip(color) {
-                    *sum += confidence * color;
-                }
-                weight += confidence;
-                clear *= 1.0 - confidence;
-            }
-            if weight > 0.0 {
-                for (shown, sum) in shown.iter_mut().zip(sum) {
-                    *shown = *shown * clear + sum / weight * (1.0 - clear);
-                }
-            }
+/// Colors of pixels that objects cover in whole.
+struct Mixture {
+    background: [f64; 3],
+    compositing: Compositing,
+    /// Every object of the drawing, in full coverage.
+    objects: Vec<Layer<f64>>,
+    layers: Vec<Layer<f64>>,
+    shares: Vec<f64>,
+}
+
+impl Mixture {
+    fn new<T: Real>(drawing: &Drawing<T>, compositing: Compositing) -> Self {
+        let objects = drawing.colors.iter().zip(&drawing.confidences);
+        Self {
+            background: drawing.background.map(T::as_f64),
+            compositing,
+            objects: objects.map(|(color, f)| Layer::new(color.map(T::as_f64), 1.0, f.as_f64())).collect(),
+            layers: Vec::new(),
+            shares: Vec::new(),
         }
     }
-    shown
+
+    /// What a pixel shows that the objects (ascending) cover, except for one of them.
+    fn color(&mut self, objects: &[usize], except: Option<usize>) -> [f64; 3] {
+        self.layers.clear();
+        self.layers.extend(objects.iter().filter(|&&k| Some(k) != except).map(|&k| self.objects[k]));
+        self.shares.resize(self.layers.len(), 0.0);
+        let clear = self.compositing.shares(&self.layers, &mut self.shares);
+        let start = self.background.map(|value| value * clear);
+        self.layers.iter().zip(&self.shares).fold(start, |mut sum, (layer, share)| {
+            sum.iter_mut().zip(layer.color).for_each(|(sum, value)| *sum += share * value);
+            sum
+        })
+    }
 }

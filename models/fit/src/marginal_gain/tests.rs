@@ -1,0 +1,58 @@
+use alloc::vec::Vec;
+
+use dvp_core::render::{Compositing, HardMask, HardRenderer, Renderer};
+use dvp_core::{Drawing, Image, ImageSize};
+
+use super::squared_errors;
+
+/// Squares and one triangle, all overlapping, one hidden under the others, as confident as `confidences` says.
+fn drawing(confidences: [f64; 4]) -> Drawing<f64> {
+    let outlines: [&[[f64; 2]]; 4] = [
+        &[[0.1, 0.1], [0.6, 0.1], [0.6, 0.6], [0.1, 0.6], [0.1, 0.1]],
+        &[[0.4, 0.3], [0.9, 0.3], [0.9, 0.8], [0.4, 0.8], [0.4, 0.3]],
+        &[[0.3, 0.2], [0.7, 0.5], [0.2, 0.9], [0.3, 0.2]],
+        &[[0.45, 0.4], [0.55, 0.4], [0.55, 0.5], [0.45, 0.5], [0.45, 0.4]],
+    ];
+    let mut drawing = Drawing { background: [0.9, 0.8, 0.7], ..Drawing::default() };
+    for (k, outline) in outlines.into_iter().enumerate() {
+        drawing.push(outline, [0.2 * k as f64, 1.0 - 0.3 * k as f64, 0.5], confidences[k]);
+    }
+    drawing
+}
+
+/// The drawing without one of its objects.
+fn without(drawing: &Drawing<f64>, object: usize) -> Drawing<f64> {
+    let mut rest = Drawing { background: drawing.background, ..Drawing::default() };
+    for k in (0..drawing.object_count()).filter(|&k| k != object) {
+        rest.push(drawing.outline(k), drawing.colors[k], drawing.confidences[k]);
+    }
+    rest
+}
+
+fn squared_error(drawing: &Drawing<f64>, image: &Image<f64>, compositing: Compositing) -> f64 {
+    let mut painted = Image::zeros(image.size());
+    let renderer = HardRenderer { coverage: HardMask, compositing };
+    renderer.render(drawing, image.size(), &mut Default::default(), painted.data_mut()).unwrap();
+    painted.data().iter().zip(image.data()).map(|(a, b)| (a - b) * (a - b)).sum()
+}
+
+#[test]
+fn a_gain_is_the_error_that_a_rendering_has_without_the_object() {
+    let size = ImageSize::new(40, 32).unwrap();
+    // Waves that no scene explains.
+    let values: Vec<f64> = (0..3 * size.pixels()).map(|i| 0.5 + 0.4 * (0.37 * i as f64).sin()).collect();
+    let image = Image::from_planar(size, values).unwrap();
+    for confidences in [[1.0; 4], [0.5, 1.0, 0.8, 1.0], [0.9, 0.3, 0.02, 0.6], [0.0, 0.5, 0.0, 0.5]] {
+        for compositing in [Compositing::Blend, Compositing::Over] {
+            let drawing = drawing(confidences);
+            let with = squared_error(&drawing, &image, compositing);
+            for (object, gain) in squared_errors(&drawing, &image.view(), compositing).into_iter().enumerate() {
+                let expected = squared_error(&without(&drawing, object), &image, compositing) - with;
+                assert!(
+                    (gain - expected).abs() < 1e-9 * with,
+                    "object {object} of {confidences:?}, {compositing:?}: {gain} in place of {expected}"
+                );
+            }
+        }
+    }
+}
