@@ -53,6 +53,9 @@ fn bad_pictures_are_reported_and_the_others_fitted() {
         let found = complaints.iter().any(|line| line.contains(name) && line.contains(part));
         assert!(found, "no line with '{name}' and '{part}': {}", run.err);
     }
+    // Each cause once, although errors both tell and hand on what caused them.
+    let words = complaints.iter().find(|line| line.contains("words.png")).unwrap();
+    assert_eq!(words.matches("signature").count(), 1, "{words}");
     let results = ["good.json", "good.png", "good.svg", "late.json", "late.png", "late.svg"];
     assert_eq!(names(&out), results);
 }

@@ -82,10 +82,20 @@ pub fn run(args: impl IntoIterator<Item = OsString>, out: &mut (dyn Write + Send
         Ok(Outcome::Partly) => 1,
         Err(error) => {
             // Nobody is left to tell if this fails.
-            let _ = writeln!(console.err, "error: {error:#}");
+            let _ = writeln!(console.err, "error: {}", in_words(&error));
             1
         }
     }
+}
+
+/// An error and its causes as one line of text, the outermost first. Causes that the text tells already are left out: many errors
+/// say in their own sentence what caused them.
+fn in_words(error: &anyhow::Error) -> String {
+    error.chain().map(ToString::to_string).fold(String::new(), |text, cause| match text.as_str() {
+        "" => cause,
+        told if told.contains(&cause) => text,
+        _ => format!("{text}: {cause}"),
+    })
 }
 
 fn dispatch(command: Command, console: &mut Console<'_>) -> Result<Outcome> {

@@ -6,6 +6,7 @@ use anyhow::Result;
 use dvp_fit::Bank;
 use dvp_net::propose::Proposer;
 
+use crate::command::in_words;
 use crate::command::pictures::Picture;
 use crate::command::progress;
 use crate::command::score::{Score, Scratch, Truth, score};
@@ -63,7 +64,7 @@ pub(super) fn run(
     for (turn, picture) in pictures.iter().enumerate() {
         for k in 0..runners.len() {
             let k = (k + turn) % runners.len();
-            let result = try_one(&runners[k], picture, seed, &mut scratch).map_err(|error| format!("{error:#}"));
+            let result = try_one(&runners[k], picture, seed, &mut scratch).map_err(|error| in_words(&error));
             rows[k].push(Row { stem: picture.stem.clone(), result });
         }
         bar.inc(1);

@@ -13,7 +13,7 @@ use self::finder::NetworkArguments;
 use super::options::{BatchArguments, PaintArguments};
 use super::score::{Score, Scratch, Truth, score};
 use super::totals::{Row, Totals};
-use super::{Console, Outcome, generated};
+use super::{Console, Outcome, generated, in_words};
 use crate::format::{DataSet, Place, Sample, SceneJson, read_labels, read_npy, read_picture, read_scene, write_atomic};
 use crate::method::{Runner, Task, seed_of};
 use crate::paint::Painter;
@@ -116,7 +116,7 @@ pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Ou
     let judge = Judge { arguments, data, stack, painter: arguments.paint.painter(), predictions };
     let rows: Vec<Row> = arguments.batch.each(&judge.data.samples, |scratch: &mut Scratch, index, sample| {
         let result = judge.score(index, sample, scratch);
-        Row { stem: sample.stem.clone(), result: result.map_err(|error| format!("{error:#}")) }
+        Row { stem: sample.stem.clone(), result: result.map_err(|error| in_words(&error)) }
     })?;
     for row in &rows {
         if let Err(error) = &row.result {

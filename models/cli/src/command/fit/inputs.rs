@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail};
 
+use crate::command::in_words;
 use crate::format::pictures_of;
 
 /// A picture to fit.
@@ -31,7 +32,7 @@ pub(super) fn find(arguments: &[PathBuf]) -> Found {
     let mut seen = BTreeSet::new();
     for argument in arguments {
         let paths = paths_of(argument).unwrap_or_else(|error| {
-            found.failures.push(format!("{error:#}"));
+            found.failures.push(in_words(&error));
             Vec::new()
         });
         for path in paths {

@@ -17,7 +17,7 @@ use self::inputs::Input;
 use self::report::{FoundScene, Report};
 use self::solver::{Method, Scratch, Solver, Start};
 use super::options::{BankChoice, BatchArguments, CompositingName};
-use super::{Console, Outcome};
+use super::{Console, Outcome, in_words};
 use crate::format::{Place, SceneJson, encode_png, read_npy, read_picture, write_atomic};
 use crate::method::load_network;
 use crate::paint::Painter;
@@ -183,7 +183,7 @@ fn fit_one(arguments: &Arguments, solver: &Solver, stacks: &[Stack], input: &Inp
     let (found, error) = match result {
         Ok(found) => (Some(found), None),
         Err(error) => {
-            let text = format!("{error:#}");
+            let text = in_words(&error);
             (None, Some(if text.starts_with(&path) { text } else { format!("{path}: {text}") }))
         }
     };

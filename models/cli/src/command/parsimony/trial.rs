@@ -15,6 +15,7 @@ use super::spent::{Law, Spent};
 use super::traced::Drawn;
 use super::truth::Price;
 use crate::agreement::Agreement;
+use crate::command::in_words;
 use crate::command::pictures::Picture;
 use crate::command::progress;
 use crate::format::{from_rgb8, to_rgb8};
@@ -209,7 +210,7 @@ pub(super) fn run(contenders: &[Contender], subjects: &[Subject], bank: usize, s
     let bar = progress::bar(subjects.len());
     let one = |scratch: &mut Scratch, subject: &Subject| {
         let trial = |contender: &Contender| {
-            contender.try_one(subject, bank, seed, scratch).map_err(|error| format!("{error:#}"))
+            contender.try_one(subject, bank, seed, scratch).map_err(|error| in_words(&error))
         };
         let trials: Vec<Trial> = contenders.iter().map(trial).collect();
         bar.inc(1);

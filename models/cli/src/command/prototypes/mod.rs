@@ -13,7 +13,7 @@ use dvp_fit::{Bank, Fit, FitOptions, FitScratch, Fitter};
 
 use self::report::Report;
 use super::options::BatchArguments;
-use super::{Console, Outcome};
+use super::{Console, Outcome, in_words};
 use crate::chart::{Chart, Line, check_name};
 use crate::format::{bank_to_json, pictures_of, read_picture, write_atomic};
 
@@ -109,7 +109,7 @@ fn learn_from(
                 objects += count;
                 found.extend(members);
             }
-            Err(error) => failures.push(format!("{}: {error:#}", path.display())),
+            Err(error) => failures.push(format!("{}: {}", path.display(), in_words(&error))),
         }
     }
     let learned = learn(&found, options)?;
