@@ -141,7 +141,7 @@ pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Ou
         bail!("{} is already there; choose another --out or add --overwrite", scenes_file.display());
     }
     let painter = arguments.paint.painter();
-    let bar = progress::bar(arguments.count);
+    let bar = progress::bar(arguments.count as u64, 0);
     let one = |index: usize| {
         let scene = sample_scene(&settings, &bank, size, arguments.seed, index as u64);
         let line = write_image(arguments, &bank, painter, &scene, size, index);

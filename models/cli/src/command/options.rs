@@ -45,15 +45,17 @@ pub(super) struct BatchArguments {
 }
 
 impl BatchArguments {
-    /// What `work` makes of each item and its index, in their order; on all threads, each with memory of its own, under a
-    /// progress bar.
+    /// What `work` makes of each item and its index, in their order; on all threads, each with memory of its own. Progress shows
+    /// the `name` of the item begun last.
     pub(super) fn each<S: Default, I: Sync, R: Send>(
         &self,
         items: &[I],
+        name: impl Fn(&I) -> String + Sync,
         work: impl Fn(&mut S, usize, &I) -> R + Sync,
     ) -> Result<Vec<R>> {
-        let bar = progress::bar(items.len());
+        let bar = progress::bar(items.len() as u64, 0);
         let one = |scratch: &mut S, (index, item)| {
+            bar.set_message(name(item));
             let result = work(scratch, index, item);
             bar.inc(1);
             result

@@ -60,7 +60,7 @@ pub(super) fn run(
             let _ = try_one(runner, first, seed, &mut scratch);
         }
     }
-    let bar = progress::bar(pictures.len());
+    let bar = progress::bar(pictures.len() as u64, 0);
     for (turn, picture) in pictures.iter().enumerate() {
         for k in 0..runners.len() {
             let k = (k + turn) % runners.len();

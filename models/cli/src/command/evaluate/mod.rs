@@ -114,10 +114,14 @@ pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Ou
         data.samples.truncate(stack.len());
     }
     let judge = Judge { arguments, data, stack, painter: arguments.paint.painter(), predictions };
-    let rows: Vec<Row> = arguments.batch.each(&judge.data.samples, |scratch: &mut Scratch, index, sample| {
-        let result = judge.score(index, sample, scratch);
-        Row { stem: sample.stem.clone(), result: result.map_err(|error| in_words(&error)) }
-    })?;
+    let rows: Vec<Row> = arguments.batch.each(
+        &judge.data.samples,
+        |sample| sample.stem.clone(),
+        |scratch: &mut Scratch, index, sample| {
+            let result = judge.score(index, sample, scratch);
+            Row { stem: sample.stem.clone(), result: result.map_err(|error| in_words(&error)) }
+        },
+    )?;
     for row in &rows {
         if let Err(error) = &row.result {
             writeln!(console.err, "error: {}: {error}", row.stem)?;

@@ -19,6 +19,16 @@ pub(super) struct Input {
     pub(super) stem: String,
 }
 
+impl Input {
+    /// The file and, if it holds many images, which of them.
+    pub(super) fn name(&self) -> String {
+        match self.frame {
+            Some(frame) => format!("{}[{frame}]", self.path.display()),
+            None => self.path.display().to_string(),
+        }
+    }
+}
+
 /// Pictures, and arguments that led to none.
 #[derive(Debug, Default)]
 pub(super) struct Found {

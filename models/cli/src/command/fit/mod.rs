@@ -142,9 +142,8 @@ pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Ou
     }
     let inputs = inputs::name(&pictures);
     refuse_overwriting(arguments, &inputs)?;
-    let reports: Vec<Report> = arguments
-        .batch
-        .each(&inputs, |scratch: &mut Scratch, _, input| fit_one(arguments, &solver, &stacks, input, scratch))?;
+    let fit = |scratch: &mut Scratch, _: usize, input: &Input| fit_one(arguments, &solver, &stacks, input, scratch);
+    let reports: Vec<Report> = arguments.batch.each(&inputs, Input::name, fit)?;
     let errors = reports.iter().filter_map(|report| report.error.clone());
     failures.extend(errors);
     for failure in &failures {
@@ -175,10 +174,7 @@ fn refuse_overwriting(arguments: &Arguments, inputs: &[Input]) -> Result<()> {
 }
 
 fn fit_one(arguments: &Arguments, solver: &Solver, stacks: &[Stack], input: &Input, scratch: &mut Scratch) -> Report {
-    let path = match input.frame {
-        Some(frame) => format!("{}[{frame}]", input.path.display()),
-        None => input.path.display().to_string(),
-    };
+    let path = input.name();
     let result = try_fit(arguments, solver, stacks, input, scratch);
     let (found, error) = match result {
         Ok(found) => (Some(found), None),

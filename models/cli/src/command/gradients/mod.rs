@@ -98,11 +98,15 @@ pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Ou
 
 /// Mean cosines by aspect and share.
 fn cosines(arguments: &Arguments, pairs: &[Pair], loss: PixelLoss, size: ImageSize) -> Result<[[f64; 11]; 6]> {
-    let rows = arguments.batch.each(pairs, |cosines: &mut Option<Cosines>, _, pair| {
-        let cosines = Cosines::in_place(cosines, loss, size)?;
-        let of = |alpha| cosines.of(&pair.truth, &pair.moved(alpha));
-        ALPHAS.into_iter().map(of).collect::<Result<Vec<[f64; 6]>>>()
-    })?;
+    let rows = arguments.batch.each(
+        pairs,
+        |_| String::new(),
+        |cosines: &mut Option<Cosines>, _, pair| {
+            let cosines = Cosines::in_place(cosines, loss, size)?;
+            let of = |alpha| cosines.of(&pair.truth, &pair.moved(alpha));
+            ALPHAS.into_iter().map(of).collect::<Result<Vec<[f64; 6]>>>()
+        },
+    )?;
     let mut means = [[0.0; 11]; 6];
     for row in rows {
         for (k, cosines) in row?.into_iter().enumerate() {
@@ -114,10 +118,14 @@ fn cosines(arguments: &Arguments, pairs: &[Pair], loss: PixelLoss, size: ImageSi
 
 /// Mean squared errors before and after, by share.
 fn plateaus(arguments: &Arguments, pairs: &[Pair], size: ImageSize) -> Result<Vec<[f64; 2]>> {
-    let rows = arguments.batch.each(pairs, |(): &mut (), _, pair| {
-        let of = |alpha| plateau::descend(&pair.truth, &pair.moved(alpha), size);
-        ALPHAS.into_iter().map(of).collect::<Result<Vec<[f64; 2]>>>()
-    })?;
+    let rows = arguments.batch.each(
+        pairs,
+        |_| String::new(),
+        |(): &mut (), _, pair| {
+            let of = |alpha| plateau::descend(&pair.truth, &pair.moved(alpha), size);
+            ALPHAS.into_iter().map(of).collect::<Result<Vec<[f64; 2]>>>()
+        },
+    )?;
     let mut means = vec![[0.0; 2]; ALPHAS.len()];
     for row in rows {
         for (mean, own) in means.iter_mut().zip(row?) {

@@ -207,11 +207,10 @@ struct Scratch {
 
 /// Every contender on every image, on all threads; a row of trials per contender.
 pub(super) fn run(contenders: &[Contender], subjects: &[Subject], bank: usize, seed: u64) -> Vec<Vec<Trial>> {
-    let bar = progress::bar(subjects.len());
+    let bar = progress::bar(subjects.len() as u64, 0);
     let one = |scratch: &mut Scratch, subject: &Subject| {
-        let trial = |contender: &Contender| {
-            contender.try_one(subject, bank, seed, scratch).map_err(|error| in_words(&error))
-        };
+        let trial =
+            |contender: &Contender| contender.try_one(subject, bank, seed, scratch).map_err(|error| in_words(&error));
         let trials: Vec<Trial> = contenders.iter().map(trial).collect();
         bar.inc(1);
         trials

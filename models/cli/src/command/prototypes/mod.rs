@@ -142,10 +142,14 @@ fn each<R: Send>(
     paths: &[PathBuf],
     work: impl Fn(ImageView<'_, f32>, usize, &mut FitScratch<f32>) -> Result<R> + Sync,
 ) -> Result<Vec<Result<R>>> {
-    arguments.batch.each(paths, |scratch, index, path| {
-        let image = read_picture(path, arguments.batch.max_pixels).context("not read")?;
-        work(image.view(), index, scratch)
-    })
+    arguments.batch.each(
+        paths,
+        |path| path.display().to_string(),
+        |scratch, index, path| {
+            let image = read_picture(path, arguments.batch.max_pixels).context("not read")?;
+            work(image.view(), index, scratch)
+        },
+    )
 }
 
 /// Silhouette over the number of shapes.

@@ -133,7 +133,7 @@ pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Ou
     let runs = |(sweep, contenders): &(&Sweep, Vec<Contender>)| {
         (sweep.chosen(effort.quick).len() * contenders.len()) as u64 * effort.pictures_of(sweep)
     };
-    let bar = progress::steps(lists.iter().map(runs).sum(), 0);
+    let bar = progress::bar(lists.iter().map(runs).sum(), 0);
     let (mut summaries, mut table) = (Vec::new(), table::runs_head());
     for (sweep, contenders) in &lists {
         bar.set_message(sweep.name);

@@ -113,7 +113,7 @@ impl Run {
             held_out.features = trainer.features(&held_out.images)?;
         }
         let (clock, before) = (Instant::now(), curves.seconds());
-        let bar = progress::steps(numbers.steps, trainer.steps());
+        let bar = progress::bar(numbers.steps, trainer.steps());
         let mut recent = Recent::default();
         while trainer.steps() < numbers.steps {
             let mut batch = self.data.batch(trainer.steps(), numbers.batch, &self.painter)?;
