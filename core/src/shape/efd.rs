@@ -45,13 +45,17 @@ impl<T: Real> OutlineBasis<T> {
         }
         let half = vertex_count.div_ceil(2);
         let edges = vertex_count - 1;
-        let by_vertex = (0..half).step_by(LANES).flat_map(|first| {
-            (1..=harmonic_count).map(move |n| entry(|lane| (first + lane < half).then(|| wave(n, first + lane, edges))))
-        });
-        let by_harmonic = (1..=harmonic_count).step_by(LANES).flat_map(|first| {
-            (0..half).map(move |i| entry(|lane| (first + lane <= harmonic_count).then(|| wave(first + lane, i, edges))))
-        });
-        let (by_vertex, by_harmonic) = (by_vertex.collect(), by_harmonic.collect());
+        let waves: Vec<[f64; 2]> = (0..edges).map(|turn| wave(turn, edges)).collect();
+        // The angle of harmonic n at vertex i, reduced as integers: that of a high harmonic loses no digits.
+        let at = |n: usize, i: usize| waves[(n % edges) * i % edges];
+        let mut by_vertex = Vec::with_capacity(half.div_ceil(LANES) * harmonic_count);
+        for first in (0..half).step_by(LANES) {
+            by_vertex.extend((1..=harmonic_count).map(|n| entry(half - first, |lane| at(n, first + lane))));
+        }
+        let mut by_harmonic = Vec::with_capacity(harmonic_count.div_ceil(LANES) * half);
+        for first in (1..=harmonic_count).step_by(LANES) {
+            by_harmonic.extend((0..half).map(|i| entry(harmonic_count + 1 - first, |lane| at(first + lane, i))));
+        }
         Ok(Self { vertex_count, harmonic_count, by_vertex, by_harmonic })
     }
 
@@ -138,16 +142,18 @@ impl<T: Real> Kernel for Trace<'_, T> {
     }
 }
 
-/// An entry of the cosine and sine of each lane, zero where there is none.
-fn entry<T: Real>(lane: impl Fn(usize) -> Option<[f64; 2]>) -> Entry<T> {
-    let lanes: [[f64; 2]; LANES] = core::array::from_fn(|i| lane(i).unwrap_or_default());
-    [lanes.map(|[cos, _]| T::of(cos)), lanes.map(|[_, sin]| T::of(sin))]
+/// An entry of the cosine and sine of each of the first `count` lanes, zero in the others.
+fn entry<T: Real>(count: usize, lane: impl Fn(usize) -> [f64; 2]) -> Entry<T> {
+    let mut entry = [[T::zero(); LANES]; 2];
+    for i in 0..count.min(LANES) {
+        let [cos, sin] = lane(i);
+        (entry[0][i], entry[1][i]) = (T::of(cos), T::of(sin));
+    }
+    entry
 }
 
-/// Cosine and sine of harmonic `n` at vertex `i` of an outline of `edges` edges.
-fn wave(n: usize, i: usize, edges: usize) -> [f64; 2] {
-    // Reduced as integers: the angle of a high harmonic loses no digits.
-    let turn = (n % edges) * i % edges;
+/// Cosine and sine of `turn` / `edges` of a full turn.
+fn wave(turn: usize, edges: usize) -> [f64; 2] {
     let (sin, cos) = Float::sin_cos(core::f64::consts::TAU * f64::of_usize(turn) / f64::of_usize(edges));
     // At half a turn the sine is 0, not the sine of the rounded pi: the middle vertex is its own mirror.
     [cos, if 2 * turn == edges { 0.0 } else { sin }]
