@@ -72,6 +72,8 @@ pub enum StopReason {
     /// The picture is not flat (a gradient, a texture, a photo): the scene is the best one of flat colors that was found,
     /// and [`Fit::unexplained`] tells how much it leaves.
     NotFlat,
+    /// No scene was found that is nearer to the picture than one flat color: the scene is that color, without an object.
+    NoBetterThanFlat,
 }
 
 /// What a fit cannot tell.

@@ -31,7 +31,7 @@ pub struct Doubts {
     pub pose: bool,
     /// An object is cropped, hidden in part, merged with another one, or may have another shape. Symmetry alone is no doubt.
     pub ambiguity: bool,
-    /// The optimization stopped before it was done, or the picture is not flat. Descents by Adam take all their steps, and
+    /// The optimization stopped before it was done, the picture is not flat, or no scene is better than one flat color. Descents by Adam take all their steps, and
     /// say nothing by it.
     pub stop: bool,
     /// More than a hundredth of the picture's variance is explained neither by the scene nor by noise.
@@ -80,7 +80,7 @@ impl<T: Real> Fit<T> {
             stop: match self.stop {
                 StopReason::Converged | StopReason::Empty => false,
                 StopReason::StepLimit => !self.covariance.is_empty(),
-                StopReason::Stalled | StopReason::NotFlat => true,
+                StopReason::Stalled | StopReason::NotFlat | StopReason::NoBetterThanFlat => true,
             },
             unexplained: self.unexplained > UNEXPLAINED,
             redundant: self.marginal_gain.iter().any(|&share| share < IDLE) || may_be_fewer(&self.scene),

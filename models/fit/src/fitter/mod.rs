@@ -4,11 +4,12 @@
 //! how their outlines meet), `known` poses the
 //! prototypes of a bank, `unknown` fits free outlines, `twins` splits what is several objects of one color; `run` is what
 //! they share: rendering (`shown`: only where something changed), colors, pruning, and the doubt that goes with the result
-//! (`ambiguity`: what it leaves open). `readings` chooses between clean, noisy and faint pictures (`faint`); `subsample` takes
+//! (`ambiguity`: what it leaves open). `flat` puts one color in the place of a scene that is worse. `readings` chooses between clean, noisy and faint pictures (`faint`); `subsample` takes
 //! large pictures with wide edges down to the size that they need.
 
 mod ambiguity;
 mod faint;
+mod flat;
 mod junction;
 mod known;
 mod order;
@@ -136,7 +137,8 @@ impl<T: Real> Fitter<T> {
     }
 
     /// From pixels to a scene. In pictures of 512 x 512 pixels and more whose edges are many pixels wide, every k-th pixel
-    /// is looked at: they tell those between.
+    /// is looked at: they tell those between. Never worse than one flat color: if no scene was found whose mean absolute error is
+    /// smaller, that color is returned, and [`StopReason::NoBetterThanFlat`] says so.
     ///
     /// # Errors
     /// [`FitError::NotFinite`] for an image with NaN or infinity.
@@ -144,13 +146,21 @@ impl<T: Real> Fitter<T> {
         check_finite(&image)?;
         scratch.forget();
         scratch.subsampling = Subsampling::of(&image);
-        if let Some(subsampling) = scratch.subsampling {
-            if let Some(fit) = self.fit_subsampled(image, subsampling, scratch)? {
-                return Ok(fit);
-            }
-            scratch.subsampling = None;
-            scratch.forget();
-        }
+        let subsampled = match scratch.subsampling {
+            Some(subsampling) => self.fit_subsampled(image, subsampling, scratch)?,
+            None => None,
+        };
+        let fit = match subsampled {
+            Some(fit) => fit,
+            None => self.fit_whole(image, scratch)?,
+        };
+        Ok(flat::or_flat(&image, fit, &self.options.prices))
+    }
+
+    /// A fit of every pixel.
+    fn fit_whole(&self, image: ImageView<'_, T>, scratch: &mut FitScratch<T>) -> Result<Fit<T>, FitError> {
+        scratch.subsampling = None;
+        scratch.forget();
         self.best_reading(image, scratch)
     }
 

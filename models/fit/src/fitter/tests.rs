@@ -11,7 +11,7 @@ use super::shown::Shown;
 use super::subsample::Subsampling;
 use super::{FitScratch, Fitter};
 use crate::residual::Residual;
-use crate::{Bank, FitOptions};
+use crate::{Bank, FitOptions, StopReason};
 
 /// A disk of 24 vertices, scene units.
 fn disk([x, y]: [f64; 2], radius: f64) -> Vec<[f64; 2]> {
@@ -147,4 +147,66 @@ fn edges_along_the_grid_do_not_hide_the_reference() {
             assert!((found - truth).abs() < 1e-3, "{max_steps} steps: {found} for {truth}");
         }
     }
+}
+
+/// An image of gray values.
+fn gray(size: ImageSize, value: impl Fn(f64, f64) -> f64) -> Image<f64> {
+    let at = |i: usize| f64::from(u32::try_from(i).unwrap()) + 0.5;
+    let values = (0..size.pixels()).map(|i| value(at(i % size.width()), at(i / size.width())));
+    Image::from_interleaved(size, &values.flat_map(|v| [v; 3]).collect::<Vec<_>>()).unwrap()
+}
+
+/// A square frame of lines 6 px wide with two lines across in it, black on white: what icons are made of.
+fn frame() -> Image<f64> {
+    let corners = [[20.0, 20.0], [108.0, 20.0], [108.0, 108.0], [20.0, 108.0], [20.0, 20.0]];
+    let crossed = [[44.0, 44.0], [84.0, 84.0], [84.0, 44.0], [44.0, 84.0]];
+    let lines: Vec<_> = corners.windows(2).chain(crossed.chunks(2)).map(|ends| [ends[0], ends[1]]).collect();
+    gray(ImageSize::new(128, 128).unwrap(), |x, y| {
+        let distance = |[[ax, ay], [bx, by]]: [[f64; 2]; 2]| {
+            let (dx, dy) = (bx - ax, by - ay);
+            let along = (((x - ax) * dx + (y - ay) * dy) / (dx * dx + dy * dy)).clamp(0.0, 1.0);
+            (x - ax - along * dx).hypot(y - ay - along * dy)
+        };
+        let nearest = lines.iter().map(|&line| distance(line)).fold(f64::INFINITY, f64::min);
+        ((nearest - 2.5).clamp(0.0, 1.0) * 255.0).round() / 255.0
+    })
+}
+
+/// A smooth spiral of two arms.
+fn spiral() -> Image<f64> {
+    let wave = |x: f64, y: f64| 0.5 + 0.5 * (0.5 * x.hypot(y) + 2.0 * y.atan2(x)).sin();
+    gray(ImageSize::new(96, 96).unwrap(), |x, y| (wave(x - 48.0, y - 48.0) * 255.0).round() / 255.0)
+}
+
+/// Mean absolute error of the median color.
+fn flat_error(image: &Image<f64>) -> ([f64; 3], f64) {
+    let view = image.view();
+    let color = [0, 1, 2].map(|channel| {
+        let mut values = view.channel(channel).to_vec();
+        values.sort_by(f64::total_cmp);
+        values[values.len() / 2]
+    });
+    let errors = (0..3).flat_map(|channel| view.channel(channel).iter().map(move |v| (v - color[channel]).abs()));
+    (color, errors.sum::<f64>() / (3 * view.size().pixels()) as f64)
+}
+
+#[test]
+fn no_fit_is_worse_than_one_flat_color() {
+    for (name, image) in [("frame", frame()), ("spiral", spiral())] {
+        let fit = Fitter::new(FitOptions::default()).unwrap().fit(image.view(), &mut FitScratch::default()).unwrap();
+        let (color, error) = flat_error(&image);
+        assert!(fit.loss <= error + 1.0 / 255.0, "{name}: {} where one color has {error}", fit.loss);
+        if fit.stop == StopReason::NoBetterThanFlat {
+            assert_eq!((fit.scene.objects.len(), fit.scene.background), (0, color), "{name}");
+            assert!((fit.loss - error).abs() < 1e-12 && fit.bits.is_finite() && fit.noise > 0.0, "{fit:?}");
+            assert!(fit.doubts().stop && fit.unexplained > 0.9, "{:?}", fit.doubts());
+        }
+    }
+}
+
+#[test]
+fn what_no_objects_explain_becomes_one_flat_color() {
+    // Outlines of its arms, filled where they run into one another, miss more of it than gray does.
+    let fit = Fitter::new(FitOptions::default()).unwrap().fit(spiral().view(), &mut FitScratch::default()).unwrap();
+    assert_eq!(fit.stop, StopReason::NoBetterThanFlat, "{} objects", fit.scene.objects.len());
 }

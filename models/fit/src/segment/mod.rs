@@ -27,6 +27,7 @@ use dvp_core::{ImageView, Real};
 
 pub(crate) use edge_kind::EdgeKind;
 pub(crate) use interpret::{Border, Evidence, Stacking};
+pub(crate) use median::median_by;
 pub(crate) use noisy::NoisyOptions;
 pub(crate) use robust::noise_level;
 

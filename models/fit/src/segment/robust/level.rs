@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use dvp_core::{ImageView, Real, simd};
 
-use crate::segment::median::median_by;
+use crate::segment::median_by;
 
 /// Differences looked at in all; they give the level within about 2 %.
 const MOST_DIFFERENCES: usize = 12_288;
