@@ -1,8 +1,8 @@
 //! Files that are there whole or not at all.
 
 use std::fs::{self, OpenOptions};
-use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::io::{ErrorKind, Write};
+use std::path::Path;
 
 use super::error::FormatError;
 
@@ -15,20 +15,24 @@ use super::error::FormatError;
 /// [`FormatError::Write`] with the system's reason; the temporary file is removed.
 pub fn write_atomic(path: &Path, bytes: &[u8]) -> Result<(), FormatError> {
     let refused = |source| FormatError::Write { path: path.to_path_buf(), source };
-    let target = match fs::metadata(path) {
-        Ok(meta) if meta.is_dir() => return Err(refused(std::io::ErrorKind::IsADirectory.into())),
-        Ok(meta) if !meta.is_file() => {
+    let (target, there) = match fs::symlink_metadata(path) {
+        Ok(link) if link.is_symlink() => {
+            (fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf()), fs::metadata(path).ok())
+        }
+        found => (path.to_path_buf(), found.ok()),
+    };
+    match there {
+        Some(meta) if meta.is_dir() => return Err(refused(ErrorKind::IsADirectory.into())),
+        Some(meta) if !meta.is_file() => {
             let mut device = OpenOptions::new().write(true).open(path).map_err(refused)?;
             return device.write_all(bytes).map_err(refused);
         }
-        Ok(_) => fs::canonicalize(path).map_err(refused)?,
-        Err(_) => path.to_path_buf(),
-    };
+        _ => (),
+    }
     let folder = match target.parent() {
-        Some(folder) if folder != Path::new("") => folder.to_path_buf(),
-        _ => PathBuf::from("."),
+        Some(folder) if folder != Path::new("") => folder,
+        _ => Path::new("."),
     };
-    fs::create_dir_all(&folder).map_err(refused)?;
     let mut builder = tempfile::Builder::new();
     builder.prefix(".dvp-").suffix(".part");
     #[cfg(unix)]
@@ -37,7 +41,13 @@ pub fn write_atomic(path: &Path, bytes: &[u8]) -> Result<(), FormatError> {
         use std::os::unix::fs::PermissionsExt;
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
-    let mut file = builder.tempfile_in(&folder).map_err(refused)?;
+    let made = match builder.tempfile_in(folder) {
+        Err(error) if error.kind() == ErrorKind::NotFound => {
+            fs::create_dir_all(folder).and_then(|()| builder.tempfile_in(folder))
+        }
+        made => made,
+    };
+    let mut file = made.map_err(refused)?;
     file.write_all(bytes).map_err(refused)?;
     file.persist(&target).map_err(|error| refused(error.error))?;
     Ok(())
