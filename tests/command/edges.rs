@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use dvp::format::{encode_png, read_picture, read_scene};
+use dvp::format::{BitDepth, encode_png, read_picture, read_scene};
 use dvp_core::render::{Compositing, ContourRenderer, EdgeProfile, HardRenderer, Renderer};
 use dvp_core::{Drawing, Image, ImageSize, Real};
 use dvp_tests::draw_svg::draw_svg;
@@ -77,14 +77,14 @@ struct Fitted {
 
 fn fitted(folder: &Path, kind: &str, deviation: f32, side: usize) -> Fitted {
     let picture_path = folder.join(format!("{kind}-{deviation}-{side}.png"));
-    fs::write(&picture_path, encode_png(picture(kind, deviation, side).view()).unwrap()).unwrap();
+    fs::write(&picture_path, encode_png(picture(kind, deviation, side).view(), BitDepth::Eight).unwrap()).unwrap();
     let out = folder.join("out");
     let run = dvp(["fit", text(&picture_path), "--out", text(&out), "--json"]);
     assert_eq!((run.code, run.err.as_str()), (0, ""));
     let said: Value = serde_json::from_str(&run.out).unwrap();
     let said = &said["images"][0];
     let result = |ending: &str| out.join(format!("{kind}-{deviation}-{side}.{ending}"));
-    let read = |path: &Path| read_picture::<f64>(path, 1 << 20).unwrap();
+    let read = |path: &Path| read_picture::<f64>(path, 1 << 20).unwrap().image;
     let drawn = draw_svg(&fs::read_to_string(result("svg")).unwrap()).unwrap();
     Fitted {
         kind: said["edge"]["kind"].as_str().unwrap().to_owned(),

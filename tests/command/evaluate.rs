@@ -104,7 +104,7 @@ fn float_pixels_come_from_a_numpy_file() {
     array.extend(u16::try_from(header.len()).unwrap().to_le_bytes());
     array.extend(header.as_bytes());
     for name in ["00000.png", "00001.png"] {
-        let image = read_picture::<f64>(&Path::new(&data).join(name), 1 << 20).unwrap().to_interleaved();
+        let image = read_picture::<f64>(&Path::new(&data).join(name), 1 << 20).unwrap().image.to_interleaved();
         array.extend(
             image
                 .iter()

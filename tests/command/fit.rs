@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use dvp::format::{DataSet, Place, encode_png, read_scene};
+use dvp::format::{BitDepth, DataSet, Place, encode_png, read_scene};
 use dvp_core::Scene;
 use serde_json::Value;
 
@@ -115,7 +115,7 @@ fn what_is_hidden_and_marginal_gains_are_said() {
     let values: Vec<f32> = image.data().iter().map(|&v| dvp_core::Real::as_f32(v)).collect();
     let image = dvp_core::Image::from_planar(image.size(), values).unwrap();
     let (picture, out) = (folder.path().join("half.png"), folder.path().join("out"));
-    fs::write(&picture, encode_png(image.view()).unwrap()).unwrap();
+    fs::write(&picture, encode_png(image.view(), BitDepth::Eight).unwrap()).unwrap();
     let arguments = ["fit", text(&picture), "--out", text(&out)];
     let said: Value = serde_json::from_str(&dvp_done(arguments.into_iter().chain(["--json"]))).unwrap();
     let found = &said["images"][0];

@@ -45,7 +45,7 @@ fn hard_edges_have_no_mixed_pixels() {
     let folder = tempfile::tempdir().unwrap();
     dvp_done(["generate", "--count", "4", "--preset", "multi-dsprites", "--out", text(folder.path())]);
     for index in 0..4 {
-        let image: Image<f32> = read_picture(&folder.path().join(format!("0000{index}.png")), 64 * 64).unwrap();
+        let image: Image<f32> = read_picture(&folder.path().join(format!("0000{index}.png")), 64 * 64).unwrap().image;
         // At most five objects and a background: six colors.
         let colors = colors(image.view());
         assert!((2..=6).contains(&colors), "{colors} colors");
@@ -61,7 +61,7 @@ fn difference(renderers: [&str; 2], edge: &[&str]) -> f64 {
         let file = folder.path().join(format!("{renderer}.png"));
         let scenes = data.join("scenes.jsonl");
         dvp_done(["render", text(&scenes), "--index", "0", "--renderer", renderer, "-o", text(&file)]);
-        read_picture::<f64>(&file, 128 * 128).unwrap()
+        read_picture::<f64>(&file, 128 * 128).unwrap().image
     });
     let total: f64 = a.data().iter().zip(b.data()).map(|(a, b)| (a - b).abs()).sum();
     total / f64::of_usize(a.data().len())

@@ -21,3 +21,4 @@ mod rows;
 mod runner;
 mod svg;
 mod train;
+mod transparent;

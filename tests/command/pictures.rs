@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use dvp::format::{encode_png, read_picture, read_scene};
+use dvp::format::{BitDepth, encode_png, read_picture, read_scene};
 use dvp_core::Real;
 use dvp_tests::draw_svg::draw_svg;
 
@@ -21,12 +21,12 @@ fn pictures_are_what_resvg_draws() {
     assert!(!sources.is_empty());
     for source in sources {
         let drawn = draw_svg(&fs::read_to_string(&source).unwrap()).unwrap();
-        let shipped = read_picture::<f64>(&source.with_extension("png"), 1 << 20).unwrap();
+        let shipped = read_picture::<f64>(&source.with_extension("png"), 1 << 20).unwrap().image;
         // Another processor may round a pixel differently.
         let differences = drawn.data().iter().zip(shipped.data()).map(|(a, b)| (a - b).abs());
         let largest = differences.fold(0.0, f64::max);
         assert!(largest < 1.5 / 255.0, "{}: run the example draw_pictures", source.display());
-        assert!(!encode_png(drawn.view()).unwrap().is_empty());
+        assert!(!encode_png(drawn.view(), BitDepth::Eight).unwrap().is_empty());
     }
 }
 
@@ -57,8 +57,8 @@ fn the_shipped_picture_is_taken_apart() {
         assert!(dx.hypot(dy) < 0.5, "{color:?} is off by {dx}, {dy} px");
     }
     // Drawing programs anti-alias by area, which the scene's edge only comes near to; measured 0.0006.
-    let painted = read_picture::<f64>(&out.path().join("shapes.png"), 1 << 20).unwrap();
-    let shipped = read_picture::<f64>(&picture, 1 << 20).unwrap();
+    let painted = read_picture::<f64>(&out.path().join("shapes.png"), 1 << 20).unwrap().image;
+    let shipped = read_picture::<f64>(&picture, 1 << 20).unwrap().image;
     let total: f64 = painted.data().iter().zip(shipped.data()).map(|(a, b)| (a - b).abs()).sum();
     let mean = total / f64::of_usize(painted.data().len());
     assert!(mean < 0.0015, "{mean}");

@@ -77,6 +77,6 @@ fn fits_come_with_an_svg_that_looks_like_the_picture() {
     let picture = data.join("00000.png");
     dvp_done(["fit", text(&picture), "--bank", "mdshr", "--out", text(&out)]);
     let drawn = draw_svg(&fs::read_to_string(out.join("00000.svg")).unwrap()).unwrap();
-    let error = mean_difference(&drawn, &read_picture(&picture, 1 << 20).unwrap());
+    let error = mean_difference(&drawn, &read_picture(&picture, 1 << 20).unwrap().image);
     assert!(error < 0.002, "{error}");
 }

@@ -4,7 +4,7 @@ use core::error::Error;
 use std::fs;
 use std::path::Path;
 
-use dvp::format::{encode_png, write_atomic};
+use dvp::format::{BitDepth, encode_png, write_atomic};
 use dvp_tests::draw_svg::draw_svg;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -13,7 +13,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let path = entry?.path();
         if path.extension().is_some_and(|ending| ending == "svg") {
             let image = draw_svg(&fs::read_to_string(&path)?)?;
-            write_atomic(&path.with_extension("png"), &encode_png(image.view())?)?;
+            write_atomic(&path.with_extension("png"), &encode_png(image.view(), BitDepth::Eight)?)?;
         }
     }
     Ok(())

@@ -9,7 +9,7 @@ use std::fs;
 use std::io::Write as _;
 use std::path::Path;
 
-use dvp::format::{Place, encode_png, read_picture, read_scene, write_atomic};
+use dvp::format::{BitDepth, Place, encode_png, read_picture, read_scene, write_atomic};
 use dvp::paint::Painter;
 use dvp_core::{Image, ImageSize, Real, Scene};
 use dvp_tests::picture_set::{Finish, crowd, score_folder};
@@ -66,7 +66,7 @@ fn main() -> Result<(), Failure> {
     sheet.data_mut().fill(1.0);
     for score in &scores {
         let index: usize = score.stem.parse()?;
-        let input = read_picture::<f64>(&data.join(format!("{index}.png")), 1 << 24)?;
+        let input = read_picture::<f64>(&data.join(format!("{index}.png")), 1 << 24)?.image;
         let (width, height) = (input.size().width(), input.size().height());
         writeln!(
             screen,
@@ -77,7 +77,7 @@ fn main() -> Result<(), Failure> {
         let json = out.join(format!("{index}.json"));
         let scene: Scene<f64> = read_scene(&json)?.to_scene(None, &Place::file(&json))?;
         let outlines = with_outlines(&enlarged(&input, zoom)?, &scene, zoom)?;
-        let painted = read_picture(&out.join(format!("{index}.png")), 1 << 24)?;
+        let painted = read_picture(&out.join(format!("{index}.png")), 1 << 24)?.image;
         let left = index % ACROSS * (3 * PANEL[0] + 2 * GAP + WIDE_GAP);
         let top = index / ACROSS * (PANEL[1] + GAP);
         for (panel, k) in [enlarged(&input, zoom)?, enlarged(&painted, zoom)?, outlines].iter().zip(0..) {
@@ -86,7 +86,7 @@ fn main() -> Result<(), Failure> {
     }
     write!(screen, "{failures}")?;
     // Smaller than the command cares to make it: the file is committed.
-    let sheet = image::load_from_memory(&encode_png(sheet.view())?)?;
+    let sheet = image::load_from_memory(&encode_png(sheet.view(), BitDepth::Eight)?)?;
     let mut png = Vec::new();
     sheet.write_with_encoder(PngEncoder::new_with_quality(&mut png, CompressionType::Best, FilterType::Adaptive))?;
     write_atomic(&root.join("../pictures/gallery.png"), &png)?;

@@ -6,7 +6,7 @@ use core::error::Error;
 use std::fs;
 use std::path::Path;
 
-use dvp::format::{encode_png, write_atomic};
+use dvp::format::{BitDepth, encode_png, write_atomic};
 use dvp_core::{Image, ImageSize};
 use dvp_tests::draw_svg::draw_svg;
 
@@ -26,7 +26,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         )
         .replace("fill-rule=\"evenodd\" stroke=\"none\"", "fill=\"none\" stroke-width=\".06\"");
     let panels = [enlarged(&input)?, enlarged(&read(&out.join("shapes.png"))?)?, draw_svg(&svg)?];
-    write_atomic(&pictures.join("fit.png"), &encode_png(side_by_side(&panels)?.view())?)?;
+    write_atomic(&pictures.join("fit.png"), &encode_png(side_by_side(&panels)?.view(), BitDepth::Eight)?)?;
     Ok(())
 }
 

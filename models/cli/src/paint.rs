@@ -50,6 +50,16 @@ pub enum PaintError {
     Render(#[from] RenderError),
 }
 
+/// Memory of [`Painter::paint_in`], kept between images.
+#[derive(Debug, Default)]
+pub struct PaintScratch<T: Real> {
+    image: Option<Image<T>>,
+    contour: <ContourRenderer<T> as Renderer<T>>::Scratch,
+    triangles: <TriangleRenderer<T> as Renderer<T>>::Scratch,
+    exact: <ExactRenderer as Renderer<T>>::Scratch,
+    hard: <HardRenderer as Renderer<T>>::Scratch,
+}
+
 impl Painter {
     /// The scene's outlines.
     ///
@@ -66,26 +76,54 @@ impl Painter {
     /// # Errors
     /// [`PaintError`] if a number is out of the renderer's range.
     pub fn paint<T: Real>(&self, scene: &Scene<T>, size: ImageSize) -> Result<Image<T>, PaintError> {
+        let mut image = Image::zeros(size);
+        self.paint_to(scene, &mut image, &mut PaintScratch::default())?;
+        Ok(image)
+    }
+
+    /// The scene's image, in the memory of the images before.
+    ///
+    /// # Errors
+    /// As [`Self::paint`].
+    pub fn paint_in<'a, T: Real>(
+        &self,
+        scene: &Scene<T>,
+        size: ImageSize,
+        scratch: &'a mut PaintScratch<T>,
+    ) -> Result<&'a Image<T>, PaintError> {
+        let last = scratch.image.take().filter(|image| image.size() == size);
+        let mut image = last.unwrap_or_else(|| Image::zeros(size));
+        self.paint_to(scene, &mut image, scratch)?;
+        Ok(scratch.image.insert(image))
+    }
+
+    fn paint_to<T: Real>(
+        &self,
+        scene: &Scene<T>,
+        image: &mut Image<T>,
+        scratch: &mut PaintScratch<T>,
+    ) -> Result<(), PaintError> {
         let drawing = self.draw(scene)?;
-        let compositing = scene.compositing;
+        let (compositing, size, pixels) = (scene.compositing, image.size(), image.data_mut());
         match self.renderer {
-            RendererName::Contour => paint_with(&ContourRenderer::new(scene.edge, compositing), &drawing, size),
+            RendererName::Contour => {
+                let renderer = ContourRenderer::new(scene.edge, compositing);
+                renderer.render(&drawing, size, &mut scratch.contour, pixels)?;
+            }
             RendererName::Triangles => {
                 let coverage = SoftTriangles { edge: scene.edge, ..SoftTriangles::default() };
-                paint_with(&TriangleRenderer { coverage, compositing }, &drawing, size)
+                let renderer = TriangleRenderer { coverage, compositing };
+                renderer.render(&drawing, size, &mut scratch.triangles, pixels)?;
             }
-            RendererName::Exact => paint_with(&ExactRenderer { coverage: ExactArea, compositing }, &drawing, size),
-            RendererName::Hard => paint_with(&HardRenderer { coverage: HardMask, compositing }, &drawing, size),
+            RendererName::Exact => {
+                let renderer = ExactRenderer { coverage: ExactArea, compositing };
+                renderer.render(&drawing, size, &mut scratch.exact, pixels)?;
+            }
+            RendererName::Hard => {
+                let renderer = HardRenderer { coverage: HardMask, compositing };
+                renderer.render(&drawing, size, &mut scratch.hard, pixels)?;
+            }
         }
+        Ok(())
     }
-}
-
-fn paint_with<T: Real, R: Renderer<T>>(
-    renderer: &R,
-    drawing: &Drawing<T>,
-    size: ImageSize,
-) -> Result<Image<T>, PaintError> {
-    let mut image = Image::zeros(size);
-    renderer.render(drawing, size, &mut R::Scratch::default(), image.data_mut())?;
-    Ok(image)
 }

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use dvp::format::{Place, SCENES_FILE, SceneJson, encode_png};
+use dvp::format::{BitDepth, Place, SCENES_FILE, SceneJson, encode_png};
 use dvp::generate::spoil::{add_noise, blurred, jpeg};
 use dvp_core::Scene;
 use image::imageops::{FilterType, resize};
@@ -178,7 +178,7 @@ impl Case {
             let image = paint_mds_hr(&scene)?;
             let json = SceneJson { id: Some(index as u64), ..SceneJson::from_scene(&scene, image.size()) };
             lines.push_str(&(json.to_line(&Place::file(folder))? + "\n"));
-            let picture = image::load_from_memory(&encode_png(image.view())?)?;
+            let picture = image::load_from_memory(&encode_png(image.view(), BitDepth::Eight)?)?;
             self.finish.write_picture(folder, &format!("{index:05}"), picture, seed)?;
         }
         fs::write(folder.join(SCENES_FILE), lines)?;

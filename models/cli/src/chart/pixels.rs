@@ -8,7 +8,7 @@ use plotters::style::text_anchor::{HPos, VPos};
 use plotters_backend::{BackendColor, BackendCoord, BackendTextStyle, DrawingErrorKind};
 
 use super::text::Text;
-use crate::format::encode_png;
+use crate::format::{BitDepth, encode_png};
 
 /// The PNG of what `paint` draws on `width` x `height` pixels.
 pub(super) fn png(
@@ -18,7 +18,7 @@ pub(super) fn png(
     let size = ImageSize::new(width as usize, height as usize).context("size of a chart")?;
     let mut pixels = Pixels { size: (width, height), values: vec![1.0; 3 * size.pixels()] };
     paint(&(&mut pixels).into_drawing_area())?;
-    Ok(encode_png(Image::from_interleaved(size, &pixels.values)?.view())?)
+    Ok(encode_png(Image::from_interleaved(size, &pixels.values)?.view(), BitDepth::Eight)?)
 }
 
 /// What plotters paints on. That of plotters itself has no text without a font of the machine.

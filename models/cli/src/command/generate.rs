@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use super::options::{BankChoice, CompositingName, PaintArguments, size_or, square, with_threads};
 use super::{Console, Outcome, progress};
-use crate::format::{Place, SCENES_FILE, SceneJson, bank_to_json, edge_cut, encode_png, write_atomic};
+use crate::format::{BitDepth, Place, SCENES_FILE, SceneJson, bank_to_json, edge_cut, encode_png, write_atomic};
 use crate::generate::{Range, SceneSettings, sample_scene};
 use crate::paint::Painter;
 
@@ -177,6 +177,6 @@ fn write_image(
     let place = Place::file(&path);
     // What is painted is what was written, after rounding.
     let scene = json.to_scene(Some(bank), &place)?;
-    write_atomic(&path, &encode_png(painter.paint(&scene, size)?.view())?)?;
+    write_atomic(&path, &encode_png(painter.paint(&scene, size)?.view(), BitDepth::Eight)?)?;
     Ok(json.to_line(&place)? + "\n")
 }

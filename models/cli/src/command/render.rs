@@ -8,7 +8,7 @@ use dvp_core::{ImageSize, Scene};
 
 use super::options::{BankChoice, PaintArguments, folder_of, size_or, square};
 use super::{Console, Outcome};
-use crate::format::{Place, SceneJson, bank_near, encode_png, read_scene, read_scene_lines, write_atomic};
+use crate::format::{BitDepth, Place, SceneJson, bank_near, encode_png, read_scene, read_scene_lines, write_atomic};
 use crate::svg::to_svg;
 
 /// Draws a scene as PNG or SVG.
@@ -48,7 +48,7 @@ pub(super) fn run(arguments: &Arguments, _: &mut Console<'_>) -> Result<Outcome>
     let size = size(arguments, &json, &place)?;
     let bytes = match ending {
         "svg" => to_svg(&scene, size)?.into_bytes(),
-        "png" => encode_png(arguments.paint.painter().paint(&scene, size)?.view())?,
+        "png" => encode_png(arguments.paint.painter().paint(&scene, size)?.view(), BitDepth::Eight)?,
         _ => bail!("{}: the output must end in .png or .svg", arguments.output.display()),
     };
     write_atomic(&arguments.output, &bytes)?;

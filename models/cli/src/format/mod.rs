@@ -9,7 +9,9 @@
 //! | `data_set.rs` | a folder | its images and, where known, their scenes |
 //! | `labels.rs` | STEM.labels.png | which object each pixel belongs to |
 //! | `npy.rs` | NumPy arrays of float pixels | images |
-//! | `picture.rs` | PNG, JPEG, BMP, GIF, WebP, PNM, TIFF | an [`Image`](dvp_core::Image); and PNG the other way |
+//! | `picture.rs` | PNG, JPEG, BMP, GIF, WebP, PNM, TIFF | a [`Picture`] |
+//! | `matte.rs` | the colors and the alpha of a picture | the color that it is put over where it is transparent |
+//! | `png.rs` | an [`Image`](dvp_core::Image) | PNG |
 //! | `atomic.rs` | bytes | a file that is there whole or not at all |
 //!
 //! `tests/command/bad_input.rs` proves the errors, `tests/command/interrupted.rs` that nothing is left half-written.
@@ -19,8 +21,10 @@ mod bank;
 mod data_set;
 mod error;
 mod labels;
+mod matte;
 mod npy;
 mod picture;
+mod png;
 mod scene_checks;
 mod scene_json;
 
@@ -30,7 +34,8 @@ pub use data_set::{DataSet, SCENES_FILE, Sample, bank_near, pictures_of, read_sc
 pub use error::{FormatError, Place};
 pub use labels::{labels_beside, read_labels};
 pub use npy::read_npy;
-pub use picture::{DEFAULT_MAX_PIXELS, encode_png, from_rgb8, read_picture, to_rgb8};
+pub use picture::{DEFAULT_MAX_PIXELS, Picture, read_picture};
+pub use png::{BitDepth, encode_png, from_rgb8, to_rgb8};
 pub use scene_checks::edge_cut;
 pub(crate) use scene_json::read_text;
 pub use scene_json::{CompositingJson, EdgeJson, EdgeLawJson, ObjectJson, SceneJson, read_scene};

@@ -1,18 +1,18 @@
-//! Pictures: files of the usual formats to RGB, and RGB to PNG.
+//! Pictures: files of the usual formats to RGB.
 //!
 //! Values are taken as stored (no gamma, no color profile): 8 bits over 255, 16 bits over 65535. Gray becomes three
-//! equal channels, palettes their colors, transparency is put over white, the orientation tag of cameras is obeyed, of
-//! an animation the first frame is taken.
+//! equal channels, palettes their colors, transparent pixels are put over a color that the picture does not show (`matte`), the
+//! orientation tag of cameras is obeyed, of an animation the first frame is taken.
 
-use std::io::Cursor;
 use std::path::Path;
 
-use dvp_core::dims::SizeError;
+use dvp_core::image::ImageError;
 use dvp_core::{Image, ImageSize, ImageView, Real};
-use image::error::{LimitError, LimitErrorKind};
-use image::{DynamicImage, ImageDecoder, ImageError, ImageReader, Limits, RgbImage};
+use image::{DynamicImage, ImageDecoder, ImageReader, Limits};
 
 use super::error::FormatError;
+use super::matte::Ground;
+use super::png::BitDepth;
 
 /// Most pixels of a picture unless the user says otherwise: 2^24, a square of 4096.
 pub const DEFAULT_MAX_PIXELS: usize = 1 << 24;
@@ -20,15 +20,46 @@ pub const DEFAULT_MAX_PIXELS: usize = 1 << 24;
 /// Bytes per pixel that a decoder may ask for: four channels of 32 bits, twice (TIFF and WebP keep a copy).
 const DECODER_BYTES: u64 = 32;
 
+/// A picture as read from a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picture<T> {
+    /// Its colors. Where it is transparent, they are mixed with one color that stands for whatever is behind, far from all that
+    /// the picture shows.
+    pub image: Image<T>,
+    /// Whether some pixel lets through what is behind: the background of its scene is no color of the picture then.
+    pub transparent: bool,
+    /// Whether any pixel shows something; if not, the image is white.
+    pub visible: bool,
+    /// Bits of a channel in the file.
+    pub bits: BitDepth,
+}
+
+impl<T> From<Image<T>> for Picture<T> {
+    /// An opaque picture of float pixels.
+    fn from(image: Image<T>) -> Self {
+        Self { image, transparent: false, visible: true, bits: BitDepth::Sixteen }
+    }
+}
+
 /// Reads a picture of at most `max_pixels` pixels. The header is checked before memory for pixels is taken.
 ///
 /// # Errors
 /// [`FormatError::Read`], [`FormatError::Decode`], [`FormatError::Pixels`], or [`FormatError::Values`] for
 /// floating-point files with NaN.
-pub fn read_picture<T: Real>(path: &Path, max_pixels: usize) -> Result<Image<T>, FormatError> {
+pub fn read_picture<T: Real>(path: &Path, max_pixels: usize) -> Result<Picture<T>, FormatError> {
     let (size, picture) = decode(path, max_pixels)?;
-    let pixels = interleaved(&picture);
-    Image::from_interleaved(size, &pixels).map_err(|source| FormatError::Values { path: path.to_path_buf(), source })
+    let color = picture.color();
+    let eight = |value: u8| f64::from(value) / 255.0;
+    let sixteen = |value: u16| f64::from(value) / 65535.0;
+    let result = match (u16::from(color.bytes_per_pixel()) / u16::from(color.channel_count()), color.has_alpha()) {
+        (1, false) => opaque(size, picture.into_rgb8().as_raw(), eight, BitDepth::Eight),
+        (1, true) => translucent(size, picture.into_rgba8().as_raw(), eight, BitDepth::Eight),
+        (2, false) => opaque(size, picture.into_rgb16().as_raw(), sixteen, BitDepth::Sixteen),
+        (2, true) => translucent(size, picture.into_rgba16().as_raw(), sixteen, BitDepth::Sixteen),
+        (_, false) => opaque(size, picture.into_rgb32f().as_raw(), f64::from, BitDepth::Sixteen),
+        (_, true) => translucent(size, picture.into_rgba32f().as_raw(), f64::from, BitDepth::Sixteen),
+    };
+    result.map_err(|source| FormatError::Values { path: path.to_path_buf(), source })
 }
 
 /// The pixels as stored, at least one; turned as the orientation tag says.
@@ -54,57 +85,37 @@ pub(super) fn decode(path: &Path, max_pixels: usize) -> Result<(ImageSize, Dynam
     }
 }
 
-/// r, g, b, r, g, b, ...; transparency over white.
-fn interleaved<T: Real>(picture: &DynamicImage) -> Vec<T> {
-    let real = |value: f32| T::of(f64::from(value));
-    match picture {
-        // The common case, without a detour over f32: value / 255 in T.
-        DynamicImage::ImageRgb8(rgb) => rgb.as_raw().iter().map(|&v| T::of(f64::from(v) / 255.0)).collect(),
-        _ if picture.color().has_alpha() => picture
-            .to_rgba32f()
-            .pixels()
-            .flat_map(|&image::Rgba([r, g, b, a])| [r, g, b].map(|v| real(v * a + (1.0 - a))))
-            .collect(),
-        _ => picture.to_rgb32f().into_raw().into_iter().map(real).collect(),
-    }
+/// A picture of r, g, b, r, g, b, ...
+fn opaque<T: Real, V: Copy>(
+    size: ImageSize,
+    values: &[V],
+    real: impl Fn(V) -> f64,
+    bits: BitDepth,
+) -> Result<Picture<T>, ImageError> {
+    let pixels = values.as_chunks().0.iter().map(|&[r, g, b]| [real(r), real(g), real(b)]);
+    Ok(Picture { bits, ..planar(size, pixels)?.into() })
 }
 
-/// The bytes of an 8-bit RGB PNG; values are clamped to [0, 1] and rounded to the nearest step.
-///
-/// # Errors
-/// As [`to_rgb8`].
-pub fn encode_png<T: Real>(image: ImageView<'_, T>) -> Result<Vec<u8>, FormatError> {
-    let mut png = Cursor::new(Vec::new());
-    let encoder = image::codecs::png::PngEncoder::new(&mut png);
-    to_rgb8(image)?.write_with_encoder(encoder).map_err(|source| FormatError::Encode { source })?;
-    Ok(png.into_inner())
+/// A picture of r, g, b, alpha, r, g, b, alpha, ...
+fn translucent<T: Real, V: Copy>(
+    size: ImageSize,
+    values: &[V],
+    real: impl Fn(V) -> f64 + Copy,
+    bits: BitDepth,
+) -> Result<Picture<T>, ImageError> {
+    let pixels = values.as_chunks().0.iter().map(|pixel: &[V; 4]| pixel.map(real));
+    let ground = Ground::of(pixels.clone());
+    let image = planar(size, pixels.map(|pixel| ground.under(pixel)))?;
+    Ok(Picture { image, transparent: ground != Ground::Opaque, visible: ground != Ground::Invisible, bits })
 }
 
-/// A picture of 8 bits; values are clamped to [0, 1] and rounded to the nearest step.
-///
-/// # Errors
-/// [`FormatError::Encode`] if a side is above 2^32.
-pub fn to_rgb8<T: Real>(image: ImageView<'_, T>) -> Result<RgbImage, FormatError> {
-    let [width, height] = [image.size().width(), image.size().height()].map(u32::try_from);
-    let bytes = (0..image.size().pixels()).flat_map(|i| image.pixel(i).map(byte)).collect();
-    let picture = width.ok().zip(height.ok()).and_then(|(width, height)| RgbImage::from_raw(width, height, bytes));
-    let too_large = || ImageError::Limits(LimitError::from_kind(LimitErrorKind::DimensionError));
-    picture.ok_or_else(|| FormatError::Encode { source: too_large() })
-}
-
-/// The values of a picture of 8 bits, [0, 1].
-///
-/// # Errors
-/// [`SizeError`] if it has no pixel.
-pub fn from_rgb8<T: Real>(picture: &RgbImage) -> Result<Image<T>, SizeError> {
-    let size = ImageSize::new(picture.width() as usize, picture.height() as usize)?;
+fn planar<T: Real>(size: ImageSize, pixels: impl Iterator<Item = [f64; 3]>) -> Result<Image<T>, ImageError> {
     let mut image = Image::zeros(size);
-    let bytes = picture.as_raw().iter().enumerate();
-    bytes.for_each(|(i, &byte)| image.data_mut()[i % 3 * size.pixels() + i / 3] = T::of(f64::from(byte) / 255.0));
+    let (red, rest) = image.data_mut().split_at_mut(size.pixels());
+    let (green, blue) = rest.split_at_mut(size.pixels());
+    for (((red, green), blue), [r, g, b]) in red.iter_mut().zip(green).zip(blue).zip(pixels) {
+        (*red, *green, *blue) = (T::of(r), T::of(g), T::of(b));
+    }
+    ImageView::new(size, image.data())?;
     Ok(image)
-}
-
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to [0, 255] before")]
-fn byte<T: Real>(value: T) -> u8 {
-    (value.as_f64().clamp(0.0, 1.0) * 255.0).round() as u8
 }

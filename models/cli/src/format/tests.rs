@@ -137,9 +137,9 @@ fn png_keeps_eight_bits() {
     let size = ImageSize::new(16, 16).unwrap();
     let values: Vec<f32> = (0..768).map(|i| f32::from(u8::try_from(i % 256).unwrap()) / 255.0).collect();
     let image = Image::from_planar(size, values).unwrap();
-    write_atomic(&path, &encode_png(image.view()).unwrap()).unwrap();
-    let back: Image<f32> = read_picture(&path, 256).unwrap();
-    assert_eq!(back, image);
+    write_atomic(&path, &encode_png(image.view(), BitDepth::Eight).unwrap()).unwrap();
+    let back: Picture<f32> = read_picture(&path, 256).unwrap();
+    assert_eq!(back, Picture { bits: BitDepth::Eight, ..image.into() });
     let error = read_picture::<f32>(&path, 255).unwrap_err().to_string();
     assert!(error.contains("16 x 16") && error.contains("--max-pixels"), "{error}");
 }

@@ -213,7 +213,7 @@ impl Judge<'_> {
         if let Some(stack) = &self.stack {
             return stack.get(index).cloned().context("the NumPy file holds no such image");
         }
-        let picture = || read_picture(&sample.image, self.arguments.batch.max_pixels);
+        let picture = || read_picture(&sample.image, self.arguments.batch.max_pixels).map(|picture| picture.image);
         let generated = self.arguments.network.generated.is_some();
         if self.arguments.against == Against::Png && !generated {
             return Ok(picture()?);

@@ -10,7 +10,6 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use dvp_core::render::Compositing;
-use dvp_core::{Image, ImageSize};
 use dvp_fit::{Fit, FitOptions};
 
 use self::inputs::Input;
@@ -18,15 +17,16 @@ use self::report::{FoundScene, Report};
 use self::solver::{Method, Scratch, Solver, Start};
 use super::options::{BankChoice, BatchArguments, CompositingName};
 use super::{Console, Outcome, in_words};
-use crate::format::{Place, SceneJson, encode_png, read_npy, read_picture, write_atomic};
+use crate::format::{Picture, Place, SceneJson, encode_png, read_npy, read_picture, write_atomic};
 use crate::method::load_network;
-use crate::paint::Painter;
+use crate::paint::{PaintScratch, Painter};
 use crate::svg::to_svg;
 
 /// Finds the objects of pictures: shapes, poses and colors.
 ///
-/// Pictures may have 8 or 16 bits, be gray, in color or have a palette; what is transparent is put over white.
-/// Writes for every picture STEM.json (the scene), STEM.svg (its outlines) and STEM.png (the reconstruction).
+/// Pictures may have 8 or 16 bits, be gray, in color or have a palette; what is transparent is put over a color that the picture does
+/// not show. Writes for every picture STEM.json (the scene), STEM.svg (its outlines) and STEM.png (the reconstruction, of 16 bits
+/// for pictures of more than 8).
 #[derive(Debug, Args)]
 #[command(before_help = "Example: dvp fit picture.png --out out\n         \
                          dvp fit photos/ 'more/*.jpg' --out out --json > fits.json\n         \
@@ -119,7 +119,7 @@ impl From<&str> for StartChoice {
 }
 
 /// A NumPy file holds many pictures; it is read once.
-type Stack = (PathBuf, Vec<Image<f32>>);
+type Stack = (PathBuf, Vec<Picture<f32>>);
 
 pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Outcome> {
     let solver = arguments.solver()?;
@@ -132,7 +132,7 @@ pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Ou
             match read_npy(&path, arguments.batch.max_pixels) {
                 Ok(images) => {
                     pictures.extend((0..images.len()).map(|frame| (path.clone(), Some(frame))));
-                    stacks.push((path, images));
+                    stacks.push((path, images.into_iter().map(Picture::from).collect()));
                 }
                 Err(error) => failures.push(error.to_string()),
             }
@@ -194,23 +194,32 @@ fn try_fit(
     scratch: &mut Scratch,
 ) -> Result<FoundScene> {
     let read;
-    let image = match input.frame {
+    let picture = match input.frame {
         None => {
             read = read_picture(&input.path, arguments.batch.max_pixels)?;
             &read
         }
-        Some(frame) => stack_image(stacks, &input.path, frame).context("image of the stack is gone")?,
+        Some(frame) => stack_picture(stacks, &input.path, frame).context("image of the stack is gone")?,
     };
-    let (fit, time) = solver.solve(image.view(), &input.stem, scratch)?;
-    write_results(arguments, &fit, image.size(), input)?;
-    Ok(FoundScene::new(&fit, image.size(), time.as_secs_f64() * 1e3))
+    let (fit, time) = solver.solve(picture.image.view(), &input.stem, scratch)?;
+    // The scene of a transparent picture is to be told here that it has no background (`picture.transparent`), as soon as scenes
+    // know transparency. Until then its background is the color that the picture was put over.
+    write_results(arguments, &fit, picture, input, &mut scratch.paint)?;
+    Ok(FoundScene::new(&fit, picture, time.as_secs_f64() * 1e3))
 }
 
-fn stack_image<'a>(stacks: &'a [Stack], path: &Path, frame: usize) -> Option<&'a Image<f32>> {
-    stacks.iter().find(|(stack, _)| stack == path).and_then(|(_, images)| images.get(frame))
+fn stack_picture<'a>(stacks: &'a [Stack], path: &Path, frame: usize) -> Option<&'a Picture<f32>> {
+    stacks.iter().find(|(stack, _)| stack == path).and_then(|(_, pictures)| pictures.get(frame))
 }
 
-fn write_results(arguments: &Arguments, fit: &Fit<f32>, size: ImageSize, input: &Input) -> Result<()> {
+fn write_results(
+    arguments: &Arguments,
+    fit: &Fit<f32>,
+    picture: &Picture<f32>,
+    input: &Input,
+    scratch: &mut PaintScratch<f32>,
+) -> Result<()> {
+    let size = picture.image.size();
     let target = arguments.target(input, "json");
     let json = SceneJson::from_scene(&fit.scene, size);
     write_atomic(&target, (json.to_line(&Place::file(&target))? + "\n").as_bytes())?;
@@ -218,8 +227,8 @@ fn write_results(arguments: &Arguments, fit: &Fit<f32>, size: ImageSize, input: 
         write_atomic(&arguments.target(input, "svg"), to_svg(&fit.scene, size)?.as_bytes())?;
     }
     if !arguments.no_png {
-        let image = Painter::default().paint(&fit.scene, size)?;
-        write_atomic(&arguments.target(input, "png"), &encode_png(image.view())?)?;
+        let image = Painter::default().paint_in(&fit.scene, size, scratch)?;
+        write_atomic(&arguments.target(input, "png"), &encode_png(image.view(), picture.bits)?)?;
     }
     Ok(())
 }

@@ -7,6 +7,12 @@ use dvp_fit::{Ambiguity, Completion, Fit, StopReason};
 use serde::Serialize;
 
 use crate::command::statistics::{mean, quantile};
+use crate::format::Picture;
+
+/// Why a scene is one flat color.
+const NO_BETTER: &str = "no better than flat";
+/// The doubt of a scene of nothing.
+const INVISIBLE: &str = "invisible";
 
 /// Tables of more pictures than this show the summary only.
 const MOST_ROWS: usize = 25;
@@ -26,6 +32,8 @@ pub(super) struct Report {
 #[derive(Debug, Serialize)]
 pub(super) struct FoundScene {
     objects: usize,
+    /// Whether the picture lets through what is behind: the color of the background is none of its own.
+    transparent: bool,
     /// Mean absolute error of the reconstruction against the picture.
     mae: f32,
     /// Processor time of the fit alone.
@@ -39,7 +47,8 @@ pub(super) struct FoundScene {
     marginal_gain: Vec<f64>,
     /// Objects by falling marginal gain.
     ranking: Vec<usize>,
-    /// What the fit says against itself: `pose`, `ambiguity`, `stop`, `unexplained`, `redundant`, `faint`.
+    /// What the fit says against itself: `pose`, `ambiguity`, `stop`, `unexplained`, `redundant`, `faint`; and `invisible` where the
+    /// picture is transparent everywhere.
     doubts: Vec<&'static str>,
     /// Standard deviation taken for noise; null for methods that do not estimate it.
     noise: Option<f32>,
@@ -89,9 +98,11 @@ pub(super) struct Summary {
 }
 
 impl FoundScene {
-    pub(super) fn new(fit: &Fit<f32>, size: ImageSize, cpu_ms: f64) -> Self {
+    pub(super) fn new(fit: &Fit<f32>, picture: &Picture<f32>, cpu_ms: f64) -> Self {
+        let doubts = fit.doubts().named().into_iter().filter_map(|(name, is)| is.then_some(name));
         Self {
             objects: fit.scene.objects.len(),
+            transparent: picture.transparent,
             mae: fit.loss,
             cpu_ms,
             steps: fit.steps,
@@ -101,18 +112,28 @@ impl FoundScene {
                 StopReason::Stalled => "stalled",
                 StopReason::Empty => "empty",
                 StopReason::NotFlat => "not flat",
+                StopReason::NoBetterThanFlat => NO_BETTER,
                 _ => "other",
             },
-            edge: EdgeReport::of(&fit.scene.edge, size),
+            edge: EdgeReport::of(&fit.scene.edge, picture.image.size()),
             unexplained: fit.unexplained.is_finite().then_some(fit.unexplained),
             marginal_gain: fit.marginal_gain.clone(),
             ranking: fit.ranking(),
-            doubts: fit.doubts().named().into_iter().filter_map(|(name, is)| is.then_some(name)).collect(),
+            doubts: doubts.chain((!picture.visible).then_some(INVISIBLE)).collect(),
             noise: fit.noise.is_finite().then_some(fit.noise),
             bits: fit.bits.is_finite().then_some(fit.bits),
             ambiguity: fit.ambiguity.iter().map(AmbiguityReport::of).collect(),
             covariance: fit.covariance.clone(),
         }
+    }
+
+    fn is_invisible(&self) -> bool {
+        self.doubts.contains(&INVISIBLE)
+    }
+
+    /// Why there is no more in the scene than there is: why the fit stopped, or that there was nothing to see.
+    fn stop(&self) -> &'static str {
+        if self.is_invisible() { INVISIBLE } else { self.stop }
     }
 
     /// How many objects are guessed in part, and how much of the outline most.
@@ -212,7 +233,7 @@ pub(super) fn table(reports: &[Report]) -> String {
                     percent(found.unexplained),
                     format!("{:.2}", found.cpu_ms),
                     found.steps.to_string(),
-                    found.stop.to_owned(),
+                    found.stop().to_owned(),
                     format!("{} {:.1} px", found.edge.kind, found.edge.width_px),
                     found.hidden(),
                 ]),
@@ -229,6 +250,14 @@ pub(super) fn table(reports: &[Report]) -> String {
             format!("{:.2} (p95 {:.2})", summary.cpu_ms_median, summary.cpu_ms_p95),
         ]);
     }
-    let failed = if summary.failed > 0 { format!("\n{} failed", summary.failed) } else { String::new() };
-    format!("{}{failed}", table.trim_fmt())
+    let count =
+        |is: &dyn Fn(&FoundScene) -> bool| reports.iter().filter_map(|r| r.found.as_ref()).filter(|f| is(f)).count();
+    let remarks = [
+        (summary.failed, "failed"),
+        (count(&|found| found.stop == NO_BETTER), "no better than one flat color, which is their scene"),
+        (count(&FoundScene::is_invisible), "transparent everywhere: nothing is visible"),
+    ];
+    let remarks = remarks.into_iter().filter(|(count, _)| *count > 0);
+    let remarks: String = remarks.map(|(count, remark)| format!("\n{count} {remark}")).collect();
+    format!("{}{remarks}", table.trim_fmt())
 }

@@ -15,6 +15,7 @@ use dvp_net::propose::Proposer;
 
 use crate::format::{Place, read_scene};
 use crate::method;
+use crate::paint::PaintScratch;
 
 /// How a scene is found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -56,6 +57,7 @@ pub(super) struct Solver {
 pub(super) struct Scratch {
     fit: FitScratch<f32>,
     refine: RefineScratch<f32>,
+    pub(super) paint: PaintScratch<f32>,
 }
 
 impl Solver {

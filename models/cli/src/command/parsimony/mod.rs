@@ -32,7 +32,7 @@ use self::summary::Summary;
 use self::trial::{Contender, Subject};
 use super::pictures::Picture;
 use super::{Console, Outcome, generated, html, pictures};
-use crate::format::{DataSet, encode_png, write_atomic};
+use crate::format::{BitDepth, DataSet, encode_png, write_atomic};
 use crate::generate::SceneSettings;
 use crate::method::load_network;
 use crate::paint::RendererName;
@@ -120,7 +120,7 @@ pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Ou
 
     let file = |name: &str, bytes: &[u8]| write_atomic(&arguments.out.join(name), bytes);
     for picture in &pictures {
-        file(&format!("pictures/{}.png", picture.stem), &encode_png(picture.image.view())?)?;
+        file(&format!("pictures/{}.png", picture.stem), &encode_png(picture.image.view(), BitDepth::Eight)?)?;
     }
     file("parsimony.csv", summary::csv(&methods).as_bytes())?;
     file("prices.csv", summary::csv(&prices).as_bytes())?;

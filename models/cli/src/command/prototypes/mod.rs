@@ -146,8 +146,8 @@ fn each<R: Send>(
         paths,
         |path| path.display().to_string(),
         |scratch, index, path| {
-            let image = read_picture(path, arguments.batch.max_pixels).context("not read")?;
-            work(image.view(), index, scratch)
+            let picture = read_picture(path, arguments.batch.max_pixels).context("not read")?;
+            work(picture.image.view(), index, scratch)
         },
     )
 }

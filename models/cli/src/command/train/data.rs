@@ -40,7 +40,7 @@ impl Data {
         let data = DataSet::<f32>::open(folder)?;
         let mut all = Batch::new(Vec::new(), Vec::new());
         for sample in &data.samples {
-            let image: Image<f32> = read_picture(&sample.image, DEFAULT_MAX_PIXELS)?;
+            let image: Image<f32> = read_picture(&sample.image, DEFAULT_MAX_PIXELS)?.image;
             let first = all.images.first().map_or(image.size(), Image::size);
             if image.size() != first {
                 let path = sample.image.display();

@@ -24,7 +24,7 @@ use super::settings::Settings;
 use super::store::Store;
 use crate::command::options::BankChoice;
 use crate::command::{Console, Outcome, progress};
-use crate::format::{SceneJson, encode_png, write_atomic};
+use crate::format::{BitDepth, SceneJson, encode_png, write_atomic};
 
 /// Steps between lines of the curves.
 const LINE_EVERY: u64 = 10;
@@ -194,7 +194,7 @@ impl Run {
         let some = held_out.part(0, SAMPLES);
         let grid = samples::grid(&some.images, &trainer.reconstruct(&some.images)?)?;
         let path = store.path("samples").join(format!("{:08}.png", trainer.steps()));
-        write_atomic(&path, &encode_png(grid.view())?)?;
+        write_atomic(&path, &encode_png(grid.view(), BitDepth::Eight)?)?;
         Ok([image, parameters])
     }
 
@@ -237,7 +237,7 @@ impl Run {
         let mut lines = String::new();
         for (k, image) in batch.images.iter().enumerate() {
             let path = folder.join(format!("{k:05}.png"));
-            write_atomic(&path, &encode_png(image.view())?)?;
+            write_atomic(&path, &encode_png(image.view(), BitDepth::Eight)?)?;
             if let Some(scene) = batch.scenes.get(k) {
                 let mut json = SceneJson::from_scene(scene, image.size());
                 json.id = Some(k as u64);
