@@ -1,7 +1,8 @@
 //! Invariants of every kind of shape.
 
 use dvp_core::shape::{
-    AnyShape, Circle, Ellipse, Flattening, Outline, OutlineBasis, Path, PathRing, Segment, Shape as _,
+    AnyShape, Cap, Circle, Ellipse, FillRule, Flattening, Join, Outline, OutlineBasis, Path, PathRing, Segment,
+    Shape as _, Stroke,
 };
 use dvp_tests::shape_strategy;
 use proptest::prelude::*;
@@ -17,8 +18,103 @@ fn signed_area(polygon: &[[f64; 2]]) -> f64 {
     dvp_core::contour::signed_area(polygon)
 }
 
+/// How often polygons wind around a point, +x to +y positive.
+fn winding<'a>(rings: impl Iterator<Item = &'a [[f64; 2]]>, [x, y]: [f64; 2]) -> i32 {
+    let mut winding = 0;
+    for ring in rings {
+        for (p, q) in ring.iter().zip(ring.iter().cycle().skip(1)) {
+            // A ray to +x crosses the edge.
+            if (p[1] > y) != (q[1] > y) && x < p[0] + (y - p[1]) / (q[1] - p[1]) * (q[0] - p[0]) {
+                winding += if q[1] > p[1] { 1 } else { -1 };
+            }
+        }
+    }
+    winding
+}
+
+/// The distance of a point from the edges of polygons.
+fn edge_distance<'a>(rings: impl Iterator<Item = &'a [[f64; 2]]>, [x, y]: [f64; 2]) -> f64 {
+    let mut least = f64::INFINITY;
+    for ring in rings {
+        for (p, q) in ring.iter().zip(ring.iter().cycle().skip(1)) {
+            let [dx, dy] = [q[0] - p[0], q[1] - p[1]];
+            let share = (((x - p[0]) * dx + (y - p[1]) * dy) / (dx * dx + dy * dy)).clamp(0.0, 1.0);
+            let share = if share.is_nan() { 0.0 } else { share };
+            least = least.min((x - p[0] - share * dx).hypot(y - p[1] - share * dy));
+        }
+    }
+    least
+}
+
+/// Whether two edges cross within both, and not just at an end.
+fn cross_inside([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> bool {
+    let side = |p: [f64; 2], q: [f64; 2], r: [f64; 2]| {
+        let cross = (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
+        // Distance of r from the line.
+        cross / (q[0] - p[0]).hypot(q[1] - p[1])
+    };
+    let apart = |s: f64, t: f64| s.min(t) < -1e-6 && s.max(t) > 1e-6;
+    apart(side(a, b, c), side(a, b, d)) && apart(side(c, d, a), side(c, d, b))
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(256))]
+
+    #[test]
+    fn a_nonzero_fill_becomes_even_odd(
+        rings in shape_strategy::tangled_polygons(),
+        points in prop::collection::vec(prop::array::uniform2(-0.5..4.5_f64), 40),
+    ) {
+        let path_rings = rings.iter().cloned().map(PathRing::polygon).collect();
+        let path = Path { rings: path_rings, fill: FillRule::NonZero };
+        let outline = flattened(&path.into(), 0.1);
+        for point in points {
+            if edge_distance(rings.iter().map(Vec::as_slice), point) < 1e-5 {
+                continue;
+            }
+            let inside = winding(rings.iter().map(Vec::as_slice), point) != 0;
+            // Every ring has the inside on one side, so that the windings are 0 and 1.
+            prop_assert_eq!(winding(outline.rings().iter(), point), i32::from(inside), "{:?} of {:?}", point, outline);
+        }
+        let edges: Vec<_> = outline
+            .rings()
+            .iter()
+            .flat_map(|ring| ring.iter().copied().zip(ring.iter().copied().cycle().skip(1)))
+            .map(|(p, q)| [p, q])
+            .collect();
+        for (i, &edge) in edges.iter().enumerate() {
+            for &other in &edges[..i] {
+                prop_assert!(!cross_inside(edge, other), "{edge:?} crosses {other:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn round_strokes_cover_what_is_near_the_line(
+        rings in prop::collection::vec(shape_strategy::path_ring(), 1..3),
+        width in 0.02..1.0_f64,
+        points in prop::collection::vec(prop::array::uniform2(-1.5..1.5_f64), 40),
+    ) {
+        // The lines as fine polylines; an open ring is closed on the way, by a line that does not count.
+        let mut segments = Vec::new();
+        for ring in &rings {
+            let closed = Path { rings: vec![ring.clone()], fill: FillRule::EvenOdd };
+            let outline = flattened(&closed.into(), 1e-5);
+            let vertices = &outline.vertices;
+            let ends = vertices.iter().skip(1).chain(ring.is_closed().then_some(&vertices[0]));
+            segments.extend(vertices.iter().zip(ends).map(|(&p, &q)| [p, q]));
+        }
+        let stroke = Stroke { rings, width, cap: Cap::Round, join: Join::Round };
+        let outline = flattened(&stroke.into(), 1e-3);
+        for point in points {
+            let distance = segments.iter().map(|edge| edge_distance(core::iter::once(edge.as_slice()), point));
+            let off = distance.fold(f64::INFINITY, f64::min) - width / 2.0;
+            if off.abs() > 2.5e-3 {
+                let winding = winding(outline.rings().iter(), point);
+                prop_assert_eq!(winding, i32::from(off < 0.0), "{:?}, {} off the edge", point, off);
+            }
+        }
+    }
 
     #[test]
     fn numbers_come_back(shape in shape_strategy::shape(), seed in prop::collection::vec(0.1..1.0, 97)) {

@@ -1,7 +1,8 @@
 //! Random shapes of every kind.
 
 use dvp_core::shape::{
-    AnyShape, Circle, Efd, Ellipse, Path, PathRing, Polygon, Prototype, Rectangle, RegularPolygon, Segment, Star,
+    AnyShape, Cap, Circle, Efd, Ellipse, FillRule, Join, Path, PathRing, Polygon, Prototype, Rectangle, RegularPolygon,
+    Segment, Star, Stroke,
 };
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -31,13 +32,41 @@ pub fn path_ring() -> impl Strategy<Value = PathRing<f64>> {
         if is_smooth && (!closed || segments.iter().all(|segment| *segment == Segment::SmoothArc)) {
             segments[0] = Segment::Line;
         }
+        if closed && points.len() == 2 && segments.contains(&Segment::Line) {
+            // No circle leads back against the line that it continues.
+            segments.iter_mut().filter(|segment| **segment == Segment::SmoothArc).for_each(|arc| *arc = Segment::Line);
+        }
         PathRing { points, segments }
     })
 }
 
-/// A path of 1 to 3 rings.
+/// A path of 1 to 3 rings that are filled by either rule.
 pub fn path() -> impl Strategy<Value = Path<f64>> {
-    vec(path_ring(), 1..4).prop_map(|rings| Path { rings })
+    let fill = prop_oneof![Just(FillRule::EvenOdd), Just(FillRule::NonZero)];
+    (vec(path_ring(), 1..4), fill).prop_map(|(rings, fill)| Path { rings, fill })
+}
+
+/// A stroke of 1 to 3 open and closed lines.
+pub fn stroke() -> impl Strategy<Value = Stroke<f64>> {
+    let cap = prop_oneof![Just(Cap::Butt), Just(Cap::Round), Just(Cap::Square)];
+    let join = prop_oneof![(1.0..6.0).prop_map(|limit| Join::Miter { limit }), Just(Join::Round), Just(Join::Bevel)];
+    (vec(path_ring(), 1..4), 0.02..0.6, cap, join).prop_map(|(rings, width, cap, join)| Stroke {
+        rings,
+        width,
+        cap,
+        join,
+    })
+}
+
+/// Polygons that cross, touch, run back over themselves and repeat vertices: on few whole numbers, or anywhere.
+pub fn tangled_polygons() -> impl Strategy<Value = Vec<Vec<[f64; 2]>>> {
+    let on_grid = (0..5_i32, 0..5_i32).prop_map(|(x, y)| [f64::from(x), f64::from(y)]);
+    let anywhere = prop::array::uniform2(0.0..4.0);
+    prop_oneof![
+        vec(vec(on_grid.clone(), 1..10), 1..4),
+        vec(vec(anywhere.clone(), 1..10), 1..4),
+        vec(vec(prop_oneof![on_grid, anywhere], 1..10), 1..4),
+    ]
 }
 
 fn efd() -> impl Strategy<Value = Efd<f64>> {
@@ -66,6 +95,7 @@ pub fn shape() -> impl Strategy<Value = AnyShape<f64>> {
         .into()),
         vec(vec(point(), 3..7), 1..4).prop_map(|rings| Polygon { rings }.into()),
         path().prop_map(AnyShape::from),
+        stroke().prop_map(AnyShape::from),
         efd().prop_map(AnyShape::from),
         (0_usize..9, efd()).prop_map(|(index, efd)| Prototype { index, efd }.into()),
     ]

@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use super::curve::Boundary;
 use super::kind::{Circle, Ellipse, Path, Polygon, PoseFreedom, Prototype, Rectangle, RegularPolygon, Shape, Star};
-use super::{Efd, Flattening, Outline, ShapeError};
+use super::{Efd, Flattening, Outline, ShapeError, Stroke};
 use crate::real::Real;
 
 /// A shape of any kind.
@@ -26,6 +26,8 @@ pub enum AnyShape<T> {
     Polygon(Polygon<T>),
     /// Rings of lines, arcs and cubics.
     Path(Path<T>),
+    /// Lines drawn by a pen of some width.
+    Stroke(Stroke<T>),
     /// Elliptic Fourier descriptors.
     Efd(Efd<T>),
     /// A prototype of a bank.
@@ -85,6 +87,7 @@ impl<T: Real> AnyShape<T> {
             Self::Star(star) => star.cast().into(),
             Self::Polygon(polygon) => polygon.cast().into(),
             Self::Path(path) => path.cast().into(),
+            Self::Stroke(stroke) => stroke.cast().into(),
             Self::Efd(efd) => efd.cast().into(),
             Self::Prototype(prototype) => prototype.cast().into(),
         }
@@ -99,6 +102,7 @@ impl<T: Real> AnyShape<T> {
             Self::Star(star) => star,
             Self::Polygon(polygon) => polygon,
             Self::Path(path) => path,
+            Self::Stroke(stroke) => stroke,
             Self::Efd(efd) => efd,
             Self::Prototype(prototype) => prototype,
         }
@@ -113,6 +117,7 @@ impl<T: Real> AnyShape<T> {
             Self::Star(star) => star,
             Self::Polygon(polygon) => polygon,
             Self::Path(path) => path,
+            Self::Stroke(stroke) => stroke,
             Self::Efd(efd) => efd,
             Self::Prototype(prototype) => prototype,
         }
@@ -129,7 +134,7 @@ macro_rules! from_kinds {
         }
     )+};
 }
-from_kinds!(Circle, Ellipse, Rectangle, RegularPolygon, Star, Polygon, Path, Efd, Prototype);
+from_kinds!(Circle, Ellipse, Rectangle, RegularPolygon, Star, Polygon, Path, Stroke, Efd, Prototype);
 
 impl<T: Real> Shape<T> for AnyShape<T> {
     fn kind(&self) -> &'static str {
@@ -175,5 +180,13 @@ impl<T: Real> Shape<T> for AnyShape<T> {
 
     fn boundary(&self) -> Result<Boundary<T>, ShapeError> {
         self.of_kind().boundary()
+    }
+
+    fn efd_of_ring(&self, ring: usize, harmonic_count: usize) -> Result<(Efd<T>, [T; 2]), ShapeError> {
+        self.of_kind().efd_of_ring(ring, harmonic_count)
+    }
+
+    fn to_path(&self) -> Result<Path<T>, ShapeError> {
+        self.of_kind().to_path()
     }
 }

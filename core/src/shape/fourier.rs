@@ -1,18 +1,31 @@
-//! Descriptors of a closed polygon, by the exact integrals of Kuhl and Giardina (1982).
+//! Descriptors of a closed line, by the exact integrals of Kuhl and Giardina (1982), and by those of arcs and cubics.
 
 use alloc::vec;
 use alloc::vec::Vec;
 
 use num_traits::Float;
 
+use super::bump::Bump;
 use super::{Efd, ShapeError};
 use crate::real::Real;
 
-/// Where an edge starts along the outline, and how the direction of travel turns there.
+/// A piece of a closed line: its chord, and what it is more than its chord.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stretch {
+    pub(super) start: [f64; 2],
+    /// From its start to its end.
+    pub(super) step: [f64; 2],
+    /// Of the piece, not of its chord.
+    pub(super) length: f64,
+    /// None for a straight line.
+    pub(super) bump: Option<Bump>,
+}
+
+/// Where a chord starts along the outline, and how the velocity turns there.
 struct Corner {
     /// Arc length, 0 to 2 pi around the outline.
     phase: f64,
-    /// Unit direction of the edge before minus that of the edge after.
+    /// Chord per length of the piece before, minus that of the piece after.
     turn: [f64; 2],
 }
 
@@ -45,37 +58,65 @@ impl<T: Real> Efd<T> {
         }
         let points = || contour.iter().map(|p| p.map(Real::as_f64));
         let ends = points().cycle().skip(1);
-        let edges =
-            points().zip(ends).map(|(p, q)| (p, [q[0] - p[0], q[1] - p[1]], Float::hypot(q[0] - p[0], q[1] - p[1])));
-        let edges = edges.filter(|&(_, _, length)| length > 0.0);
-        let (count, perimeter) = edges.clone().fold((0, 0.0), |(n, sum), (_, _, length)| (n + 1, sum + length));
-        let Some((_, step, length)) = edges.clone().last().filter(|_| count > 2) else {
-            return Err(ShapeError::TooFewPoints { len: count });
-        };
-        let mut before = [step[0] / length, step[1] / length];
-        let mut along = 0.0;
-        let mut moment = [0.0; 2];
-        let mut rows = vec![[0.0; 4]; harmonic_count];
-        for (start, step, length) in edges {
-            let after = [step[0] / length, step[1] / length];
-            let turn = [before[0] - after[0], before[1] - after[1]];
-            add_corner(&Corner { phase: core::f64::consts::TAU * along / perimeter, turn }, &mut rows);
-            moment[0] += (start[0] + step[0] / 2.0) * length;
-            moment[1] += (start[1] + step[1] / 2.0) * length;
-            along += length;
-            before = after;
-        }
-        for (n, row) in (1..).zip(&mut rows) {
-            let n = f64::of_usize(n) * core::f64::consts::PI;
-            row.iter_mut().for_each(|value| *value *= perimeter / (2.0 * n * n));
-        }
-        let rows: Vec<[T; 4]> = rows.into_iter().map(|row| row.map(T::of)).collect();
-        let center = moment.map(|sum| T::of(sum / perimeter));
-        if !rows.as_flattened().iter().chain(&center).all(|value| value.is_finite()) {
-            return Err(ShapeError::TooLarge);
-        }
-        Ok((Self { rows }, center))
+        let edges = points().zip(ends).map(|(start, end)| {
+            let step = [end[0] - start[0], end[1] - start[1]];
+            Stretch { start, step, length: Float::hypot(step[0], step[1]), bump: None }
+        });
+        descriptors(edges, harmonic_count)
     }
+}
+
+/// The first `harmonic_count` descriptors of the closed line of `stretches` and its mean position, each stretch taking a share
+/// of the parameter equal to its share of the length; those without length are skipped.
+///
+/// # Errors
+/// [`ShapeError::TooFewPoints`] below three straight stretches, [`ShapeError::TooLarge`] if lengths overflow.
+pub(super) fn descriptors<T: Real>(
+    stretches: impl Iterator<Item = Stretch> + Clone,
+    harmonic_count: usize,
+) -> Result<(Efd<T>, [T; 2]), ShapeError> {
+    let stretches = stretches.filter(|stretch| stretch.length > 0.0);
+    let (count, perimeter) = stretches.clone().fold((0, 0.0), |(n, sum), stretch| (n + 1, sum + stretch.length));
+    let is_curved = stretches.clone().any(|stretch| stretch.bump.is_some());
+    let Some(last) = stretches.clone().last().filter(|_| count > 2 || is_curved) else {
+        return Err(ShapeError::TooFewPoints { len: count });
+    };
+    let mut before = [last.step[0] / last.length, last.step[1] / last.length];
+    let mut along = 0.0;
+    let mut moment = [0.0; 2];
+    let mut rows = vec![[0.0; 4]; harmonic_count];
+    for Stretch { start, step, length, .. } in stretches.clone() {
+        let after = [step[0] / length, step[1] / length];
+        let turn = [before[0] - after[0], before[1] - after[1]];
+        add_corner(&Corner { phase: core::f64::consts::TAU * along / perimeter, turn }, &mut rows);
+        moment[0] += (start[0] + step[0] / 2.0) * length;
+        moment[1] += (start[1] + step[1] / 2.0) * length;
+        along += length;
+        before = after;
+    }
+    for (n, row) in (1..).zip(&mut rows) {
+        let n = f64::of_usize(n) * core::f64::consts::PI;
+        row.iter_mut().for_each(|value| *value *= perimeter / (2.0 * n * n));
+    }
+    if is_curved {
+        let mut along = 0.0;
+        for Stretch { length, bump, .. } in stretches {
+            if let Some(bump) = bump {
+                let phase = core::f64::consts::TAU * (along + length / 2.0) / perimeter;
+                bump.add(phase, core::f64::consts::PI * length / perimeter, &mut rows);
+                let mean = bump.mean();
+                moment[0] += mean[0] * length;
+                moment[1] += mean[1] * length;
+            }
+            along += length;
+        }
+    }
+    let rows: Vec<[T; 4]> = rows.into_iter().map(|row| row.map(T::of)).collect();
+    let center = moment.map(|sum| T::of(sum / perimeter));
+    if !rows.as_flattened().iter().chain(&center).all(|value| value.is_finite()) {
+        return Err(ShapeError::TooLarge);
+    }
+    Ok((Efd { rows }, center))
 }
 
 /// Adds turn x cos(n phase), turn x sin(n phase) to row n; the angle goes up by one complex product per harmonic.

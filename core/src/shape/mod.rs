@@ -9,10 +9,13 @@
 //! | `bank` | weights to a mixture of prototypes, [`PrototypeBank`], [`PrototypeModel`] | same file |
 //! | `mdshr` | the built-in bank, [`mdshr_bank`] | |
 //! | `kind` | every kind of shape behind one trait, [`Shape`] | same files |
+//! | `stroke` | what a pen covers along lines, [`Stroke`] | same folder |
 //! | `curve` | boundaries of exact pieces, and what is worked out piece by piece | same folder |
+//! | `resolve` | rings that cross to rings that do not | same folder |
 //! | `any` | a shape of any kind, [`AnyShape`] | same file |
 //! | `outline` | the polygons that renderers paint, [`Outline`], [`Rings`], and how curves become them, [`Flattening`] | |
 //! | `fourier` | closed polygon to descriptors, [`Efd::from_contour`] | none: data, not parameters |
+//! | `bump` | what arcs and cubics add to the descriptors of their chords | |
 //! | `normalize` | descriptors to their normal form, [`Efd::normalize`] | `normalize_vjp` |
 //! | `outline_op`, `normalize_op` | any model's outlines, mixtures and normal forms as steps of a batch | same files |
 //! | `measure` | area, perimeter, truncation error | |
@@ -20,6 +23,7 @@
 
 mod any;
 mod bank;
+mod bump;
 mod curve;
 mod efd;
 mod efd_model;
@@ -33,6 +37,8 @@ mod normalize_op;
 mod normalize_vjp;
 mod outline;
 mod outline_op;
+mod resolve;
+mod stroke;
 mod symmetry;
 #[cfg(test)]
 mod tests;
@@ -44,7 +50,7 @@ use crate::real::Real;
 
 pub use any::AnyShape;
 pub use bank::{PrototypeBank, PrototypeModel};
-pub use curve::{Boundary, Piece, PieceGrad};
+pub use curve::{Boundary, Moments, PathElement, Piece, PieceGrad};
 pub use efd::OutlineBasis;
 pub use efd_model::EfdModel;
 pub use kind::{
@@ -56,6 +62,8 @@ pub use normalize::Normalized;
 pub use normalize_op::NormalizeOp;
 pub use outline::{Flattening, Outline, Rings};
 pub use outline_op::{MixOp, OutlineOp};
+pub use resolve::FillRule;
+pub use stroke::{Cap, Join, Stroke};
 pub use symmetry::{REFERENCE_SYMMETRY_HARMONICS, REFERENCE_SYMMETRY_THRESHOLD, SYMMETRY_TOLERANCE, Symmetry};
 
 /// Vertices of an outline in the reference system: 64 parameters t = i / 63, both end points included.
@@ -210,6 +218,13 @@ pub enum ShapeError {
         /// How many.
         count: usize,
     },
+    /// A ring that is not there.
+    NoRing {
+        /// Which one, from 0.
+        ring: usize,
+        /// How many there are.
+        count: usize,
+    },
     /// A smooth segment of a path has nothing before it whose direction it could continue.
     NoDirection,
     /// The first harmonic vanishes, so that there is no size to normalize by.
@@ -231,10 +246,11 @@ impl core::fmt::Display for ShapeError {
             }
             Self::TooLarge => write!(f, "the contour's lengths overflow: scale its coordinates down"),
             Self::NoDescriptors { kind } => {
-                write!(f, "a {kind} is not made of descriptors; take those of its outline (`Shape::efd`)")
+                write!(f, "a {kind} is not made of descriptors; take those of its outline (`Shape::efd_of_ring`)")
             }
             Self::NotPositive { what } => write!(f, "the {what} must be a positive number"),
             Self::Corners { what, count } => write!(f, "{count} {what}, must be 3 to {MOST_CORNERS}"),
+            Self::NoRing { ring, count } => write!(f, "there is no ring {ring}: the shape has {count}, counted from 0"),
             Self::NoDirection => {
                 write!(
                     f,

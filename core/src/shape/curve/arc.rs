@@ -32,15 +32,21 @@ pub(super) fn circle_radius<T: Real>(angle: T) -> T {
 
 /// The edges of an arc of `chord` length, at least 2: one vertex at least is needed to keep the area, and to feel the
 /// bulge of a straight line.
-pub(super) fn edges<T: Real>(chord: T, bulge: T, tolerance: T) -> usize {
+pub(crate) fn edges<T: Real>(chord: T, bulge: T, tolerance: T) -> usize {
     let sweep = sweep(bulge);
-    // radius x sweep^2, without the radius, which is infinite at bulge 0: the radius is chord / (2 sin(sweep / 2)).
-    let bent = (chord * sweep / sinc(sweep * T::of(0.5))).abs();
+    // radius x sweep, without the radius, which is infinite at bulge 0: the radius is chord / (2 sin(sweep / 2)).
+    let length = chord / sinc(sweep * T::of(0.5));
+    edges_of_length(length.abs(), sweep.abs(), tolerance).max(2)
+}
+
+/// The edges of an arc of `length` that turns by `sweep`, at least 1.
+pub(crate) fn edges_of_length<T: Real>(length: T, sweep: T, tolerance: T) -> usize {
+    let bent = length * sweep;
     // n (n - 1) times the tolerance is at least bent / 11: next to a fixed end vertices stand further out.
     let half = T::of(0.5);
     let count = half + (half * half + bent / (T::of(EDGE) * tolerance)).sqrt();
-    let widest = sweep.abs() / T::of(WIDEST_EDGE);
-    count.max(widest).to_count().saturating_add(1).clamp(2, MOST_EDGES)
+    let widest = sweep / T::of(WIDEST_EDGE);
+    count.max(widest).to_count().saturating_add(1).clamp(1, MOST_EDGES)
 }
 
 /// The angle of an arc, radians.
@@ -49,7 +55,7 @@ pub(crate) fn sweep<T: Real>(bulge: T) -> T {
 }
 
 /// An arc cut into edges of equal angle.
-pub(super) struct CutArc<T> {
+pub(crate) struct CutArc<T> {
     pub(super) sweep: T,
     pub(super) edges: T,
     /// sinc(sweep / 2).
@@ -59,7 +65,7 @@ pub(super) struct CutArc<T> {
 }
 
 impl<T: Real> CutArc<T> {
-    pub(super) fn new(sweep: T, edges: usize) -> Self {
+    pub(crate) fn new(sweep: T, edges: usize) -> Self {
         let n = T::of_usize(edges);
         let sinc = sinc(sweep * T::of(0.5));
         let angle = sweep / n;
@@ -69,7 +75,7 @@ impl<T: Real> CutArc<T> {
     }
 
     /// What the chord is multiplied by to come from the start of the arc to vertex `k`, 0 < k < edges.
-    pub(super) fn factor(&self, k: usize) -> Vec2<T> {
+    pub(crate) fn factor(&self, k: usize) -> Vec2<T> {
         let share = T::of_usize(k) / self.edges;
         let half = self.sweep * T::of(0.5);
         let ratio = share * sinc(share * half) / self.sinc;
@@ -92,6 +98,15 @@ pub(super) fn outward<T: Real>(angle: T) -> Vec2<T> {
 /// and e = n g / (n - 1 + sqrt((n - 1)^2 + n (n - 2) g)): no digits are lost at small angles.
 pub(super) fn spread<T: Real>(n: T, g: T) -> T {
     n - T::one() + root(n, g)
+}
+
+/// The share of the radius by which the inner vertices of an arc of `edges` stand outside. *Derivative*:
+/// [`stand_out_slope`](super::arc_vjp::stand_out_slope).
+pub(crate) fn stand_out<T: Real>(sweep: T, edges: usize) -> T {
+    let n = T::of_usize(edges);
+    let angle = sweep / n;
+    let g = angle * angle * excess(angle);
+    n * g / spread(n, g)
 }
 
 /// sqrt((n - 1)^2 + n (n - 2) g).

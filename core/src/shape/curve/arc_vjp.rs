@@ -5,7 +5,7 @@ use crate::geometry::Vec2;
 use crate::real::Real;
 
 /// What [`CutArc::factor_slope`] needs beside the arc.
-pub(super) struct ArcSlopes<T> {
+pub(crate) struct ArcSlopes<T> {
     /// Of `CutArc::sinc`, per radian of the sweep.
     sinc: T,
     /// Of `CutArc::push`.
@@ -14,13 +14,12 @@ pub(super) struct ArcSlopes<T> {
 
 impl<T: Real> CutArc<T> {
     /// The derivatives of the numbers of the arc.
-    pub(super) fn slopes(&self) -> ArcSlopes<T> {
+    pub(crate) fn slopes(&self) -> ArcSlopes<T> {
         let (one, half, two) = (T::one(), T::of(0.5), T::of(2.0));
         let n = self.edges;
         let angle = self.sweep / n;
         let (value, slope) = (excess(angle), excess_slope(angle) / n);
-        let g = angle * angle * value;
-        let g_slope = angle * angle * slope + two * angle / n * value;
+        let (g, g_slope) = (angle * angle * value, squared_excess_slope(angle) / n);
         let spread_slope = n * (n - two) * g_slope / (two * root(n, g));
         let spread = spread(n, g);
         let sinc = half * sinc_slope(self.sweep * half);
@@ -31,7 +30,7 @@ impl<T: Real> CutArc<T> {
     }
 
     /// The derivative of [`Self::factor`] with respect to the sweep, the number of edges kept.
-    pub(super) fn factor_slope(&self, k: usize, slopes: &ArcSlopes<T>) -> Vec2<T> {
+    pub(crate) fn factor_slope(&self, k: usize, slopes: &ArcSlopes<T>) -> Vec2<T> {
         let (one, half) = (T::one(), T::of(0.5));
         let share = T::of_usize(k) / self.edges;
         let at = share * self.sweep * half;
@@ -45,4 +44,19 @@ impl<T: Real> CutArc<T> {
             + away * slopes.push
             + away.perp() * (self.push * (share - half))
     }
+}
+
+/// The derivative of [`stand_out`](super::arc::stand_out) with respect to the sweep.
+pub(crate) fn stand_out_slope<T: Real>(sweep: T, edges: usize) -> T {
+    let (n, two) = (T::of_usize(edges), T::of(2.0));
+    let angle = sweep / n;
+    let (g, g_slope) = (angle * angle * excess(angle), squared_excess_slope(angle) / n);
+    let spread_slope = n * (n - two) * g_slope / (two * root(n, g));
+    let spread = spread(n, g);
+    n * (g_slope - g * spread_slope / spread) / spread
+}
+
+/// The derivative of angle^2 x excess(angle).
+fn squared_excess_slope<T: Real>(angle: T) -> T {
+    angle * (angle * excess_slope(angle) + T::of(2.0) * excess(angle))
 }

@@ -9,8 +9,7 @@ use crate::real::Real;
 /// Halvings until a cubic has [`MOST_EDGES`] edges.
 const DEEPEST: u32 = MOST_EDGES.ilog2();
 
-/// Most that the direction turns along an edge of a parallel, as a tangent: 45 degrees. What turns faster at the last
-/// halving is a cusp.
+/// Most that the direction turns along an edge of a parallel, radians, whatever the tolerance.
 const WIDEST_TURN: f64 = 1.0;
 
 /// Appends the parameters at which a cubic is cut, rising, 0 and 1 left out and at least one: middles of halves, quarters
@@ -55,10 +54,15 @@ fn is_flat<T: Real>(points: &[Vec2<T>; 4], tolerance: T, distance: T) -> bool {
     if distance <= T::zero() {
         return true;
     }
-    let turn = turning(points);
-    // An arc of this length and turn has the height length x turn / 8, and three quarters of the tolerance are there for it.
     let length = (first - from).length() + (second - first).length() + (to - second).length();
-    turn <= T::of(WIDEST_TURN) && turn * (length + distance * turn) <= T::of(6.0) * tolerance
+    !is_turn_too_wide(turning(points), length, distance, tolerance)
+}
+
+/// Whether an edge that turns by `turn` radians over `length` is too long for the parallels of a curve up to `distance`.
+///
+/// An arc has the height length x turn / 8, and three quarters of the tolerance are there for it.
+pub(crate) fn is_turn_too_wide<T: Real>(turn: T, length: T, distance: T, tolerance: T) -> bool {
+    turn > T::of(WIDEST_TURN) || turn * (length + distance * turn) > T::of(6.0) * tolerance
 }
 
 /// The tangents of the angles at the control points, added up: at least the angle by which the direction turns.

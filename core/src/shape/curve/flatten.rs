@@ -7,10 +7,11 @@ use super::cubic::{CubicVertex, cut, pushed};
 use super::{Boundary, Piece};
 use crate::geometry::Vec2;
 use crate::real::Real;
-use crate::shape::{Outline, ShapeError};
+use crate::shape::resolve::resolve;
+use crate::shape::{FillRule, Outline, ShapeError};
 
 impl<T: Real> Boundary<T> {
-    /// Appends the rings as polygons that stray at most `tolerance` from them (in the units of the pieces) and enclose the
+    /// Appends what the rings enclose as polygons that stray at most `tolerance` from them (in the units of the pieces) and enclose the
     /// same area: that of lines, arcs and ellipses to all digits, that of cubics up to the fourth power of the length of an
     /// edge. A piece has at most 1024 edges, whatever the tolerance.
     ///
@@ -19,6 +20,17 @@ impl<T: Real> Boundary<T> {
     /// # Errors
     /// [`ShapeError::TooLarge`] if a vertex is not finite; the outline may then hold a part.
     pub fn flatten(&self, tolerance: T, outline: &mut Outline<T>) -> Result<(), ShapeError> {
+        if self.fill == FillRule::EvenOdd {
+            return self.flatten_rings(tolerance, outline);
+        }
+        let mut raw = Outline::default();
+        self.flatten_rings(tolerance, &mut raw)?;
+        resolve(raw.rings(), self.fill)?.append(&raw.vertices, outline);
+        Ok(())
+    }
+
+    /// As [`Self::flatten`], ring by ring, crossings left as they are.
+    pub(super) fn flatten_rings(&self, tolerance: T, outline: &mut Outline<T>) -> Result<(), ShapeError> {
         let mut parameters = Vec::new();
         for ring in self.rings() {
             outline.start_ring();

@@ -9,30 +9,40 @@ use super::flatten::directions;
 use super::{Boundary, Piece, PieceGrad};
 use crate::geometry::Vec2;
 use crate::real::Real;
-use crate::shape::ShapeError;
+use crate::shape::resolve::resolve;
+use crate::shape::{FillRule, Outline, ShapeError};
 
 impl<T: Real> Boundary<T> {
     /// The gradient of sum(`grad_vertices` x vertices) with respect to every piece, vertices as [`Self::flatten`] writes
     /// them to an empty outline. Exact; the numbers of vertices are taken as constant.
     ///
     /// # Errors
-    /// [`ShapeError::Length`] if there is not one gradient per vertex.
+    /// [`ShapeError::Length`] if there is not one gradient per vertex, others as in [`Self::flatten`].
     pub fn flatten_vjp(&self, tolerance: T, grad_vertices: &[[T; 2]]) -> Result<Vec<PieceGrad<T>>, ShapeError> {
+        if self.fill == FillRule::EvenOdd {
+            return self.flatten_rings_vjp(tolerance, grad_vertices);
+        }
+        let mut raw = Outline::default();
+        self.flatten_rings(tolerance, &mut raw)?;
+        let grad_raw = resolve(raw.rings(), self.fill)?.vjp(&raw.vertices, grad_vertices)?;
+        self.flatten_rings_vjp(tolerance, &grad_raw)
+    }
+
+    fn flatten_rings_vjp(&self, tolerance: T, grad_vertices: &[[T; 2]]) -> Result<Vec<PieceGrad<T>>, ShapeError> {
         let mut grads = vec![PieceGrad::default(); self.pieces.len()];
         let mut parameters = Vec::new();
         let mut rest = grad_vertices.iter().map(|&grad| Vec2::from(grad));
+        let mut missing = false;
         for (piece, grad) in self.pieces.iter().zip(&mut grads) {
-            piece
-                .flatten_vjp(tolerance, &mut parameters, &mut rest, grad)
-                .ok_or_else(|| self.wrong_length(tolerance, grad_vertices.len()))?;
+            missing |= piece.flatten_vjp(tolerance, &mut parameters, &mut rest, grad).is_none();
         }
-        if rest.next().is_some() { Err(self.wrong_length(tolerance, grad_vertices.len())) } else { Ok(grads) }
-    }
-
-    fn wrong_length(&self, tolerance: T, len: usize) -> ShapeError {
-        let (mut parameters, mut vertices) = (Vec::new(), Vec::new());
-        self.pieces.iter().for_each(|piece| piece.flatten(tolerance, &mut parameters, &mut vertices));
-        ShapeError::Length { what: "gradient of the vertices", expected: vertices.len(), len }
+        if missing || rest.next().is_some() {
+            let mut vertices = Vec::new();
+            self.pieces.iter().for_each(|piece| piece.flatten(tolerance, &mut parameters, &mut vertices));
+            let (expected, len) = (vertices.len(), grad_vertices.len());
+            return Err(ShapeError::Length { what: "gradient of the vertices", expected, len });
+        }
+        Ok(grads)
     }
 }
 

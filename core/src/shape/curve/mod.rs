@@ -7,6 +7,11 @@
 //! |---|---|---|
 //! | `flatten` | boundary to polygons that keep its area, [`Boundary::flatten`] | `flatten_vjp` |
 //! | `arc` | the vertices of a circular arc between fixed ends | `arc_vjp` |
+//! | `direction` | where a piece points at its ends | `direction_vjp` |
+//! | `measure` | lengths, points, boxes | |
+//! | `moments` | area, centroid, second moments | |
+//! | `efd` | descriptors of a ring, without sampling | |
+//! | `element` | boundaries for drawing programs, and as paths | |
 //! | `cubic` | where a cubic is cut, and its vertices or those of a parallel | `cubic_vjp` |
 //!
 //! *Why polygons need care*: vertices on a curve make a polygon inside of it. A circle drawn that way is too small by a
@@ -17,17 +22,31 @@ mod arc;
 mod arc_vjp;
 mod cubic;
 mod cubic_vjp;
+mod direction;
+mod direction_vjp;
+mod efd;
+mod element;
 mod flatten;
 mod flatten_vjp;
+mod measure;
+mod moments;
 #[cfg(test)]
 mod tests;
 
 use alloc::vec::Vec;
 
+use super::FillRule;
 use crate::geometry::Vec2;
 use crate::real::Real;
 
-pub(super) use arc::sweep;
+pub use element::PathElement;
+pub use moments::Moments;
+
+pub(super) use arc::{CutArc, edges, edges_of_length, stand_out, sweep};
+pub(super) use arc_vjp::stand_out_slope;
+pub(super) use cubic::{CubicVertex, cut, derivatives, is_turn_too_wide, push};
+pub(super) use direction::End;
+pub(super) use flatten_vjp::conjugate;
 
 /// Most edges that the polygon of one piece has, whatever the tolerance: a circle of radius 2900 px at 0.01 px.
 pub(super) const MOST_EDGES: usize = 1024;
@@ -72,13 +91,15 @@ pub struct PieceGrad<T> {
     pub bulge: T,
 }
 
-/// The exact boundary of a shape: closed rings of pieces, filled by the even-odd rule.
+/// The exact boundary of a shape: closed rings of pieces.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Boundary<T> {
     /// The pieces of all rings.
     pub pieces: Vec<Piece<T>>,
     /// Where each ring but the first starts, rising; empty for one ring.
     pub breaks: Vec<usize>,
+    /// What the rings fill.
+    pub fill: FillRule,
 }
 
 impl<T: Real> Boundary<T> {
@@ -123,6 +144,22 @@ impl<T: Real> Piece<T> {
             Self::Line { to, .. } | Self::Arc { to, .. } => to,
             Self::Ellipse { center, axes } => center + axes[0],
             Self::Cubic(points) => points[3],
+        }
+    }
+}
+
+impl<T: Real> Piece<T> {
+    /// The same in another precision.
+    #[must_use]
+    pub fn cast<U: Real>(&self) -> Piece<U> {
+        let point = |point: Vec2<T>| Vec2::new(U::of(point.x.as_f64()), U::of(point.y.as_f64()));
+        match *self {
+            Self::Line { from, to } => Piece::Line { from: point(from), to: point(to) },
+            Self::Arc { from, to, bulge } => {
+                Piece::Arc { from: point(from), to: point(to), bulge: U::of(bulge.as_f64()) }
+            }
+            Self::Ellipse { center, axes } => Piece::Ellipse { center: point(center), axes: axes.map(point) },
+            Self::Cubic(points) => Piece::Cubic(points.map(point)),
         }
     }
 }

@@ -63,7 +63,7 @@ impl<T: Real> Path<T> {
     /// The same in another precision.
     #[must_use]
     pub fn cast<U: Real>(&self) -> Path<U> {
-        Path { rings: self.rings.iter().map(PathRing::cast).collect() }
+        Path { rings: self.rings.iter().map(PathRing::cast).collect(), fill: self.fill }
     }
 }
 

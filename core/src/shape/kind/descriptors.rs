@@ -88,7 +88,15 @@ impl<T: Real> Shape<T> for Efd<T> {
         let cubics = nodes.iter().zip(ends).map(|(&[from, leaves], &[to, arrives])| {
             Piece::Cubic([from, from + leaves * third, to - arrives * third, to])
         });
-        Ok(Boundary { pieces: cubics.collect(), breaks: Vec::new() })
+        Ok(Boundary { pieces: cubics.collect(), ..Boundary::default() })
+    }
+
+    /// The descriptors themselves, around the origin.
+    fn efd_of_ring(&self, ring: usize, harmonic_count: usize) -> Result<(Efd<T>, [T; 2]), ShapeError> {
+        if ring > 0 {
+            return Err(ShapeError::NoRing { ring, count: 1 });
+        }
+        Ok((self.resized(harmonic_count), [T::zero(); 2]))
     }
 }
 
@@ -159,5 +167,9 @@ impl<T: Real> Shape<T> for Prototype<T> {
 
     fn boundary(&self) -> Result<Boundary<T>, ShapeError> {
         self.efd.boundary()
+    }
+
+    fn efd_of_ring(&self, ring: usize, harmonic_count: usize) -> Result<(Efd<T>, [T; 2]), ShapeError> {
+        self.efd.efd_of_ring(ring, harmonic_count)
     }
 }

@@ -57,7 +57,7 @@ impl<T: Real> Ellipse<T> {
     fn boundary(&self) -> Result<Boundary<T>, ShapeError> {
         let zero = T::zero();
         let axes = [Vec2::new(self.radii[0], zero), Vec2::new(zero, self.radii[1])];
-        Ok(Boundary { pieces: vec![Piece::Ellipse { center: Vec2::default(), axes }], breaks: Vec::new() })
+        Ok(Boundary { pieces: vec![Piece::Ellipse { center: Vec2::default(), axes }], ..Boundary::default() })
     }
 
     fn boundary_vjp(&self, grads: &[PieceGrad<T>]) -> [T; 2] {

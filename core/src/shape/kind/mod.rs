@@ -29,8 +29,9 @@ mod tests;
 use alloc::string::String;
 use alloc::vec::Vec;
 
-use super::curve::Boundary;
-use super::{Flattening, Outline, ShapeError};
+use super::curve::{Boundary, Moments};
+use super::{Efd, Flattening, Outline, ShapeError};
+use crate::geometry::Bounds;
 use crate::real::Real;
 
 pub use descriptors::Prototype;
@@ -97,6 +98,62 @@ pub trait Shape<T: Real> {
     /// # Errors
     /// [`ShapeError`] if the numbers describe no shape.
     fn boundary(&self) -> Result<Boundary<T>, ShapeError>;
+
+    /// The descriptors of a ring of the boundary, exactly, and its center: [`Boundary::efd`].
+    ///
+    /// # Errors
+    /// As [`Self::boundary`] and [`Boundary::efd`].
+    fn efd_of_ring(&self, ring: usize, harmonic_count: usize) -> Result<(Efd<T>, [T; 2]), ShapeError> {
+        self.boundary()?.efd(ring, harmonic_count)
+    }
+
+    /// The same shape as a path: [`Boundary::to_path`].
+    ///
+    /// # Errors
+    /// As [`Self::boundary`].
+    fn to_path(&self) -> Result<Path<T>, ShapeError> {
+        Ok(self.boundary()?.to_path())
+    }
+
+    /// The area inside: [`Boundary::moments`].
+    ///
+    /// # Errors
+    /// As [`Self::boundary`] and [`Boundary::moments`].
+    fn area(&self) -> Result<T, ShapeError> {
+        Ok(self.moments()?.area)
+    }
+
+    /// The mean position of the inside.
+    ///
+    /// # Errors
+    /// As [`Self::area`].
+    fn centroid(&self) -> Result<[T; 2], ShapeError> {
+        Ok(self.moments()?.centroid)
+    }
+
+    /// Area, centroid and second moments of the inside: [`Boundary::moments`].
+    ///
+    /// # Errors
+    /// As [`Self::area`].
+    fn moments(&self) -> Result<Moments<T>, ShapeError> {
+        self.boundary()?.moments()
+    }
+
+    /// The length of the boundary, of all its rings.
+    ///
+    /// # Errors
+    /// As [`Self::boundary`].
+    fn perimeter(&self) -> Result<T, ShapeError> {
+        Ok(self.boundary()?.perimeter())
+    }
+
+    /// The smallest upright box around the boundary; none if the shape is empty.
+    ///
+    /// # Errors
+    /// As [`Self::boundary`].
+    fn bounds(&self) -> Result<Option<Bounds<T>>, ShapeError> {
+        Ok(self.boundary()?.bounds())
+    }
 }
 
 /// Which parts of a pose say something that the numbers of a shape do not: the others are left as they are when a scene

@@ -8,16 +8,18 @@ use alloc::vec::Vec;
 use super::{PoseFreedom, Shape, check_length, check_numbers};
 use crate::geometry::Vec2;
 use crate::real::Real;
-use crate::shape::curve::Boundary;
-use crate::shape::{Flattening, Outline, ShapeError};
+use crate::shape::curve::{Boundary, Piece, PieceGrad};
+use crate::shape::{FillRule, Flattening, Outline, ShapeError};
 
-/// What lies inside of an odd number of rings; open ones are closed by a straight line.
+/// What rings of lines, arcs and cubics fill; open ones are closed by a straight line.
 ///
 /// The numbers are, ring by ring, its points and then what else its segments have.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Path<T> {
     /// The rings.
     pub rings: Vec<PathRing<T>>,
+    /// What they fill.
+    pub fill: FillRule,
 }
 
 /// A closed ring, or an open line, of segments.
@@ -32,7 +34,7 @@ pub struct PathRing<T> {
 /// How a path leads from one point to the next.
 ///
 /// The smooth ones leave in the direction in which the segment before them arrives; the first of a closed ring in that of
-/// the last.
+/// the last. A segment without length passes on the direction of the one before it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Segment<T> {
     /// Straight.
@@ -54,8 +56,7 @@ pub enum Segment<T> {
     SmoothCubic {
         /// Distance of the first control point from the start.
         handle: T,
-        /// The second control point. Where it is the end itself, the direction in which the cubic arrives is taken as that
-        /// from its start.
+        /// The second control point.
         control: [T; 2],
     },
 }
@@ -80,6 +81,11 @@ impl<T> Segment<T> {
             Self::SmoothCubic { handle, control } => (Some(handle), control),
         };
         first.into_iter().chain(rest)
+    }
+
+    /// Whether it continues the direction of the one before it.
+    pub(super) fn is_smooth(&self) -> bool {
+        matches!(self, Self::SmoothArc | Self::SmoothCubic { .. })
     }
 
     fn number_names(&self) -> &'static [&'static str] {
@@ -124,16 +130,16 @@ impl<T: Real> PathRing<T> {
         2 * self.points.len() + self.segments.iter().map(Segment::number_count).sum::<usize>()
     }
 
-    fn numbers(&self) -> impl Iterator<Item = &T> {
+    pub(in crate::shape) fn numbers(&self) -> impl Iterator<Item = &T> {
         self.points.as_flattened().iter().chain(self.segments.iter().flat_map(Segment::numbers))
     }
 
-    fn numbers_mut(&mut self) -> impl Iterator<Item = &mut T> {
+    pub(in crate::shape) fn numbers_mut(&mut self) -> impl Iterator<Item = &mut T> {
         let segments = self.segments.iter_mut().flat_map(Segment::numbers_mut);
         self.points.as_flattened_mut().iter_mut().chain(segments)
     }
 
-    fn number_names(&self) -> impl Iterator<Item = String> {
+    pub(in crate::shape) fn number_names(&self) -> impl Iterator<Item = String> {
         let points = (0..self.points.len()).flat_map(|k| [0, 1].map(|axis| format!("points[{k}][{axis}]")));
         let segments = self.segments.iter().enumerate();
         let segments = segments
@@ -143,13 +149,13 @@ impl<T: Real> PathRing<T> {
 }
 
 impl<T: Real> Path<T> {
-    /// A path.
+    /// A path that fills what lies inside of an odd number of rings.
     ///
     /// # Errors
     /// [`ShapeError::Length`] if a ring has neither as many segments as points nor one less, [`ShapeError::NoDirection`] if
     /// there is none for a smooth segment to continue, [`ShapeError::NotFinite`].
     pub fn new(rings: Vec<PathRing<T>>) -> Result<Self, ShapeError> {
-        let path = Self { rings };
+        let path = Self { rings, fill: FillRule::EvenOdd };
         if let Some(index) = path.rings.iter().flat_map(PathRing::numbers).position(|number| !number.is_finite()) {
             return Err(ShapeError::NotFinite { index });
         }
@@ -160,7 +166,7 @@ impl<T: Real> Path<T> {
     /// Adds the gradient of the numbers, given that of the pieces of the boundary.
     pub(in crate::shape) fn boundary_vjp(
         &self,
-        grads: &[crate::shape::curve::PieceGrad<T>],
+        grads: &[PieceGrad<T>],
         grad_numbers: &mut [T],
     ) -> Result<(), ShapeError> {
         let (mut grads, mut grad_numbers) = (grads, grad_numbers);
@@ -218,14 +224,18 @@ impl<T: Real> Shape<T> for Path<T> {
     }
 
     fn boundary(&self) -> Result<Boundary<T>, ShapeError> {
-        let mut boundary = Boundary::default();
+        let mut boundary = Boundary { fill: self.fill, ..Boundary::default() };
         for ring in &self.rings {
             boundary.start_ring();
             ring.pieces(&mut boundary.pieces)?;
             if let (false, Some(&start), Some(&end)) = (ring.is_closed(), ring.points.first(), ring.points.last()) {
-                boundary.pieces.push(crate::shape::curve::Piece::Line { from: Vec2::from(end), to: Vec2::from(start) });
+                boundary.pieces.push(Piece::Line { from: Vec2::from(end), to: Vec2::from(start) });
             }
         }
         Ok(boundary)
+    }
+
+    fn to_path(&self) -> Result<Self, ShapeError> {
+        Ok(self.clone())
     }
 }

@@ -125,7 +125,7 @@ fn an_absurd_tolerance_makes_no_more_than_1024_edges() {
             points: vec![[0.0, 0.0], [1.0, 0.0]],
             segments: vec![Segment::Arc { bulge: 1.0 }, Segment::Cubic { controls: [[1.0, 1.0], [0.0, -1.0]] }],
         };
-        Path { rings: vec![ring] }.flatten(&how, &mut outline).unwrap();
+        Path::new(vec![ring]).unwrap().flatten(&how, &mut outline).unwrap();
         assert!((12..=3 * 1024).contains(&outline.vertices.len()), "{tolerance}: {}", outline.vertices.len());
     }
 }
