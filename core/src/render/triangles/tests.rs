@@ -1,6 +1,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
+use super::triangulate::coarse_to_fine;
 use super::{Delaunay, Face, SoftTriangles, Triangulate, TriangulationReport};
 use crate::dims::ImageSize;
 use crate::render::triangles::TriangleScratch;
@@ -25,6 +26,16 @@ fn triangulate_rings(rings: Rings<'_, f64>) -> (Vec<Face>, TriangulationReport) 
     let mut faces = vec![[7; 3]];
     let report = Delaunay.triangulate(rings, &mut faces);
     (faces, report)
+}
+
+#[test]
+fn every_vertex_is_inserted_once() {
+    for count in [0, 1, 2, 3, 4, 5, 8, 9, 31, 100] {
+        let mut order: Vec<_> = coarse_to_fine(count).collect();
+        assert!(order.len() < 3 || order[1] >= count / 2, "{order:?}");
+        order.sort_unstable();
+        assert_eq!(order, (0..count).collect::<Vec<_>>());
+    }
 }
 
 #[test]

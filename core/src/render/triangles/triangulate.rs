@@ -1,5 +1,6 @@
 //! From rings to the triangles of what they enclose.
 
+use alloc::vec;
 use alloc::vec::Vec;
 
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
@@ -43,26 +44,25 @@ impl Triangulate for Delaunay {
         faces.clear();
         let mut report = TriangulationReport::default();
         let mut mesh = ConstrainedDelaunayTriangulation::<Point2<f64>>::new();
-        // Spade numbers its vertices in the order in which they appear; this maps them back to the rings.
-        let mut first_seen = Vec::with_capacity(rings.vertices.len());
-        let mut handles = Vec::new();
+        let mut handles = vec![None; rings.vertices.len()];
         for ring in rings.ranges().filter(|ring| ring.len() >= 3) {
-            handles.clear();
-            for (k, &[x, y]) in ring.clone().zip(&rings.vertices[ring]) {
-                let point = spade::mitigate_underflow(Point2::new(x.as_f64(), y.as_f64()));
-                match mesh.insert(point) {
-                    Ok(handle) => {
-                        if handle.index() == first_seen.len() {
-                            first_seen.push(k);
-                        }
-                        handles.push(handle);
-                    }
-                    Err(_) => report.refused_vertices += 1,
-                }
+            for k in coarse_to_fine(ring.len()).map(|k| ring.start + k) {
+                let [x, y] = rings.vertices[k].map(Real::as_f64);
+                handles[k] = mesh.insert(spade::mitigate_underflow(Point2::new(x, y))).ok();
             }
-            let Some(&last) = handles.last() else { continue };
-            let mut from = last;
-            for &to in &handles {
+            report.refused_vertices += handles[ring].iter().filter(|handle| handle.is_none()).count();
+        }
+        // The first vertex at each place.
+        let mut first = vec![0; mesh.num_vertices()];
+        for (k, handle) in handles.iter().enumerate().rev() {
+            if let Some(handle) = handle {
+                first[handle.index()] = k;
+            }
+        }
+        for ring in rings.ranges() {
+            let mut ends = handles[ring].iter().flatten().copied();
+            let Some(mut from) = ends.clone().next_back() else { continue };
+            for to in &mut ends {
                 if from != to && mesh.try_add_constraint(from, to).is_empty() && !mesh.exists_constraint(from, to) {
                     report.crossing_edges += 1;
                 }
@@ -72,7 +72,7 @@ impl Triangulate for Delaunay {
         let third = T::of(1.0 / 3.0);
         let mut centroids = Probes::default();
         centroids.fill(mesh.inner_faces().map(|face| {
-            let corners = face.vertices().map(|vertex| first_seen[vertex.fix().index()]);
+            let corners = face.vertices().map(|vertex| first[vertex.fix().index()]);
             let [a, b, c] = corners.map(|k| rings.vertices[k]);
             Probe::new([0, 1].map(|i| third * a[i] + third * b[i] + third * c[i]), corners)
         }));
@@ -82,4 +82,12 @@ impl Triangulate for Delaunay {
         faces.extend(centroids.iter().filter(|centroid| centroid.inside).map(|centroid| centroid.owner));
         report
     }
+}
+
+/// The numbers below `count`: 0, then those in the middle of gaps between earlier ones. Vertices one after the other along a
+/// ring would make long triangles that are flipped again and again, which takes a time that grows as their square.
+pub(super) fn coarse_to_fine(count: usize) -> impl Iterator<Item = usize> {
+    let coarsest = count.next_power_of_two().max(2) / 2;
+    let steps = core::iter::successors(Some(coarsest), |&step| (step > 1).then_some(step / 2));
+    (0..count.min(1)).chain(steps.flat_map(move |step| (step..count).step_by(2 * step)))
 }
