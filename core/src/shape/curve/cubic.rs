@@ -16,17 +16,21 @@ const WIDEST_TURN: f64 = 1.0;
 /// and so on, so that they do not move with the control points.
 ///
 /// The polygon strays at most `tolerance` from the cubic, and those of its parallels at distances up to `distance` from
-/// them. Both control points of a part have at most the distance `tolerance` from its chord, and then the part three quarters
-/// of it; the vertices stand outside by at most 4/3 of that.
+/// them. A part strays that far from its chord, and the vertices stand outside by at most as much; by a third more if there is
+/// but one of them.
 pub(crate) fn cut<T: Real>(points: [Vec2<T>; 4], tolerance: T, distance: T, parameters: &mut Vec<T>) {
-    halve(points, [T::zero(), T::one()], 1, &|part| is_flat(part, tolerance, distance), parameters);
+    let is_flat = |part: &[Vec2<T>; 4], depth: u32| {
+        let tolerance = if depth == 1 { tolerance * T::of(0.75) } else { tolerance };
+        is_flat(part, tolerance, distance)
+    };
+    halve(points, [T::zero(), T::one()], 1, &is_flat, parameters);
 }
 
 fn halve<T: Real>(
     points: [Vec2<T>; 4],
     [start, end]: [T; 2],
     depth: u32,
-    is_flat: &dyn Fn(&[Vec2<T>; 4]) -> bool,
+    is_flat: &dyn Fn(&[Vec2<T>; 4], u32) -> bool,
     parameters: &mut Vec<T>,
 ) {
     let half = T::of(0.5);
@@ -36,18 +40,19 @@ fn halve<T: Real>(
     let [pqr, qrs] = [pq.lerp(qr, half), qr.lerp(rs, half)];
     let center = pqr.lerp(qrs, half);
     let (before, after) = ([p, pq, pqr, center], [center, qrs, rs, s]);
-    if depth < DEEPEST && !is_flat(&before) {
+    if depth < DEEPEST && !is_flat(&before, depth) {
         halve(before, [start, middle], depth + 1, is_flat, parameters);
     }
     parameters.push(middle);
-    if depth < DEEPEST && !is_flat(&after) {
+    if depth < DEEPEST && !is_flat(&after, depth) {
         halve(after, [middle, end], depth + 1, is_flat, parameters);
     }
 }
 
 fn is_flat<T: Real>(points: &[Vec2<T>; 4], tolerance: T, distance: T) -> bool {
     let [from, first, second, to] = *points;
-    let near = |point| distance_to_segment(point, from, to) <= tolerance;
+    // With both control points at one distance from the chord, the curve reaches three quarters of it.
+    let near = |point| distance_to_segment(point, from, to) * T::of(0.75) <= tolerance;
     if !(near(first) && near(second)) {
         return false;
     }
@@ -60,9 +65,9 @@ fn is_flat<T: Real>(points: &[Vec2<T>; 4], tolerance: T, distance: T) -> bool {
 
 /// Whether an edge that turns by `turn` radians over `length` is too long for the parallels of a curve up to `distance`.
 ///
-/// An arc has the height length x turn / 8, and three quarters of the tolerance are there for it.
+/// An arc has the height length x turn / 8.
 pub(crate) fn is_turn_too_wide<T: Real>(turn: T, length: T, distance: T, tolerance: T) -> bool {
-    turn > T::of(WIDEST_TURN) || turn * (length + distance * turn) > T::of(6.0) * tolerance
+    turn > T::of(WIDEST_TURN) || turn * (length + distance * turn) > T::of(8.0) * tolerance
 }
 
 /// The tangents of the angles at the control points, added up: at least the angle by which the direction turns.

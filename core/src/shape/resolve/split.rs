@@ -15,7 +15,7 @@ type Cut = (usize, i64, Node);
 
 /// Cuts edges where they cross and where they touch the end of another.
 pub(super) fn split(edges: &mut Vec<Edge>) {
-    let (mut cuts, mut active) = (Vec::new(), Vec::new());
+    let (mut cuts, mut active) = (Vec::new(), [Vec::new(), Vec::new()]);
     for _ in 0..MOST_PASSES {
         edges.sort_unstable_by_key(|edge| (edge.low, edge.high, edge.source));
         find_cuts(edges, &mut active, &mut cuts);
@@ -29,21 +29,42 @@ pub(super) fn split(edges: &mut Vec<Edge>) {
     }
 }
 
-/// From left to right over the edges, each against those that have not ended.
-fn find_cuts(edges: &[Edge], active: &mut Vec<usize>, cuts: &mut Vec<Cut>) {
-    active.clear();
+/// An edge that the sweep has reached and not passed: its number, where it ends, and its least and greatest y.
+#[derive(Clone, Copy)]
+struct Active {
+    index: usize,
+    end: i32,
+    heights: [i32; 2],
+}
+
+/// From left to right over the edges, each against those that have not ended; two that are settled are not compared, so
+/// that settled and others are in lists of their own.
+fn find_cuts(edges: &[Edge], active: &mut [Vec<Active>; 2], cuts: &mut Vec<Cut>) {
+    active.iter_mut().for_each(Vec::clear);
     for (i, edge) in edges.iter().enumerate() {
-        // An end touches an edge within half a cell of it.
-        active.retain(|&other| edges[other].high[0] >= edge.low[0] - 1);
         let [top, bottom] = heights(edge);
-        for &other in &*active {
-            let [other_top, other_bottom] = heights(&edges[other]);
-            let apart = other_top > bottom + 1 || top > other_bottom + 1;
-            if !(apart || edge.is_settled && edges[other].is_settled) {
-                meet(edges, other, i, cuts);
-            }
+        let (unsettled, settled) = active.split_at_mut(1);
+        meet_all(edges, i, [top, bottom], &mut unsettled[0], cuts);
+        if !edge.is_settled {
+            meet_all(edges, i, [top, bottom], &mut settled[0], cuts);
         }
-        active.push(i);
+        active[usize::from(edge.is_settled)].push(Active { index: i, end: edge.high[0], heights: [top, bottom] });
+    }
+}
+
+/// An edge against those of a list, from which those are taken out that ended before it.
+fn meet_all(edges: &[Edge], i: usize, [top, bottom]: [i32; 2], active: &mut Vec<Active>, cuts: &mut Vec<Cut>) {
+    let mut k = 0;
+    while let Some(&Active { index, end, heights: [other_top, other_bottom] }) = active.get(k) {
+        // An end touches an edge within half a cell of it.
+        if end < edges[i].low[0] - 1 {
+            active.swap_remove(k);
+            continue;
+        }
+        if other_top <= bottom + 1 && top <= other_bottom + 1 {
+            meet(edges, index, i, cuts);
+        }
+        k += 1;
     }
 }
 
@@ -55,20 +76,26 @@ fn heights(edge: &Edge) -> [i32; 2] {
 /// Adds the cuts of two edges.
 fn meet(edges: &[Edge], i: usize, j: usize, cuts: &mut Vec<Cut>) {
     let [first, second] = [&edges[i], &edges[j]];
-    let sides = [sides(first, second), sides(second, first)];
+    let of_second = Sides::new(first, second);
+    if of_second.are_apart() {
+        return;
+    }
+    let of_first = Sides::new(second, first);
+    if of_first.are_apart() {
+        return;
+    }
     let before = cuts.len();
-    for (edge, other, of_ends, index) in [(first, second, sides[0], i), (second, first, sides[1], j)] {
-        for (end, side) in [other.low, other.high].into_iter().zip(of_ends) {
-            if touches(edge, end, side) {
+    for (edge, other, sides, index) in [(first, second, &of_second, i), (second, first, &of_first, j)] {
+        for (end, is_near) in [other.low, other.high].into_iter().zip(sides.is_near) {
+            if is_near && is_between(edge, end) {
                 cuts.push((index, along(edge, end), end));
             }
         }
     }
-    let opposite = |[low, high]: [i64; 2]| low != 0 && high != 0 && (low < 0) != (high < 0);
-    if cuts.len() > before || !(opposite(sides[0]) && opposite(sides[1])) {
+    if cuts.len() > before || !(of_second.are_opposite() && of_first.are_opposite()) {
         return;
     }
-    let node = crossing(second, sides[0]);
+    let node = crossing(second, of_second.sides);
     for (edge, index) in [(first, i), (second, j)] {
         if node != edge.low && node != edge.high {
             cuts.push((index, along(edge, node), node));
@@ -76,10 +103,31 @@ fn meet(edges: &[Edge], i: usize, j: usize, cuts: &mut Vec<Cut>) {
     }
 }
 
-/// On which side of `edge` the ends of `other` lie.
-fn sides(edge: &Edge, other: &Edge) -> [i64; 2] {
-    let direction = difference(edge.high, edge.low);
-    [other.low, other.high].map(|end| cross(direction, difference(end, edge.low)))
+/// On which sides of an edge the ends of another lie.
+struct Sides {
+    /// Positive on the side to which the edge turns from +x to +y; the distance times the length of the edge.
+    sides: [i64; 2],
+    /// Whether the line through the edge passes within half a cell, measured along the axis that it runs across.
+    is_near: [bool; 2],
+}
+
+impl Sides {
+    fn new(edge: &Edge, other: &Edge) -> Self {
+        let direction = difference(edge.high, edge.low);
+        let sides = [other.low, other.high].map(|end| cross(direction, difference(end, edge.low)));
+        let reach = direction[0].abs().max(direction[1].abs());
+        Self { sides, is_near: sides.map(|side| 2 * side.abs() <= reach) }
+    }
+
+    /// Whether both ends are off the line, on the same side.
+    fn are_apart(&self) -> bool {
+        !self.is_near[0] && !self.is_near[1] && (self.sides[0] < 0) == (self.sides[1] < 0)
+    }
+
+    /// Whether the line passes between the ends.
+    fn are_opposite(&self) -> bool {
+        self.sides[0] != 0 && self.sides[1] != 0 && (self.sides[0] < 0) != (self.sides[1] < 0)
+    }
 }
 
 /// How far along an edge a node is, times the length of the edge.
@@ -87,14 +135,11 @@ fn along(edge: &Edge, node: Node) -> i64 {
     dot(difference(edge.high, edge.low), difference(node, edge.low))
 }
 
-/// Whether an edge passes within half a cell of a node (measured along the axis that it runs across), between its own ends.
-fn touches(edge: &Edge, node: Node, side: i64) -> bool {
-    if node == edge.low || node == edge.high {
-        return false;
-    }
+/// Whether a node that is near an edge lies between its ends.
+fn is_between(edge: &Edge, node: Node) -> bool {
     let direction = difference(edge.high, edge.low);
     let along = dot(direction, difference(node, edge.low));
-    2 * side.abs() <= direction[0].abs().max(direction[1].abs()) && along > 0 && along < dot(direction, direction)
+    node != edge.low && node != edge.high && along > 0 && along < dot(direction, direction)
 }
 
 /// Where `edge` crosses another, given the sides of that one on which its ends lie.

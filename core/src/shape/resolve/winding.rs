@@ -42,34 +42,60 @@ pub(super) fn keep(mut edges: Vec<Edge>, rule: FillRule) -> Vec<Kept> {
 /// The ray leans to greater x by less than any number, so that it meets no vertex: an edge is in its way if the middle
 /// comes after its low and before its high end in the order of x, then y.
 fn windings_below(edges: &[Edge]) -> Vec<i32> {
-    let middle = |edge: &Edge| [0, 1].map(|axis| i64::from(edge.low[axis]) + i64::from(edge.high[axis]));
-    let double = |node: Node| node.map(|value| 2 * i64::from(value));
-    let mut order: Vec<usize> = (0..edges.len()).collect();
-    order.sort_unstable_by_key(|&i| middle(&edges[i]));
+    let mut order: Vec<(Node2, usize)> = edges.iter().map(middle).zip(0..).collect();
+    order.sort_unstable();
     let mut windings = alloc::vec![0; edges.len()];
-    let mut active: Vec<usize> = Vec::new();
-    let mut coming = 0;
-    for i in order {
-        let point = middle(&edges[i]);
-        while coming < edges.len() && double(edges[coming].low) <= point {
-            active.push(coming);
-            coming += 1;
+    let mut active: Vec<Active> = Vec::new();
+    let mut coming = edges.iter().zip(0..).peekable();
+    for (point, i) in order {
+        while let Some((edge, index)) = coming.next_if(|(edge, _)| double(edge.low) <= point) {
+            let [low, high] = [edge.low, edge.high].map(double);
+            active.push(Active { low, high, index, count: edge.count });
         }
-        active.retain(|&j| double(edges[j].high) > point);
-        let below = active.iter().filter(|&&j| j != i && is_below(&edges[j], point));
-        windings[i] = below.map(|&j| edges[j].count).sum();
+        let mut k = 0;
+        while let Some(edge) = active.get(k) {
+            if edge.high <= point {
+                active.swap_remove(k);
+                continue;
+            }
+            if edge.index != i && edge.is_below(point) {
+                windings[i] += edge.count;
+            }
+            k += 1;
+        }
     }
     windings
 }
 
-/// Whether an edge lies on the side of smaller y of `point`, in doubled coordinates and between its ends.
-fn is_below(edge: &Edge, point: [i64; 2]) -> bool {
-    let [low, high] = [edge.low, edge.high].map(|node| node.map(|value| 2 * i64::from(value)));
-    if low[1].max(high[1]) < point[1] {
-        return true;
+/// A point in doubled coordinates.
+type Node2 = [i64; 2];
+
+fn double(node: Node) -> Node2 {
+    node.map(|value| 2 * i64::from(value))
+}
+
+fn middle(edge: &Edge) -> Node2 {
+    [0, 1].map(|axis| i64::from(edge.low[axis]) + i64::from(edge.high[axis]))
+}
+
+/// An edge that a ray may cross, in doubled coordinates.
+struct Active {
+    low: Node2,
+    high: Node2,
+    index: usize,
+    count: i32,
+}
+
+impl Active {
+    /// Whether the edge lies on the side of smaller y of `point`, which is between its ends.
+    fn is_below(&self, point: Node2) -> bool {
+        let Self { low, high, .. } = self;
+        if low[1].max(high[1]) < point[1] {
+            return true;
+        }
+        if low[1].min(high[1]) > point[1] {
+            return false;
+        }
+        cross([high[0] - low[0], high[1] - low[1]], [point[0] - low[0], point[1] - low[1]]) > 0
     }
-    if low[1].min(high[1]) > point[1] {
-        return false;
-    }
-    cross([high[0] - low[0], high[1] - low[1]], [point[0] - low[0], point[1] - low[1]]) > 0
 }

@@ -26,14 +26,14 @@ impl<T: Real> Walker<'_, T> {
     pub(super) fn along(&mut self, leg: usize) {
         let piece = self.legs[leg].piece;
         if let Piece::Cubic(points) = piece {
-            self.is_mitered = [false; 2];
+            self.has_tip = [false; 2];
             return self.along_cubic(leg, &points);
         }
-        let is_mitered = core::mem::take(&mut self.is_mitered);
-        for (side, is_mitered) in SIDES.into_iter().zip(is_mitered) {
+        let has_tip = core::mem::take(&mut self.has_tip);
+        for (side, has_tip) in SIDES.into_iter().zip(has_tip) {
             let [start, finish] =
                 [End::Start, End::Finish].map(|end| Source::Offset { at: At::End(leg, end), across: side, along: 0 });
-            if !(is_mitered && self.is_straight(leg)) {
+            if !(has_tip && self.is_straight(leg)) {
                 self.add_to(side, start);
             }
             if let Piece::Arc { .. } = piece {

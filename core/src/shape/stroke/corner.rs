@@ -23,8 +23,12 @@ impl<T: Real> Walker<'_, T> {
             return;
         }
         let inner: Side = if angle > T::zero() { 1 } else { -1 };
-        self.add_to(inner, Source::Offset { at: before, across: 0, along: 0 });
         let outer = -inner;
+        if [before, after].into_iter().all(|at| self.has_room(at, angle)) {
+            self.tip(before, after, inner);
+        } else {
+            self.add_to(inner, Source::Offset { at: before, across: 0, along: 0 });
+        }
         match join {
             Join::Bevel => {}
             Join::Round => {
@@ -38,15 +42,28 @@ impl<T: Real> Walker<'_, T> {
                 // The tip is half the width / cos(angle / 2) from the corner, and the whole miter the width per that cosine.
                 let cos_squared = (T::one() + arrives.dot(leaves)) * T::of(0.5);
                 if cos_squared * limit * limit >= T::one() {
-                    let chain = usize::from(outer > 0);
-                    if self.is_straight(before.leg()) {
-                        self.chains[chain].pop();
-                    }
-                    self.is_mitered[chain] = true;
-                    self.add_to(outer, Source::Miter { before, after, side: outer });
+                    self.tip(before, after, outer);
                 }
             }
         }
+    }
+
+    /// Whether a ring may go by way of the tip on the inner side of a corner, where the direction turns by `angle`, instead of the
+    /// corner itself. It then leaves out the kite that the strips of two lines have in common, half of which lies on each. Every point
+    /// stays covered if no point is in two kites of one line: if they reach no further than the middle of it.
+    fn has_room(&self, at: At<T>, angle: T) -> bool {
+        let reach = self.half * angle.sin().abs().max((angle * T::of(0.5)).tan().abs());
+        self.is_straight(at.leg()) && self.legs[at.leg()].piece.length() >= T::of(2.0) * reach
+    }
+
+    /// The vertex where the lines beside two pieces meet, in place of the ends of those that are straight.
+    fn tip(&mut self, before: At<T>, after: At<T>, side: Side) {
+        let chain = usize::from(side > 0);
+        if self.is_straight(before.leg()) {
+            self.chains[chain].pop();
+        }
+        self.has_tip[chain] = true;
+        self.add_to(side, Source::Tip { before, after, side });
     }
 
     /// The vertices around an end of a line, from one side to the other.

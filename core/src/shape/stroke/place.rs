@@ -14,8 +14,8 @@ pub(super) enum Source<T> {
     Offset { at: At<T>, across: Side, along: Side },
     /// On the circle around `from` on which the side turns.
     Round { from: At<T>, side: Side, turn: Turn<T>, step: usize, count: usize },
-    /// Where the outer sides of two pieces meet.
-    Miter { before: At<T>, after: At<T>, side: Side },
+    /// Where the lines beside two pieces that meet in a corner meet.
+    Tip { before: At<T>, after: At<T>, side: Side },
     /// Beside an arc cut into `count` edges.
     BesideArc { leg: usize, side: Side, step: usize, count: usize },
     /// The center of an arc.
@@ -61,7 +61,7 @@ impl<T: Real> Source<T> {
                 let radius = half * (T::one() + stand_out(angle, count)) * factor(side);
                 frame.point + frame.normal().turned(Vec2::from_angle(angle * share(step, count))) * radius
             }
-            Self::Miter { before, after, side } => {
+            Self::Tip { before, after, side } => {
                 let (before, after) = (frame(before), frame(after));
                 let divisor = T::one() + before.direction.dot(after.direction);
                 before.point + (before.normal() + after.normal()) * (half * factor(side) / divisor)

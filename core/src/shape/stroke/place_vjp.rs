@@ -25,7 +25,7 @@ impl<T: Real> Source<T> {
             Self::Round { from, side, turn, step, count } => {
                 round_vjp(legs, (from, side, turn), (step, count), half, grad, grad_legs)
             }
-            Self::Miter { before, after, side } => miter_vjp(legs, [before, after], side, half, grad, grad_legs),
+            Self::Tip { before, after, side } => tip_vjp(legs, [before, after], side, half, grad, grad_legs),
             Self::BesideArc { leg, side, step, count } => {
                 beside_arc_vjp(legs, (leg, side), (step, count), half, grad, grad_legs)
             }
@@ -122,7 +122,7 @@ fn round_vjp<T: Real>(
     grad_radius * out
 }
 
-fn miter_vjp<T: Real>(
+fn tip_vjp<T: Real>(
     legs: &[Leg<T>],
     places: [At<T>; 2],
     side: Side,

@@ -37,9 +37,8 @@ pub(super) struct Walker<'a, T> {
     pub(super) places: Vec<Vec2<T>>,
     /// The chains of sources to both sides: of -1, then of 1.
     pub(super) chains: [Vec<usize>; 2],
-    /// Whether the side of a line goes on straight to the tip of a miter, so that its end needs no vertex: of both sides at the corner
-    /// before.
-    pub(super) is_mitered: [bool; 2],
+    /// Whether the sides met those of the leg before in one vertex, so that a line needs none of its own at its start.
+    pub(super) has_tip: [bool; 2],
     /// Rings of their own.
     pub(super) islands: Vec<Vec<usize>>,
     /// Memory for parameters of cubics.
@@ -67,7 +66,7 @@ pub(super) fn walk<T: Real>(stroke: &Stroke<T>, tolerance: T) -> Result<Raw<T>, 
         sources: Vec::new(),
         places: Vec::new(),
         chains: [Vec::new(), Vec::new()],
-        is_mitered: [false; 2],
+        has_tip: [false; 2],
         islands: Vec::new(),
         parameters: Vec::new(),
     };
@@ -101,11 +100,11 @@ impl<T: Real> Walker<'_, T> {
     /// The rings of a line from the chains to both sides of it.
     fn close(&mut self, stroke: &Stroke<T>, span: core::ops::Range<usize>, is_closed: bool) -> Vec<Vec<usize>> {
         let [mut ahead, mut back] = core::mem::take(&mut self.chains);
-        let is_mitered = core::mem::take(&mut self.is_mitered);
+        let has_tip = core::mem::take(&mut self.has_tip);
         if is_closed {
             // The first vertices came before the corner at the start.
-            for (chain, is_mitered) in [&mut ahead, &mut back].into_iter().zip(is_mitered) {
-                if is_mitered && self.is_straight(span.start) {
+            for (chain, has_tip) in [&mut ahead, &mut back].into_iter().zip(has_tip) {
+                if has_tip && self.is_straight(span.start) {
                     chain.remove(0);
                 }
             }
