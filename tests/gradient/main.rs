@@ -1,6 +1,7 @@
 //! The gradient tests; a module per concern.
 
 mod compositing;
+mod drawing;
 mod efd;
 mod exact;
 mod hard;

@@ -1,9 +1,11 @@
 //! Invariants of every kind of shape.
 
+use dvp_core::geometry::{Bounds, Vec2};
 use dvp_core::shape::{
-    AnyShape, Cap, Circle, Ellipse, FillRule, Flattening, Join, Outline, OutlineBasis, Path, PathRing, Segment,
-    Shape as _, Stroke,
+    AnyShape, Cap, Circle, Ellipse, FillRule, Flattening, Join, Outline, OutlineBasis, Path, PathRing, Polygon,
+    Segment, Shape as _, ShapeError, Stroke,
 };
+use dvp_tests::inside_integral::is_resolved;
 use dvp_tests::shape_strategy;
 use proptest::prelude::*;
 
@@ -169,6 +171,144 @@ proptest! {
         for &[x, y] in &arc.vertices[1..arc.vertices.len() - 1] {
             let off = (x - center[0]).hypot(y - center[1]) - radius.abs();
             prop_assert!((0.0..=tolerance).contains(&off), "{off}");
+        }
+    }
+
+    #[test]
+    fn polygons_stray_no_further_than_the_tolerance(
+        ring in shape_strategy::path_ring(),
+        tolerance in prop_oneof![Just(0.1), Just(0.01), Just(1e-3)],
+    ) {
+        let path = Path { rings: vec![ring], fill: FillRule::EvenOdd };
+        let boundary = path.boundary().unwrap();
+        // Where a smooth arc all but turns back, the circle is huge and its samples are far apart.
+        prop_assume!(boundary.perimeter() < 100.0);
+        let outline = flattened(&path.into(), tolerance);
+        let samples: Vec<[f64; 2]> = boundary
+            .pieces
+            .iter()
+            .flat_map(|piece| (0..1000).map(|i| piece.point(f64::from(i) / 1000.0).to_array()))
+            .collect();
+        let far = |polygon: &[[f64; 2]], point: [f64; 2]| edge_distance(core::iter::once(polygon), point);
+        for &sample in samples.iter().step_by(7) {
+            prop_assert!(far(&outline.vertices, sample) <= tolerance * 1.001, "the curve at {sample:?}");
+        }
+        for &vertex in &outline.vertices {
+            prop_assert!(far(&samples, vertex) <= tolerance * 1.001, "the vertex {vertex:?}");
+        }
+    }
+
+    #[test]
+    fn measures_are_those_of_fine_polygons(shape in shape_strategy::shape()) {
+        let outline = flattened(&shape, 1e-5);
+        prop_assume!(outline.vertices.iter().flatten().all(|value| value.abs() < 10.0));
+        // The outline may cross itself: as a nonzero path of itself, an even-odd one is resolved.
+        let rings = outline.rings().iter().map(<[_]>::to_vec).collect();
+        let polygon = Polygon { rings };
+        let (fine, exact) = (polygon.moments().unwrap(), shape.moments().unwrap());
+        // Descriptors are drawn with few vertices, whatever the tolerance.
+        let tolerance = if shape.efd().is_some() { 0.2 } else { 1e-4 };
+        prop_assert!((fine.area - exact.area).abs() <= tolerance, "{fine:?} {exact:?}");
+        if exact.area > 0.1 {
+            for (fine, exact) in fine.centroid.iter().chain(&fine.covariance).zip(exact.centroid.iter().chain(&exact.covariance)) {
+                prop_assert!((fine - exact).abs() <= 20.0 * tolerance, "{fine:?} {exact:?}");
+            }
+        }
+        let all = outline.vertices.iter().map(|&vertex| vertex.into());
+        if let (Some(fine), Some(exact)) = (Bounds::of(all), shape.bounds().unwrap()) {
+            // Positive where the polygons reach less far. Resolved ones leave out what encloses nothing.
+            let missing = [fine.min - exact.min, exact.max - fine.max].map(Vec2::to_array);
+            let (least, most) = (-tolerance.max(1e-3), if is_resolved(&shape) { 10.0 } else { tolerance.max(1e-3) });
+            let fits = missing.as_flattened().iter().all(|missing| (least..=most).contains(missing));
+            prop_assert!(fits, "{fine:?} {exact:?}");
+        }
+        let (polygon, exact) = (polygon.perimeter().unwrap(), shape.perimeter().unwrap());
+        prop_assert!(polygon <= exact * 1.001 + tolerance, "{polygon} {exact}");
+        prop_assert!(is_resolved(&shape) || polygon >= exact * 0.999 - tolerance, "{polygon} {exact}");
+    }
+
+    #[test]
+    fn descriptors_of_a_boundary_are_those_of_a_fine_polygon(ring in shape_strategy::path_ring()) {
+        let path = Path { rings: vec![ring], fill: FillRule::EvenOdd };
+        let boundary = path.boundary().unwrap();
+        // There and back along a line are no descriptors.
+        prop_assume!(boundary.perimeter() < 100.0 && boundary.efd(0, 5).is_ok());
+        // As many points on each piece as its share of the length, in its own parameter; cubics do not run at constant speed, so that
+        // the polygon cannot be one of arc length: sums over its points instead.
+        let (efd, center) = boundary.efd(0, 5).unwrap();
+        let mut sums = [[0.0; 4]; 5];
+        let mut mean = [0.0; 2];
+        let mut along = 0.0;
+        for piece in &boundary.pieces {
+            let share = piece.length() / boundary.perimeter();
+            let count = 4000;
+            for i in 0..count {
+                let t = (f64::from(i) + 0.5) / f64::from(count);
+                let (point, weight) = (piece.point(t), share / f64::from(count));
+                mean[0] += point.x * weight;
+                mean[1] += point.y * weight;
+                for (n, row) in (1_u8..).zip(&mut sums) {
+                    let (sin, cos) = (core::f64::consts::TAU * f64::from(n) * (along + share * t)).sin_cos();
+                    let values = [point.x * cos, point.x * sin, point.y * cos, point.y * sin];
+                    row.iter_mut().zip(values).for_each(|(sum, value)| *sum += 2.0 * weight * value);
+                }
+            }
+            along += share;
+        }
+        for (value, sum) in efd.rows().as_flattened().iter().chain(&center).zip(sums.as_flattened().iter().chain(&mean)) {
+            prop_assert!((value - sum).abs() < 1e-4, "{efd:?} {center:?}, sums {sums:?} {mean:?}");
+        }
+    }
+
+    #[test]
+    fn paths_of_other_kinds_enclose_the_same(shape in shape_strategy::shape()) {
+        let (path, area) = (AnyShape::from(shape.to_path().unwrap()), shape.area().unwrap());
+        prop_assume!(area < 100.0);
+        prop_assert!((path.area().unwrap() - area).abs() < 1e-4 * (1.0 + area), "{path:?}");
+    }
+}
+
+/// Numbers that nobody should give: huge, tiny, equal.
+fn wild_number() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        4 => -3.0..3.0,
+        3 => (-2_i8..3).prop_map(f64::from),
+        1 => prop::sample::select(vec![0.0, -0.0, 1e-30, 1e-300, -1e-8, 1e8, 1e30, -1e30, 1e300, f64::MAX, f64::MIN_POSITIVE]),
+        1 => -1e5..1e5,
+    ]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(128))]
+
+    #[test]
+    fn wild_numbers_do_no_harm(
+        shape in shape_strategy::shape(),
+        numbers in prop::collection::vec(wild_number(), 1..60),
+        not_finite in prop::option::weighted(0.05, prop::sample::select(vec![f64::NAN, f64::INFINITY])),
+        tolerance in prop_oneof![4 => Just(1e-2), 2 => Just(1.0), 1 => prop::sample::select(vec![1e-12, 0.0, f64::NAN])],
+    ) {
+        let mut shape = shape;
+        let mut numbers: Vec<f64> = numbers.into_iter().cycle().take(shape.number_count()).collect();
+        shape.set_numbers(&numbers).unwrap();
+        let basis = OutlineBasis::new(32, 8).unwrap();
+        let mut outline = Outline::default();
+        if shape.flatten(&Flattening::new(&basis, tolerance), &mut outline).is_ok() {
+            let mut grad = vec![0.0; numbers.len()];
+            let grad_vertices = vec![[1.0, -1.0]; outline.vertices.len()];
+            shape.flatten_vjp(&Flattening::new(&basis, tolerance), &grad_vertices, &mut grad).unwrap();
+        }
+        if let Ok(boundary) = shape.boundary() {
+            let _ = (boundary.perimeter(), boundary.bounds(), boundary.moments(), boundary.to_path());
+            let _ = (boundary.efd(0, 3), boundary.elements().count());
+        }
+        let small = shape.cast::<f32>();
+        let basis = OutlineBasis::new(32, 8).unwrap();
+        let mut outline = Outline::default();
+        let _ = (small.flatten(&Flattening::new(&basis, 1e-2), &mut outline), small.moments(), small.bounds());
+        if let Some(value) = not_finite {
+            numbers[0] = value;
+            prop_assert_eq!(shape.set_numbers(&numbers), Err(ShapeError::NotFinite { index: 0 }));
         }
     }
 }

@@ -36,6 +36,25 @@ pub fn compare(x: &[f64], grad: &[f64], tolerance: f64, mut f: impl FnMut(&[f64]
     if message.is_empty() { Ok(()) } else { Err(message) }
 }
 
+/// Whether differences over steps of several lengths agree. Near cusps and where a smooth arc all but turns back, vertices move
+/// faster than differences can follow.
+#[must_use]
+pub fn are_steady(x: &[f64], f: &mut dyn FnMut(&[f64]) -> f64) -> bool {
+    let mut moved = x.to_vec();
+    (0..x.len()).all(|lane| {
+        let [short, long] = [1.0, 3.0].map(|factor| {
+            let step = factor * step(x[lane]);
+            let [below, above] = [-step, step].map(|step| {
+                moved[lane] = x[lane] + step;
+                f(&moved)
+            });
+            moved[lane] = x[lane];
+            (above - below) / (2.0 * step)
+        });
+        (short - long).abs() <= 1e-6 * (1.0 + short.abs())
+    })
+}
+
 /// How far [`compare`] moves `x` to either side.
 #[must_use]
 pub fn step(x: f64) -> f64 {

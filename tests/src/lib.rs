@@ -6,6 +6,7 @@ pub mod finite_difference;
 pub mod fixture;
 pub mod golden;
 pub mod hard_geometry;
+pub mod inside_integral;
 pub mod picture_set;
 pub mod shape_strategy;
 pub mod strategy;

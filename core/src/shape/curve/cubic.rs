@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 
 use super::MOST_EDGES;
-use crate::geometry::Vec2;
+use crate::geometry::{LineSegment, Vec2};
 use crate::real::Real;
 
 /// Halvings until a cubic has [`MOST_EDGES`] edges.
@@ -52,7 +52,8 @@ fn halve<T: Real>(
 fn is_flat<T: Real>(points: &[Vec2<T>; 4], tolerance: T, distance: T) -> bool {
     let [from, first, second, to] = *points;
     // With both control points at one distance from the chord, the curve reaches three quarters of it.
-    let near = |point| distance_to_segment(point, from, to) * T::of(0.75) <= tolerance;
+    let chord = LineSegment::new(from, to);
+    let near = |point| chord.nearest(point).distance() * T::of(0.75) <= tolerance;
     if !(near(first) && near(second)) {
         return false;
     }
@@ -86,14 +87,6 @@ pub(crate) fn turning<T: Real>(points: &[Vec2<T>; 4]) -> T {
     turn
 }
 
-fn distance_to_segment<T: Real>(point: Vec2<T>, from: Vec2<T>, to: Vec2<T>) -> T {
-    let (chord, offset) = (to - from, point - from);
-    let share = offset.dot(chord) / chord.length_squared();
-    // Not a number where the chord has no length: then the nearest point is its start.
-    let nearest = if share > T::zero() { from + chord * share.min(T::one()) } else { from };
-    (point - nearest).length()
-}
-
 /// What the four points of a cubic are multiplied by to give its point, first and second derivative at `t`.
 pub(super) fn weights<T: Real>(t: T) -> [[T; 4]; 3] {
     let (two, three, six) = (T::of(2.0), T::of(3.0), T::of(6.0));
@@ -115,23 +108,41 @@ pub(crate) fn derivatives<T: Real>(points: &[Vec2<T>; 4], t: T) -> [Vec2<T>; 3] 
     weights(t).map(|weights| mix(points, weights))
 }
 
-/// The share of the second derivative by which a vertex stands outside, given the steps of the parameter before and after
-/// it, and whether a fixed end is next: such an end leaves its part of the area to its neighbor.
+/// The share of the second derivative by which a vertex at `t` stands outside, given the steps of the parameter before and after
+/// it, and whether a fixed end is next: such an end leaves its part of the area to its neighbor. Of the cubic and of its parallels
+/// up to `distance`.
 ///
 /// An edge over a step h lacks the area h^3 |p' x p''| / 12; half of it is each end's, and a vertex that moves out by d
-/// adds d |p'| (h + h') / 2.
-pub(crate) fn push<T: Real>([before, after]: [T; 2], fixed: [bool; 2]) -> T {
+/// adds d |p'| (h + h') / 2. 0 next to a cusp, where that is more than a vertex may stand outside.
+pub(crate) fn push<T: Real>(
+    points: &[Vec2<T>; 4],
+    t: T,
+    [before, after]: [T; 2],
+    fixed: [bool; 2],
+    [tolerance, distance]: [T; 2],
+) -> T {
     let area = |step: T, fixed: bool| step * step * step * if fixed { T::of(2.0) } else { T::one() };
-    (area(before, fixed[0]) + area(after, fixed[1])) / (T::of(12.0) * (before + after))
+    let push = (area(before, fixed[0]) + area(after, fixed[1])) / (T::of(12.0) * (before + after));
+    let [_, first, second] = derivatives(points, t);
+    let speed = first.length();
+    let turning = (first.cross(second) / (speed * speed)).abs();
+    let out = push * (speed + distance * turning) * turning;
+    if out <= tolerance { push } else { T::zero() }
 }
 
-/// The shares of [`push`] at all parameters of [`cut`], each with its parameter.
-pub(super) fn pushed<T: Real>(parameters: &[T]) -> impl Iterator<Item = (T, T)> + '_ {
+/// The vertices at all parameters of [`cut`].
+pub(super) fn vertices<'a, T: Real>(
+    points: &'a [Vec2<T>; 4],
+    parameters: &'a [T],
+    tolerance: T,
+) -> impl Iterator<Item = CubicVertex<T>> + 'a {
+    let zero = T::zero();
     let last = parameters.len().saturating_sub(1);
     parameters.iter().enumerate().map(move |(i, &t)| {
-        let before = if i == 0 { T::zero() } else { parameters[i - 1] };
+        let before = if i == 0 { zero } else { parameters[i - 1] };
         let after = if i == last { T::one() } else { parameters[i + 1] };
-        (t, push([t - before, after - t], [i == 0, i == last]))
+        let push = push(points, t, [t - before, after - t], [i == 0, i == last], [tolerance, zero]);
+        CubicVertex { t, distance: zero, push }
     })
 }
 

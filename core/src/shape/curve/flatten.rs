@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 
 use super::arc::{CutArc, circle_edges, circle_radius, edges, sweep};
-use super::cubic::{CubicVertex, cut, pushed};
+use super::cubic::{self, cut};
 use super::{Boundary, Piece};
 use crate::geometry::Vec2;
 use crate::real::Real;
@@ -66,10 +66,8 @@ impl<T: Real> Piece<T> {
                 parameters.clear();
                 cut(points, tolerance, T::zero(), parameters);
                 vertices.push(points[0].to_array());
-                vertices.extend(pushed(parameters).map(|(t, push)| {
-                    let vertex = CubicVertex { t, distance: T::zero(), push };
-                    vertex.place(&points).to_array()
-                }));
+                let inner = cubic::vertices(&points, parameters, tolerance);
+                vertices.extend(inner.map(|vertex| vertex.place(&points).to_array()));
             }
         }
     }

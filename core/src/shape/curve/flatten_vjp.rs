@@ -4,7 +4,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use super::arc::{CutArc, edges, sweep};
-use super::cubic::{CubicVertex, cut, pushed};
+use super::cubic::{self, cut};
 use super::flatten::directions;
 use super::{Boundary, Piece, PieceGrad};
 use crate::geometry::Vec2;
@@ -86,8 +86,7 @@ impl<T: Real> Piece<T> {
                 grad.points[0] += rest.next()?;
                 parameters.clear();
                 cut(points, tolerance, T::zero(), parameters);
-                for (t, push) in pushed(parameters) {
-                    let vertex = CubicVertex { t, distance: T::zero(), push };
+                for vertex in cubic::vertices(&points, parameters, tolerance) {
                     vertex.place_vjp(&points, rest.next()?, &mut grad.points);
                 }
             }

@@ -96,7 +96,7 @@ pub trait Shape<T: Real> {
     /// The boundary as exact pieces.
     ///
     /// # Errors
-    /// [`ShapeError`] if the numbers describe no shape.
+    /// [`ShapeError`] if the numbers describe no shape or are not finite.
     fn boundary(&self) -> Result<Boundary<T>, ShapeError>;
 
     /// The descriptors of a ring of the boundary, exactly, and its center: [`Boundary::efd`].
@@ -182,7 +182,12 @@ impl PoseFreedom {
 /// Refuses a wrong number of numbers and numbers that are not finite.
 pub(super) fn check_numbers<T: Real>(expected: usize, numbers: &[T]) -> Result<(), ShapeError> {
     check_length("numbers of the shape", expected, numbers.len())?;
-    match numbers.iter().position(|number| !number.is_finite()) {
+    check_finite(numbers)
+}
+
+/// Refuses numbers that are not finite.
+pub(super) fn check_finite<'a, T: Real>(numbers: impl IntoIterator<Item = &'a T>) -> Result<(), ShapeError> {
+    match numbers.into_iter().position(|number| !number.is_finite()) {
         Some(index) => Err(ShapeError::NotFinite { index }),
         None => Ok(()),
     }
@@ -233,7 +238,7 @@ macro_rules! shape_of_numbers {
             }
 
             fn flatten(&self, how: &Flattening<'_, T>, outline: &mut Outline<T>) -> Result<(), ShapeError> {
-                self.boundary()?.flatten(how.tolerance, outline)
+                Shape::boundary(self)?.flatten(how.tolerance, outline)
             }
 
             fn flatten_vjp(
@@ -243,13 +248,15 @@ macro_rules! shape_of_numbers {
                 grad_numbers: &mut [T],
             ) -> Result<(), ShapeError> {
                 super::check_length("gradient of the numbers", self.number_count(), grad_numbers.len())?;
-                let grad_pieces = self.boundary()?.flatten_vjp(how.tolerance, grad_vertices)?;
+                let grad_pieces = Shape::boundary(self)?.flatten_vjp(how.tolerance, grad_vertices)?;
                 let sums = self.boundary_vjp(&grad_pieces);
                 grad_numbers.iter_mut().zip(sums).for_each(|(grad, sum)| *grad += sum);
                 Ok(())
             }
 
             fn boundary(&self) -> Result<Boundary<T>, ShapeError> {
+                let $shape = self;
+                super::check_finite(&[$($place),+])?;
                 $kind::boundary(self)
             }
         }

@@ -5,7 +5,7 @@ use alloc::string::String;
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::{PoseFreedom, Shape, check_length, check_numbers};
+use super::{PoseFreedom, Shape, check_finite, check_length, check_numbers};
 use crate::geometry::Vec2;
 use crate::real::Real;
 use crate::shape::curve::{Boundary, Piece, PieceGrad};
@@ -156,9 +156,6 @@ impl<T: Real> Path<T> {
     /// there is none for a smooth segment to continue, [`ShapeError::NotFinite`].
     pub fn new(rings: Vec<PathRing<T>>) -> Result<Self, ShapeError> {
         let path = Self { rings, fill: FillRule::EvenOdd };
-        if let Some(index) = path.rings.iter().flat_map(PathRing::numbers).position(|number| !number.is_finite()) {
-            return Err(ShapeError::NotFinite { index });
-        }
         path.boundary()?;
         Ok(path)
     }
@@ -224,6 +221,7 @@ impl<T: Real> Shape<T> for Path<T> {
     }
 
     fn boundary(&self) -> Result<Boundary<T>, ShapeError> {
+        check_finite(self.rings.iter().flat_map(PathRing::numbers))?;
         let mut boundary = Boundary { fill: self.fill, ..Boundary::default() };
         for ring in &self.rings {
             boundary.start_ring();

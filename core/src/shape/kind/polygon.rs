@@ -4,7 +4,7 @@ use alloc::format;
 use alloc::string::String;
 use alloc::vec::Vec;
 
-use super::{PoseFreedom, Shape, check_length, check_numbers};
+use super::{PoseFreedom, Shape, check_finite, check_length, check_numbers};
 use crate::geometry::Vec2;
 use crate::real::Real;
 use crate::shape::curve::Boundary;
@@ -26,10 +26,8 @@ impl<T: Real> Polygon<T> {
         if let Some(ring) = rings.iter().find(|ring| ring.len() < 3) {
             return Err(ShapeError::TooFewPoints { len: ring.len() });
         }
-        match rings.iter().flatten().flatten().position(|value| !value.is_finite()) {
-            Some(index) => Err(ShapeError::NotFinite { index }),
-            None => Ok(Self { rings }),
-        }
+        check_finite(rings.iter().flatten().flatten())?;
+        Ok(Self { rings })
     }
 }
 
@@ -62,6 +60,7 @@ impl<T: Real> Shape<T> for Polygon<T> {
     }
 
     fn flatten(&self, _: &Flattening<'_, T>, outline: &mut Outline<T>) -> Result<(), ShapeError> {
+        check_finite(self.rings.iter().flatten().flatten())?;
         self.rings.iter().for_each(|ring| outline.push_ring(ring.iter().copied()));
         Ok(())
     }
@@ -80,6 +79,7 @@ impl<T: Real> Shape<T> for Polygon<T> {
     }
 
     fn boundary(&self) -> Result<Boundary<T>, ShapeError> {
+        check_finite(self.rings.iter().flatten().flatten())?;
         let mut boundary = Boundary::default();
         for ring in &self.rings {
             boundary.push_polygon(&ring.iter().map(|&corner| Vec2::from(corner)).collect::<Vec<_>>());

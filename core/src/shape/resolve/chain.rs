@@ -31,7 +31,13 @@ pub(super) fn chain<T: Real>(edges: &[Kept], next: &[u32], grid: &Grid, vertices
         }
         if resolved.origins.len() < first + 3 {
             resolved.origins.truncate(first);
-        } else if first > 0 {
+            continue;
+        }
+        if grid.is_transposed {
+            // What turns from +x to +y there turns from +y to +x here.
+            resolved.origins[first..].reverse();
+        }
+        if first > 0 {
             resolved.breaks.push(first);
         }
     }

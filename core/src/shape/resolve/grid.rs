@@ -31,6 +31,8 @@ pub(super) struct Edge {
 pub(super) struct Grid {
     center: [f64; 2],
     scale: f64,
+    /// Whether x and y change places: edges are swept along the longer side of what they enclose, so that few are in the way at a time.
+    pub(super) is_transposed: bool,
 }
 
 /// The edges of rings.
@@ -55,18 +57,22 @@ impl Grid {
             return Err(ShapeError::TooLarge);
         }
         let center = bounds.center().to_array();
-        Ok(scale.is_finite().then_some(Self { center, scale }))
+        Ok(scale.is_finite().then_some(Self { center, scale, is_transposed: half.y > half.x }))
     }
 
     #[expect(clippy::cast_possible_truncation, reason = "within the grid by construction, and saturating")]
     pub(super) fn node<T: Real>(&self, vertex: [T; 2]) -> Node {
-        let [x, y] = vertex.map(Real::as_f64);
-        [(x - self.center[0]) * self.scale, (y - self.center[1]) * self.scale].map(|value| Float::round(value) as i32)
+        let [x, y] = [0, 1].map(|axis| {
+            let value = (vertex[axis].as_f64() - self.center[axis]) * self.scale;
+            Float::round(value) as i32
+        });
+        if self.is_transposed { [y, x] } else { [x, y] }
     }
 
     /// Where a node is.
     pub(super) fn point(&self, node: Node) -> [f64; 2] {
-        [0, 1].map(|axis| f64::from(node[axis]) / self.scale + self.center[axis])
+        let [x, y] = if self.is_transposed { [node[1], node[0]] } else { node };
+        [f64::from(x) / self.scale + self.center[0], f64::from(y) / self.scale + self.center[1]]
     }
 
     /// The width of a cell.

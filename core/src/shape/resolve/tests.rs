@@ -77,6 +77,19 @@ fn holes_turn_the_other_way() {
 }
 
 #[test]
+fn tall_rings_turn_the_same_way() {
+    let tall = [[0.0, 0.0], [2.0, 0.0], [2.0, 9.0], [0.0, 9.0]];
+    for rule in [FillRule::EvenOdd, FillRule::NonZero] {
+        assert!(close(resolved(&[&tall], rule).1, 18.0));
+        let mut backward = tall;
+        backward.reverse();
+        assert!(close(resolved(&[&backward], rule).1, 18.0));
+    }
+    let (outline, _) = resolved(&[&tall, &[[0.5, 0.5], [1.0, 0.5], [1.0, 1.5]]], FillRule::EvenOdd);
+    assert_eq!(outline.rings().iter().map(signed_area).collect::<Vec<_>>(), [18.0, -0.25]);
+}
+
+#[test]
 fn degenerate_rings() {
     assert_eq!(resolved(&[], FillRule::NonZero).0, Outline::default());
     assert_eq!(resolved(&[&[[3.0, 4.0]; 5]], FillRule::NonZero).0, Outline::default());

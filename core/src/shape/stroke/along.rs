@@ -121,10 +121,7 @@ impl<T: Real> Walker<'_, T> {
         for (i, &t) in parameters.iter().enumerate() {
             let before = if i == 0 { t } else { t - parameters[i - 1] };
             let after = if i == last { T::one() - t } else { parameters[i + 1] - t };
-            let [_, first, second] = derivatives(points, t);
-            let turn = first.cross(second) / first.length_squared() * (before + after);
-            let is_smooth = turn.abs() <= T::of(2.0);
-            let push = if is_smooth { push([before, after], [i == 0, i == last]) } else { T::zero() };
+            let push = push(points, t, [before, after], [i == 0, i == last], [self.tolerance, self.half]);
             cuts.push((At::Inside(leg, t), push));
         }
         cuts.push((At::End(leg, End::Finish), T::zero()));

@@ -30,7 +30,7 @@ use alloc::string::{String, ToString as _};
 use alloc::vec::Vec;
 
 use super::curve::{Boundary, PieceGrad};
-use super::kind::{PathRing, PoseFreedom, Shape, check_length, check_numbers};
+use super::kind::{PathRing, PoseFreedom, Shape, check_finite, check_length, check_numbers};
 use super::resolve::{FillRule, resolve};
 use super::{Flattening, Outline, ShapeError};
 use crate::geometry::Vec2;
@@ -117,6 +117,7 @@ impl<T: Real> Stroke<T> {
 
     /// The rings around what the pen touches, crossing each other.
     fn raw(&self, tolerance: T) -> Result<Raw<T>, ShapeError> {
+        check_finite(self.rings.iter().flat_map(PathRing::numbers).chain([&self.width]))?;
         walk(self, tolerance)
     }
 }

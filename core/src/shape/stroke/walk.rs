@@ -88,8 +88,8 @@ pub(super) fn walk<T: Real>(stroke: &Stroke<T>, tolerance: T) -> Result<Raw<T>, 
             }
         }
     }
-    if let Some(index) = outline.vertices.as_flattened().iter().position(|value| !value.is_finite()) {
-        return Err(ShapeError::NotFinite { index });
+    if !outline.vertices.as_flattened().iter().all(|value| value.is_finite()) {
+        return Err(ShapeError::TooLarge);
     }
     let (sources, places) = (walker.sources, walker.places);
     let leg_counts = spans.into_iter().map(|(span, _)| span.len()).collect();
