@@ -9,7 +9,7 @@ use std::path::Path;
 use dvp_core::render::triangles::{Face, Triangulate, TriangulationReport};
 use dvp_core::render::{Compositing, EdgeProfile, PixelLoss, Renderer, SoftTriangles, TileRenderer, TriangleRenderer};
 use dvp_core::scene::rotation_from_pair_vjp;
-use dvp_core::shape::OutlineBasis;
+use dvp_core::shape::{OutlineBasis, Rings};
 use dvp_core::{Drawing, DrawingGrad, Image, ImageSize, Real, Scene, SceneGrad};
 use dvp_tests::coverage::coverage;
 use dvp_tests::fixture::{fixture_scenes, read_npy, shared};
@@ -22,8 +22,8 @@ const SIDE: usize = 128;
 struct GivenFaces(Vec<([f64; 2], Vec<Face>)>);
 
 impl Triangulate for GivenFaces {
-    fn triangulate<T: Real>(&self, outline: &[[T; 2]], faces: &mut Vec<Face>) -> TriangulationReport {
-        let first = outline[0].map(Real::as_f64);
+    fn triangulate<T: Real>(&self, rings: Rings<'_, T>, faces: &mut Vec<Face>) -> TriangulationReport {
+        let first = rings.vertices[0].map(Real::as_f64);
         let far = |at: [f64; 2]| (at[0] - first[0]).hypot(at[1] - first[1]);
         let nearest = self.0.iter().min_by(|(a, _), (b, _)| far(*a).total_cmp(&far(*b))).unwrap();
         assert!(far(nearest.0) < 1e-3, "no faces for an outline that begins at {first:?}");
