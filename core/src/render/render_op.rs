@@ -3,12 +3,14 @@
 use alloc::vec::Vec;
 use core::fmt;
 
+use super::tile::check_breaks;
 use super::{PixelLoss, RenderError, Renderer};
 use crate::diff_op::{DiffOp, OpInput, Signature, add_scaled};
 use crate::dims::{Dims, DimsError, ImageSize};
 use crate::image::{CHANNELS, Image};
 use crate::real::Real;
 use crate::scene::{Drawing, DrawingGrad};
+use crate::shape::Rings;
 
 /// What both steps take: posed outlines (objects x vertices x 2, scene units), colors (objects x 3), confidences (objects)
 /// and the background (3).
@@ -41,16 +43,18 @@ impl<T, S> fmt::Debug for RenderOpScratch<T, S> {
 }
 
 impl<T: Real, S> RenderOpScratch<T, S> {
-    /// Takes an item's values as the drawing.
-    fn take(&mut self, signature: &Signature, item: &[T]) {
+    /// Takes an item's values as the drawing, outlines of which have rings that begin at `breaks`.
+    fn take(&mut self, signature: &Signature, breaks: &[usize], item: &[T]) -> Result<(), RenderError> {
         let [outlines, colors, confidences, background] = signature.split(item);
         let vertices = outlines.len() / 2 / confidences.len().max(1);
+        check_breaks(breaks, vertices)?;
         let outlines = outlines.as_chunks().0.chunks_exact(vertices.max(1));
         self.drawing.clear();
         for ((outline, &color), &confidence) in outlines.zip(colors.as_chunks().0).zip(confidences) {
-            self.drawing.push(outline, color, confidence);
+            self.drawing.push_rings(Rings { vertices: outline, breaks, first: 0 }, color, confidence);
         }
         self.drawing.background.copy_from_slice(background);
+        Ok(())
     }
 
     /// Adds the drawing's gradient in the layout of the inputs.
@@ -71,13 +75,14 @@ impl<T: Real, S> RenderOpScratch<T, S> {
 }
 
 /// Drawings to images, 3 x height x width. Inputs: posed outlines (objects x vertices x 2, scene units), colors
-/// (objects x 3), confidences (objects), background (3).
+/// (objects x 3), confidences (objects), background (3). An outline is one ring unless [`Self::with_breaks`] says otherwise.
 ///
 /// *Derivative*: [`Renderer::render_vjp`].
 #[derive(Clone, Debug)]
 pub struct RenderOp<R> {
     renderer: R,
     size: ImageSize,
+    breaks: Vec<usize>,
     signature: Signature,
 }
 
@@ -89,7 +94,14 @@ impl<R> RenderOp<R> {
     pub fn new(renderer: R, size: ImageSize, objects: usize, vertices: usize) -> Result<Self, DimsError> {
         let image = Dims::new(&[CHANNELS, size.height(), size.width()])?;
         let signature = Signature::new("render", drawing_inputs(objects, vertices)?, image);
-        Ok(Self { renderer, size, signature })
+        Ok(Self { renderer, size, breaks: Vec::new(), signature })
+    }
+
+    /// Every outline of every item has rings that begin at these of its vertices, rising, beside the one that begins at 0:
+    /// what it encloses lies inside of an odd number of them. An outline of fewer rings repeats one vertex in the others.
+    #[must_use]
+    pub fn with_breaks(self, breaks: Vec<usize>) -> Self {
+        Self { breaks, ..self }
     }
 }
 
@@ -109,7 +121,7 @@ impl<T: Real, R: Renderer<T> + fmt::Debug + Send + Sync> DiffOp<T> for RenderOp<
         _: &mut [T],
         scratch: &mut Self::Scratch,
     ) -> Result<(), RenderError> {
-        scratch.take(&self.signature, input);
+        scratch.take(&self.signature, &self.breaks, input)?;
         self.renderer.render(&scratch.drawing, self.size, &mut scratch.renderer, output)
     }
 
@@ -122,7 +134,7 @@ impl<T: Real, R: Renderer<T> + fmt::Debug + Send + Sync> DiffOp<T> for RenderOp<
         grad_input: &mut [T],
         scratch: &mut Self::Scratch,
     ) -> Result<(), RenderError> {
-        scratch.take(&self.signature, input);
+        scratch.take(&self.signature, &self.breaks, input)?;
         let RenderOpScratch { drawing, grad, renderer } = scratch;
         grad.reset(drawing);
         self.renderer.render_vjp(drawing, self.size, renderer, grad_output, grad)?;
@@ -140,6 +152,7 @@ pub struct RenderLossOp<T, R> {
     renderer: R,
     loss: PixelLoss,
     targets: Vec<Image<T>>,
+    breaks: Vec<usize>,
     signature: Signature,
 }
 
@@ -157,7 +170,13 @@ impl<T: Real, R> RenderLossOp<T, R> {
     ) -> Result<Self, DimsError> {
         let signature = Signature::new("render loss", drawing_inputs(objects, vertices)?, Dims::SCALAR);
         let signature = signature.for_batch(targets.len()).keeping_gradient();
-        Ok(Self { renderer, loss, targets, signature })
+        Ok(Self { renderer, loss, targets, breaks: Vec::new(), signature })
+    }
+
+    /// As [`RenderOp::with_breaks`].
+    #[must_use]
+    pub fn with_breaks(self, breaks: Vec<usize>) -> Self {
+        Self { breaks, ..self }
     }
 }
 
@@ -177,7 +196,7 @@ impl<T: Real, R: Renderer<T> + fmt::Debug + Send + Sync> DiffOp<T> for RenderLos
         saved: &mut [T],
         scratch: &mut Self::Scratch,
     ) -> Result<(), RenderError> {
-        scratch.take(&self.signature, input);
+        scratch.take(&self.signature, &self.breaks, input)?;
         let RenderOpScratch { drawing, grad, renderer } = scratch;
         let target = self.targets[item].view();
         if saved.is_empty() {

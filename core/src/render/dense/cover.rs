@@ -25,7 +25,7 @@ impl DenseRenderer {
         let &[batch, objects, vertices, _] = outlines.dims().extents() else {
             return Err(TensorError::Operand { op: "cover", dims: *outlines.dims(), must: "must have four axes" });
         };
-        let edges = Edges::of(&outlines.reshape(&[batch * objects, vertices, 2])?)?;
+        let edges = Edges::of(&outlines.reshape(&[batch * objects, vertices, 2])?, &self.breaks)?;
         let pixels = self.centers(outlines, rows)?;
         let squared = edges.squared_distance(&pixels)?;
         let side = edges.detached()?.side(&pixels)?;
@@ -54,13 +54,26 @@ impl DenseRenderer {
 }
 
 impl<B: Backend> Edges<B> {
-    /// Edges of closed outlines, outlines x vertices x 2.
-    fn of(outlines: &Tensor<B>) -> Result<Self, TensorError> {
+    /// Edges of outlines, outlines x vertices x 2, whose rings begin at 0 and at `breaks` and are closed.
+    fn of(outlines: &Tensor<B>, breaks: &[usize]) -> Result<Self, TensorError> {
         let (outline_count, vertices) = match outlines.dims().extents() {
             &[outline_count, vertices, _] if vertices > 0 => (outline_count, vertices),
             _ => return Err(TensorError::Operand { op: "cover", dims: *outlines.dims(), must: "must have vertices" }),
         };
-        let next = Tensor::concat(&[&outlines.slice(1, 1, vertices - 1)?, &outlines.slice(1, 0, 1)?], 1)?;
+        let mut next = Vec::new();
+        let mut first = 0;
+        for &end in breaks.iter().chain([&vertices]) {
+            if end < first || end > vertices {
+                let must = "must have rings that begin one after the other inside of its outlines";
+                return Err(TensorError::Operand { op: "cover", dims: *outlines.dims(), must });
+            }
+            if end > first {
+                next.push(outlines.slice(1, first + 1, end - first - 1)?);
+                next.push(outlines.slice(1, first, 1)?);
+            }
+            first = end;
+        }
+        let next = Tensor::concat(&next.iter().collect::<Vec<_>>(), 1)?;
         let along = next.sub(outlines)?;
         let component = |of: &Tensor<B>, axis| of.slice(2, axis, 1)?.reshape(&[outline_count, 1, vertices]);
         Ok(Self {

@@ -45,12 +45,14 @@ pub struct TensorDrawing<B: Backend> {
 /// Paints by the edge profile, in tensor operations.
 ///
 /// *Derivative*: as that of [`ContourDistance`](super::ContourDistance); where edges are equally close, shared evenly.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct DenseRenderer {
     edge: EdgeProfile<f64>,
     compositing: Compositing,
     size: ImageSize,
     chunk_values: usize,
+    /// Where rings begin in every outline, beside the first.
+    breaks: Vec<usize>,
 }
 
 impl DenseRenderer {
@@ -66,7 +68,7 @@ impl DenseRenderer {
         if !(edge.sigma > 0.0 && edge.sigma.is_finite()) {
             return Err(RenderError::Setting { what: "sigma", value: edge.sigma, must: "above 0 and finite" });
         }
-        Ok(Self { edge, compositing, size, chunk_values: CHUNK_VALUES })
+        Ok(Self { edge, compositing, size, chunk_values: CHUNK_VALUES, breaks: Vec::new() })
     }
 
     /// The same renderer with at most about `values` numbers in an array of objects x pixels x edges; a row of pixels at
@@ -74,6 +76,12 @@ impl DenseRenderer {
     #[must_use]
     pub fn with_chunk_values(self, values: usize) -> Self {
         Self { chunk_values: values, ..self }
+    }
+
+    /// Outlines of several rings, as [`RenderOp::with_breaks`](super::RenderOp::with_breaks).
+    #[must_use]
+    pub fn with_breaks(self, breaks: Vec<usize>) -> Self {
+        Self { breaks, ..self }
     }
 
     /// Images, batch x 3 x height x width. If the drawing is tracked, all chunks stay in the graph; where that is too much

@@ -58,14 +58,41 @@ const GRADIENT: f64 = 1e-5;
 
 #[test]
 fn images_and_gradients_are_the_contour_renderers() {
+    assert_agrees(&[]);
+}
+
+#[test]
+fn rings_are_those_of_the_contour_renderer() {
+    // Two rings of five vertices, two of one, which have no edge, and one of none.
+    assert_agrees(&[5, 10, 11, 11]);
+}
+
+#[test]
+fn rings_out_of_order_are_refused() {
+    let size = ImageSize::new(4, 4).unwrap();
+    let parts = drawing();
+    for breaks in [vec![5, 4], vec![VERTICES + 1]] {
+        let dense = DenseRenderer::new(EdgeProfile::reference(), Compositing::Blend, size).unwrap();
+        assert!(dense.with_breaks(breaks.clone()).render(&tensors(&parts)).is_err());
+        let op = RenderOp::new(ContourRenderer::default(), size, OBJECTS, VERTICES).unwrap().with_breaks(breaks);
+        let op = Batched::<f64, _>::new(op);
+        assert!(op.forward(1, Values::F64(parts.concat()).as_ref(), false).is_err());
+    }
+}
+
+/// Images and gradients of outlines whose rings begin at `breaks`.
+fn assert_agrees(breaks: &[usize]) {
     let size = ImageSize::new(33, 25).unwrap();
     let parts = drawing();
     let flat = Values::F64(parts.concat());
     for (edge, compositing) in settings() {
         let renderer = ContourRenderer::new(edge, compositing);
-        let op = Batched::<f64, _>::new(RenderOp::new(renderer, size, OBJECTS, VERTICES).unwrap());
+        let op = Batched::<f64, _>::new(
+            RenderOp::new(renderer, size, OBJECTS, VERTICES).unwrap().with_breaks(breaks.to_vec()),
+        );
         let (expected, saved) = op.forward(1, flat.as_ref(), true).unwrap();
-        let dense = DenseRenderer::new(edge, compositing, size).unwrap().with_chunk_values(3000);
+        let dense =
+            DenseRenderer::new(edge, compositing, size).unwrap().with_chunk_values(3000).with_breaks(breaks.to_vec());
         let own = tensors(&parts);
         let image = dense.render(&own).unwrap();
         let far = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);

@@ -19,14 +19,7 @@ pub(super) fn check_drawing<T: Real>(drawing: &Drawing<T>) -> Result<(), RenderE
             return Err(RenderError::Starts);
         }
     }
-    let mut least = 0;
-    for (index, &start) in drawing.breaks.iter().enumerate() {
-        let most = drawing.vertices.len();
-        if !(least..=most).contains(&start) {
-            return Err(RenderError::Breaks { index, start, least, most });
-        }
-        least = start;
-    }
+    check_breaks(&drawing.breaks, drawing.vertices.len())?;
     if !all_finite(&drawing.background) {
         return Err(RenderError::NotFinite { what: "background", object: None });
     }
@@ -59,6 +52,18 @@ pub(super) fn check_grad<T: Real>(drawing: &Drawing<T>, grad: &DrawingGrad<T>) -
     check_length("grad.vertices", drawing.vertices.len(), grad.vertices.len())?;
     check_length("grad.colors", drawing.colors.len(), grad.colors.len())?;
     check_length("grad.confidences", drawing.confidences.len(), grad.confidences.len())
+}
+
+/// Checks that rings begin one after the other among `most` vertices.
+pub(in crate::render) fn check_breaks(breaks: &[usize], most: usize) -> Result<(), RenderError> {
+    let mut least = 0;
+    for (index, &start) in breaks.iter().enumerate() {
+        if !(least..=most).contains(&start) {
+            return Err(RenderError::Breaks { index, start, least, most });
+        }
+        least = start;
+    }
+    Ok(())
 }
 
 fn check_length(what: &'static str, expected: usize, len: usize) -> Result<(), RenderError> {

@@ -26,6 +26,7 @@ mod visit;
 
 use alloc::vec::Vec;
 
+pub(super) use check::check_breaks;
 pub use model::CoverageModel;
 pub use renderer::{TileRenderer, TileScratch};
 
