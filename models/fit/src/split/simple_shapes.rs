@@ -3,7 +3,7 @@
 
 use alloc::vec::Vec;
 
-use dvp_core::shape::{OutlineBasis, REFERENCE_VERTICES, mdshr_bank};
+use dvp_core::shape::{OutlineBasis, REFERENCE_VERTICES};
 use dvp_core::{Efd, Real};
 
 use crate::pose::search::Prototype;
@@ -52,8 +52,6 @@ fn shapes<T: Real>() -> Vec<Efd<T>> {
     let height = T::of(1.5);
     let width = T::of(0.866);
     let triangle = Efd::from_contour(&[[one, zero], [one - height, width], [one - height, -width]], HARMONICS);
-    let heart = mdshr_bank(HARMONICS).prototypes().first().cloned();
     let polygons = RECTANGLES.into_iter().filter_map(|short| rectangle(short).ok());
-    let others = triangle.ok().map(|(efd, _)| efd).into_iter().chain(heart);
-    ELLIPSES.into_iter().map(ellipse).chain(polygons).chain(others).collect()
+    ELLIPSES.into_iter().map(ellipse).chain(polygons).chain(triangle.ok().map(|(efd, _)| efd)).collect()
 }
