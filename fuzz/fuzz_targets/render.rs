@@ -4,6 +4,7 @@
 use dvp_core::render::{
     Compositing, ContourDistance, CoverageModel, ExactArea, HardMask, PixelLoss, Renderer, SoftTriangles, TileRenderer,
 };
+use dvp_core::image::RgbaView;
 use dvp_core::{DrawingGrad, ImageView};
 use dvp_fuzz::Painting;
 use libfuzzer_sys::fuzz_target;
@@ -27,6 +28,11 @@ fn paint<C: CoverageModel<f32>>(coverage: C, compositing: Compositing, painting:
         let plane = &image[channel * size.pixels()..(channel + 1) * size.pixels()];
         assert!(plane.iter().all(|&v| v >= low - slack && v <= high + slack), "{low}..{high}: {plane:?}");
     }
+    let mut clear = vec![0.0; 4 * size.pixels()];
+    renderer.render_rgba(drawing, *size, &mut scratch, &mut clear).expect("it was painted");
+    assert!(clear.iter().all(|v| v.is_finite()));
+    let alpha = &clear[3 * size.pixels()..];
+    assert!(alpha.iter().all(|a| (-1e-4..=1.0 + 1e-4).contains(a)), "{alpha:?}");
     let target = vec![0.5; image.len()];
     let target = ImageView::new(*size, &target).expect("3 values per pixel");
     let mut grad = DrawingGrad::default();
@@ -34,6 +40,9 @@ fn paint<C: CoverageModel<f32>>(coverage: C, compositing: Compositing, painting:
     for loss in [PixelLoss::Mae, PixelLoss::Mse] {
         let value = renderer.loss_and_grad(drawing, target, loss, &mut scratch, &mut grad).expect("it was painted");
         assert!(value.is_finite());
+        let target = RgbaView::premultiplied(*size, &clear).expect("4 values per pixel");
+        let value = renderer.loss_and_grad(drawing, target, loss, &mut scratch, &mut grad).expect("it was painted");
+        assert!(value <= 0.0, "an image is like itself: {value}");
     }
     let numbers = grad.vertices.as_flattened().iter().chain(grad.colors.as_flattened()).chain(&grad.confidences);
     assert!(numbers.chain(&grad.background).all(|v| v.is_finite()), "{grad:?}");

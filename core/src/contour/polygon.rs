@@ -19,10 +19,10 @@ fn length<T: Real>([start, end]: [[T; 2]; 2]) -> T {
 #[must_use]
 pub fn signed_area<T: Real>(polygon: &[[T; 2]]) -> T {
     // From the first vertex, so that a polygon far from the origin loses no digits.
-    let Some(&[x, y]) = polygon.first() else { return T::zero() };
+    let [[x, y], rest @ ..] = polygon else { return T::zero() };
+    let (x, y) = (*x, *y);
     // The closing edge ends there and adds nothing.
-    let twice: T =
-        polygon.windows(2).map(|edge| (edge[0][0] - x) * (edge[1][1] - y) - (edge[1][0] - x) * (edge[0][1] - y)).sum();
+    let twice: T = polygon.iter().zip(rest).map(|(p, q)| (p[0] - x) * (q[1] - y) - (q[0] - x) * (p[1] - y)).sum();
     twice * T::of(0.5)
 }
 

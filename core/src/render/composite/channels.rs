@@ -7,10 +7,10 @@ use crate::image::CHANNELS;
 use crate::real::Real;
 use crate::scene::Drawing;
 
-/// The color of object `k` in a channel.
+/// The color of an object in a channel.
 #[inline(always)]
-pub(super) fn tint<T: Real>(drawing: &Drawing<T>, k: usize, channel: usize) -> T {
-    if channel < CHANNELS { drawing.colors[k][channel] } else { T::one() }
+pub(super) fn tint<T: Real>(color: &[T; CHANNELS], channel: usize) -> T {
+    if channel < CHANNELS { color[channel] } else { T::one() }
 }
 
 /// The color of nothing in a channel of `N`: the background, or clear.

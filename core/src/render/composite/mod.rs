@@ -209,9 +209,10 @@ impl<T: Real, S: PixelSink<T>, const N: usize> Pass<'_, '_, T, S, N> {
             return;
         }
         let drawing = self.composition.drawing;
+        let painted = span.object.map(|k| (drawing.confidences[k], &drawing.colors[k]));
         for channel in 0..N {
             let b = ground::<T, N>(drawing, channel);
-            let value = span.object.map_or(b, |k| b + drawing.confidences[k] * (tint(drawing, k, channel) - b));
+            let value = painted.map_or(b, |(f, color)| b + f * (tint(color, channel) - b));
             let sum = self.sink.span(channel, span.start, span.len, value);
             if S::BACKWARD {
                 if Self::OPAQUE {

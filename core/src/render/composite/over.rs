@@ -19,10 +19,10 @@ impl<T: Real, S: PixelSink<T>, const N: usize> Pass<'_, '_, T, S, N> {
         }
         for (layer, kept) in self.scratch.layers.iter().zip(&mut self.scratch.kept) {
             let k = layer.object;
-            let f = drawing.confidences[k];
+            let (f, color) = (drawing.confidences[k], &drawing.colors[k]);
             kept.coverage = layer.chunk.map_or([one; LANES], |chunk| self.composition.tiles[k].coverage[chunk]);
             for channel in 0..N {
-                let (below, c) = (values[channel], tint(drawing, k, channel));
+                let (below, c) = (values[channel], tint(color, channel));
                 kept.below[channel] = below;
                 values[channel] = lanes(|i| below[i] + kept.coverage[i] * f * (c - below[i]));
             }
@@ -37,13 +37,13 @@ impl<T: Real, S: PixelSink<T>, const N: usize> Pass<'_, '_, T, S, N> {
         // From the top down, g is the gradient of the color that the layers above were painted on.
         for (layer, kept) in self.scratch.layers.iter().zip(&self.scratch.kept).rev() {
             let k = layer.object;
-            let f = drawing.confidences[k];
+            let (f, color) = (drawing.confidences[k], &drawing.colors[k]);
             let sums = &mut self.scratch.objects[k];
             let p = kept.coverage;
             let painted: Lanes<T> = lanes(|i| p[i] * f);
             let mut grad = [zero; LANES];
             for channel in 0..N {
-                let (above, below, c) = (g[channel], kept.below[channel], tint(drawing, k, channel));
+                let (above, below, c) = (g[channel], kept.below[channel], tint(color, channel));
                 grad = lanes(|i| grad[i] + above[i] * (c - below[i]));
                 if channel < CHANNELS {
                     sums.color[channel] = lanes(|i| sums.color[channel][i] + above[i] * painted[i]);

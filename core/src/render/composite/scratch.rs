@@ -85,11 +85,11 @@ impl<T: Real> CompositeScratch<T> {
             *sum += total(own);
         }
         for (k, sums) in self.objects.iter().enumerate() {
-            let f = drawing.confidences[k];
+            let (f, color) = (drawing.confidences[k], &drawing.colors[k]);
             grad.confidences[k] += total(sums.confidence);
             for channel in 0..N {
                 let covered = total(sums.covered[channel]);
-                grad.confidences[k] += (tint(drawing, k, channel) - ground::<T, N>(drawing, channel)) * covered;
+                grad.confidences[k] += (tint(color, channel) - ground::<T, N>(drawing, channel)) * covered;
                 if channel < CHANNELS {
                     grad.colors[k][channel] += f * covered + total(sums.color[channel]);
                 }

@@ -11,14 +11,14 @@ impl<T: Real, S: PixelSink<T>, const N: usize> Pass<'_, '_, T, S, N> {
     #[inline(always)]
     pub(super) fn edge(&mut self, place: Place, object: usize, chunk: usize) {
         let drawing = self.composition.drawing;
-        let f = drawing.confidences[object];
+        let (f, color) = (drawing.confidences[object], &drawing.colors[object]);
         let tile = &mut self.composition.tiles[object];
         let p = tile.coverage[chunk];
         let sums = &mut self.scratch.objects[object].covered;
         let mut grad = [T::zero(); LANES];
         for channel in 0..N {
             let b = ground::<T, N>(drawing, channel);
-            let contrast = f * (tint(drawing, object, channel) - b);
+            let contrast = f * (tint(color, channel) - b);
             let g = self.sink.chunk(channel, place, &lanes(|i| b + p[i] * contrast));
             if S::BACKWARD {
                 if Self::OPAQUE {

@@ -45,7 +45,7 @@ pub(crate) fn squared_errors<T: Real>(
     let mut out = vec![0.0; drawing.object_count()];
     let mut cuts = Vec::new();
     for object in 0..out.len() {
-        cut(drawing.outline(object), object, size, &mut cuts);
+        drawing.rings(object).iter().for_each(|ring| cut(ring, object, size, &mut cuts));
     }
     cuts.sort_unstable();
     let mut active = Vec::new();

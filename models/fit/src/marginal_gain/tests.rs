@@ -1,21 +1,25 @@
 use alloc::vec::Vec;
 
 use dvp_core::render::{Compositing, HardMask, HardRenderer, Renderer};
+use dvp_core::shape::Rings;
 use dvp_core::{Drawing, Image, ImageSize};
 
 use super::squared_errors;
 
-/// Squares and one triangle, all overlapping, one hidden under the others, as confident as `confidences` says.
+/// Squares, the first with a hole, and a triangle, all overlapping, as confident as `confidences` says.
 fn drawing(confidences: [f64; 4]) -> Drawing<f64> {
     let outlines: [&[[f64; 2]]; 4] = [
-        &[[0.1, 0.1], [0.6, 0.1], [0.6, 0.6], [0.1, 0.6], [0.1, 0.1]],
+        // From the fifth vertex on, the hole.
+        &[[0.1, 0.1], [0.6, 0.1], [0.6, 0.6], [0.1, 0.6], [0.2, 0.2], [0.5, 0.2], [0.5, 0.5], [0.2, 0.5]],
         &[[0.4, 0.3], [0.9, 0.3], [0.9, 0.8], [0.4, 0.8], [0.4, 0.3]],
         &[[0.3, 0.2], [0.7, 0.5], [0.2, 0.9], [0.3, 0.2]],
         &[[0.45, 0.4], [0.55, 0.4], [0.55, 0.5], [0.45, 0.5], [0.45, 0.4]],
     ];
     let mut drawing = Drawing { background: [0.9, 0.8, 0.7], ..Drawing::default() };
     for (k, outline) in outlines.into_iter().enumerate() {
-        drawing.push(outline, [0.2 * k as f64, 1.0 - 0.3 * k as f64, 0.5], confidences[k]);
+        let breaks: &[usize] = if k == 0 { &[4] } else { &[] };
+        let rings = Rings { breaks, ..Rings::one(outline) };
+        drawing.push_rings(rings, [0.2 * k as f64, 1.0 - 0.3 * k as f64, 0.5], confidences[k]);
     }
     drawing
 }
@@ -24,7 +28,7 @@ fn drawing(confidences: [f64; 4]) -> Drawing<f64> {
 fn without(drawing: &Drawing<f64>, object: usize) -> Drawing<f64> {
     let mut rest = Drawing { background: drawing.background, ..Drawing::default() };
     for k in (0..drawing.object_count()).filter(|&k| k != object) {
-        rest.push(drawing.outline(k), drawing.colors[k], drawing.confidences[k]);
+        rest.push_rings(drawing.rings(k), drawing.colors[k], drawing.confidences[k]);
     }
     rest
 }

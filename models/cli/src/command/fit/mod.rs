@@ -201,9 +201,9 @@ fn try_fit(
         }
         Some(frame) => stack_picture(stacks, &input.path, frame).context("image of the stack is gone")?,
     };
-    let (fit, time) = solver.solve(picture.image.view(), &input.stem, scratch)?;
-    // The scene of a transparent picture is to be told here that it has no background (`picture.transparent`), as soon as scenes
-    // know transparency. Until then its background is the color that the picture was put over.
+    let (mut fit, time) = solver.solve(picture.image.view(), &input.stem, scratch)?;
+    // A transparent picture has no background; the one that was fitted is the color that the picture was put over.
+    fit.scene.transparent = picture.transparent;
     write_results(arguments, &fit, picture, input, &mut scratch.paint)?;
     Ok(FoundScene::new(&fit, picture, time.as_secs_f64() * 1e3))
 }

@@ -30,7 +30,7 @@ pub(super) fn bar(count: u64, done: u64) -> ProgressBar {
 
 fn hidden(count: u64) -> ProgressBar {
     let bar = ProgressBar::with_draw_target(Some(count), ProgressDrawTarget::hidden());
-    let template = if count == 1 { "{spinner} {elapsed} {msg}" } else { "{bar:40} {pos}/{len} {eta} {msg}" };
+    let template = if count == 1 { "{spinner} {elapsed} {wide_msg}" } else { "{bar:40} {pos}/{len} {eta} {wide_msg}" };
     if let Ok(style) = ProgressStyle::with_template(template) {
         bar.set_style(style);
     }
