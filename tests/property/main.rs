@@ -21,5 +21,6 @@ mod scene;
 mod scene_refine;
 mod shape;
 mod split;
+mod svg;
 mod symmetry;
 mod triangles;

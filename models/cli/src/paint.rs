@@ -1,6 +1,7 @@
 //! Scenes to images with a renderer chosen by name.
 
 use clap::ValueEnum;
+use dvp_core::image::{RGBA_CHANNELS, RgbaImage};
 use dvp_core::render::{
     ContourRenderer, ExactArea, ExactRenderer, HardMask, HardRenderer, RenderError, Renderer, SoftTriangles,
     TriangleRenderer,
@@ -97,33 +98,55 @@ impl Painter {
         Ok(scratch.image.insert(image))
     }
 
-    fn paint_to<T: Real>(
+    /// The scene's image on nothing: clear where no object is.
+    ///
+    /// # Errors
+    /// As [`Self::paint`].
+    pub fn paint_rgba<T: Real>(&self, scene: &Scene<T>, size: ImageSize) -> Result<RgbaImage<T>, PaintError> {
+        let mut image = RgbaImage::transparent(size);
+        self.paint_to(scene, &mut image, &mut PaintScratch::default())?;
+        Ok(image)
+    }
+
+    fn paint_to<T: Real, const N: usize>(
         &self,
         scene: &Scene<T>,
-        image: &mut Image<T>,
+        image: &mut Image<T, N>,
         scratch: &mut PaintScratch<T>,
     ) -> Result<(), PaintError> {
         let drawing = self.draw(scene)?;
-        let (compositing, size, pixels) = (scene.compositing, image.size(), image.data_mut());
+        let compositing = scene.compositing;
         match self.renderer {
             RendererName::Contour => {
                 let renderer = ContourRenderer::new(scene.edge, compositing);
-                renderer.render(&drawing, size, &mut scratch.contour, pixels)?;
+                paint_with(&renderer, &drawing, image, &mut scratch.contour)
             }
             RendererName::Triangles => {
                 let coverage = SoftTriangles { edge: scene.edge, ..SoftTriangles::default() };
-                let renderer = TriangleRenderer { coverage, compositing };
-                renderer.render(&drawing, size, &mut scratch.triangles, pixels)?;
+                paint_with(&TriangleRenderer { coverage, compositing }, &drawing, image, &mut scratch.triangles)
             }
             RendererName::Exact => {
-                let renderer = ExactRenderer { coverage: ExactArea, compositing };
-                renderer.render(&drawing, size, &mut scratch.exact, pixels)?;
+                paint_with(&ExactRenderer { coverage: ExactArea, compositing }, &drawing, image, &mut scratch.exact)
             }
             RendererName::Hard => {
-                let renderer = HardRenderer { coverage: HardMask, compositing };
-                renderer.render(&drawing, size, &mut scratch.hard, pixels)?;
+                paint_with(&HardRenderer { coverage: HardMask, compositing }, &drawing, image, &mut scratch.hard)
             }
         }
-        Ok(())
     }
+}
+
+/// Paints with a renderer, on the background or, into an image with alpha, on nothing.
+fn paint_with<T: Real, R: Renderer<T>, const N: usize>(
+    renderer: &R,
+    drawing: &Drawing<T>,
+    image: &mut Image<T, N>,
+    scratch: &mut R::Scratch,
+) -> Result<(), PaintError> {
+    let (size, pixels) = (image.size(), image.data_mut());
+    if N == RGBA_CHANNELS {
+        renderer.render_rgba(drawing, size, scratch, pixels)?;
+    } else {
+        renderer.render(drawing, size, scratch, pixels)?;
+    }
+    Ok(())
 }

@@ -75,6 +75,19 @@ pub(super) fn resolve<T: Real>(rings: Rings<'_, T>, rule: FillRule) -> Result<Re
     Ok(chain::chain(&kept, &sources.next, &grid, rings.vertices))
 }
 
+impl<T: Real> Rings<'_, T> {
+    /// Rings that neither cross nor overlap and fill by the even-odd rule what these fill by `rule`: outer rings turn from
+    /// +x to +y, holes the other way.
+    ///
+    /// # Errors
+    /// [`ShapeError::NotFinite`], [`ShapeError::TooLarge`] if the size overflows.
+    pub fn resolved(&self, rule: FillRule) -> Result<Outline<T>, ShapeError> {
+        let mut outline = Outline::default();
+        resolve(*self, rule)?.append(self.vertices, &mut outline);
+        Ok(outline)
+    }
+}
+
 impl<T: Real> Resolved<T> {
     /// Appends the rings, given the vertices that came in.
     pub(super) fn append(&self, vertices: &[[T; 2]], outline: &mut Outline<T>) {

@@ -35,7 +35,7 @@ pub use error::{FormatError, Place};
 pub use labels::{labels_beside, read_labels};
 pub use npy::read_npy;
 pub use picture::{DEFAULT_MAX_PIXELS, Picture, read_picture};
-pub use png::{BitDepth, encode_png, from_rgb8, to_rgb8};
+pub use png::{BitDepth, encode_png, encode_png_rgba, from_rgb8, to_rgb8};
 pub use scene_checks::edge_cut;
 pub(crate) use scene_json::read_text;
 pub use scene_json::{CompositingJson, EdgeJson, EdgeLawJson, ObjectJson, SceneJson, read_scene};

@@ -1,6 +1,7 @@
 //! Images to PNG, with 8 or 16 bits per channel, and to pixels of 8 bits.
 
 use dvp_core::dims::SizeError;
+use dvp_core::image::RgbaImage;
 use dvp_core::{Image, ImageSize, ImageView, Real, simd};
 use image::codecs::png::PngEncoder;
 use image::error::{LimitError, LimitErrorKind};
@@ -38,6 +39,25 @@ pub fn encode_png<T: Real>(image: ImageView<'_, T>, bits: BitDepth) -> Result<Ve
     let encoder = PngEncoder::new(&mut png);
     encoder.write_image(&bytes, width, height, color).map_err(|source| FormatError::Encode { source })?;
     Ok(png)
+}
+
+/// The bytes of an RGBA PNG of 8 bits with straight colors; values are clamped to [0, 1] and rounded to the nearest step.
+///
+/// # Errors
+/// As [`to_rgb8`].
+pub fn encode_png_rgba<T: Real>(image: &RgbaImage<T>) -> Result<Vec<u8>, FormatError> {
+    let [width, height] = sides(image.size())?;
+    let bytes: Vec<u8> = image.to_straight().into_iter().map(byte).collect();
+    let mut png = Vec::new();
+    let encoder = PngEncoder::new(&mut png);
+    let written = encoder.write_image(&bytes, width, height, ExtendedColorType::Rgba8);
+    written.map_err(|source| FormatError::Encode { source })?;
+    Ok(png)
+}
+
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to [0, 255] before")]
+fn byte<T: Real>(value: T) -> u8 {
+    (value.as_f64().clamp(0.0, 1.0) * 255.0).round() as u8
 }
 
 /// A picture of 8 bits; values are clamped to [0, 1] and rounded to the nearest step.

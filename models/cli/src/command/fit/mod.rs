@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use dvp_core::render::Compositing;
-use dvp_fit::{Fit, FitOptions};
+use dvp_fit::{Bank, Fit, FitOptions};
 
 use self::inputs::Input;
 use self::report::{FoundScene, Report};
@@ -204,7 +204,7 @@ fn try_fit(
     let (mut fit, time) = solver.solve(picture.image.view(), &input.stem, scratch)?;
     // A transparent picture has no background; the one that was fitted is the color that the picture was put over.
     fit.scene.transparent = picture.transparent;
-    write_results(arguments, &fit, picture, input, &mut scratch.paint)?;
+    write_results(arguments, solver.bank(), &fit, picture, input, &mut scratch.paint)?;
     Ok(FoundScene::new(&fit, picture, time.as_secs_f64() * 1e3))
 }
 
@@ -214,6 +214,7 @@ fn stack_picture<'a>(stacks: &'a [Stack], path: &Path, frame: usize) -> Option<&
 
 fn write_results(
     arguments: &Arguments,
+    bank: Option<&Bank<f32>>,
     fit: &Fit<f32>,
     picture: &Picture<f32>,
     input: &Input,
@@ -224,7 +225,7 @@ fn write_results(
     let json = SceneJson::from_scene(&fit.scene, size);
     write_atomic(&target, (json.to_line(&Place::file(&target))? + "\n").as_bytes())?;
     if !arguments.no_svg {
-        write_atomic(&arguments.target(input, "svg"), to_svg(&fit.scene, size)?.as_bytes())?;
+        write_atomic(&arguments.target(input, "svg"), to_svg(&fit.scene, size, bank)?.as_bytes())?;
     }
     if !arguments.no_png {
         let image = Painter::default().paint_in(&fit.scene, size, scratch)?;

@@ -105,7 +105,8 @@ impl Solver {
         }
     }
 
-    fn bank(&self) -> Option<&Bank<f32>> {
+    /// The known shapes.
+    pub(super) fn bank(&self) -> Option<&Bank<f32>> {
         self.options.bank.as_ref()
     }
 

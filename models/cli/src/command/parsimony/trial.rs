@@ -117,7 +117,7 @@ impl Subject {
         let price = Price::of(&picture.truth, size, bank)?;
         let painted = Painter::default().paint(&picture.truth, size)?;
         let left_bits = Unexplained::of(&shown.view(), painted.data()).bits;
-        let svg = Drawn::of(&to_svg(&picture.truth, size)?);
+        let svg = Drawn::of(&to_svg(&picture.truth, size, None)?);
         Ok(Self { picture, shown, price, left_bits, svg })
     }
 }
@@ -191,7 +191,7 @@ impl Contender {
             left_bits: Unexplained::of(&shown.view(), image.data()).bits,
             true_left_bits: *left_bits,
             mae: f64::from(PixelLoss::Mae.value(ImagePair::new(image.view(), picture.image.view())?, &mut ())?),
-            svg: Drawn::of(&to_svg(&there, size)?),
+            svg: Drawn::of(&to_svg(&there, size, None)?),
             true_svg: *svg,
             ms: cpu.as_secs_f64() * 1e3,
         })

@@ -1,0 +1,25 @@
+//! Scenes to SVG.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `document` | the text of the file, [`to_svg`] |
+//! | `drawn` | objects with their colors, opacities and names |
+//! | `element` | an object as `<circle>`, `<ellipse>`, `<rect>`, `<polygon>` or `<path>` |
+//! | `path_data` | lines, arcs and cubics as path data |
+//! | `curves` | outlines of descriptors as few smooth curves |
+//! | `mixture` | the colors of overlaps under `blend` |
+//! | `overlap` | which sets of objects share pixels |
+//! | `number` | decimal numbers |
+
+mod curves;
+mod document;
+mod drawn;
+mod element;
+mod mixture;
+mod number;
+mod overlap;
+mod path_data;
+#[cfg(test)]
+mod tests;
+
+pub use document::to_svg;
