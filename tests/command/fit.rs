@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use dvp::format::{BitDepth, DataSet, Place, encode_png, read_scene};
+use dvp::format::{BitDepth, DataSet, Place, ShapeJson, encode_png, read_scene};
 use dvp_core::Scene;
 use serde_json::Value;
 
@@ -46,8 +46,11 @@ fn known_shapes_are_found_where_they_are() {
             };
             assert!(found.objects.iter().any(apart), "{}: {object:?} is not in {found:?}", sample.stem);
         }
-        let symmetries = json.objects.iter().map(|object| object.symmetry.unwrap());
-        assert!(symmetries.zip(&found.objects).all(|(k, object)| [1, 4, 2][object.prototype().unwrap()] == k));
+        assert!(!json.objects.is_empty());
+        for object in &json.objects {
+            let ShapeJson::Prototype { prototype, symmetry, .. } = object.shape else { panic!("{object:?}") };
+            assert_eq!(symmetry, Some([1, 4, 2][prototype]));
+        }
     }
 }
 
@@ -119,15 +122,41 @@ fn what_is_hidden_and_marginal_gains_are_said() {
     let arguments = ["fit", text(&picture), "--out", text(&out)];
     let said: Value = serde_json::from_str(&dvp_done(arguments.into_iter().chain(["--json"]))).unwrap();
     let found = &said["images"][0];
-    let hidden = found["ambiguity"].as_array().unwrap().iter().find(|open| open["kind"] == "hidden").unwrap();
-    assert_eq!((&hidden["by"], &hidden["order"]), (&Value::from("rotation"), &Value::from(0)));
+    let known = found["known"].as_array().unwrap();
+    let doubts = known[0]["doubts"].as_array().unwrap();
+    let hidden = doubts.iter().find(|doubt| doubt["kind"] == "hidden").unwrap();
+    assert_eq!(hidden["completion"], serde_json::json!({"kind": "rotation", "order": 0}));
     assert!((hidden["share"].as_f64().unwrap() - 0.5).abs() < 0.03, "{hidden}");
-    let gains: Vec<f64> =
-        found["marginal_gain"].as_array().unwrap().iter().map(|value| value.as_f64().unwrap()).collect();
+    let gains: Vec<f64> = known.iter().map(|known| known["marginal_gain"].as_f64().unwrap()).collect();
     // The square is darker and larger than what is seen of the disk, which is painted first.
     assert!(gains.len() == 2 && gains[1] > gains[0] && gains[0] > 0.1, "{gains:?}");
     assert_eq!(found["ranking"], serde_json::json!([1, 0]));
     assert!(said["summary"]["unexplained"].as_f64().unwrap() < 0.01);
+    // The file says the same, and is what the schema says.
+    let written: Value = serde_json::from_slice(&fs::read(out.join("half.json")).unwrap()).unwrap();
+    let in_file: Vec<&Value> = written["objects"].as_array().unwrap().iter().map(|object| &object["known"]).collect();
+    assert_eq!(in_file, known.iter().collect::<Vec<_>>());
+    for name in ["stop", "unexplained", "noise", "bits", "doubts"] {
+        assert!(!found[name].is_null());
+        assert_eq!(written["known"][name], found[name], "{name}");
+    }
+    let schema = concat!(env!("CARGO_MANIFEST_DIR"), "/../models/cli/schema/scene-3.schema.json");
+    let schema: Value = serde_json::from_slice(&fs::read(schema).unwrap()).unwrap();
+    jsonschema::validate(&schema, &written).unwrap();
+    // Deviations are those of the covariance, that of the logarithm of the scale times the scale.
+    let covariance = found["covariance"][1].as_array().unwrap();
+    let variance = |k: usize| covariance[5 * k].as_f64().unwrap();
+    let scale = written["objects"][1]["scale"].as_f64().unwrap_or(1.0);
+    let deviations = &known[1]["deviations"];
+    for (deviation, expected) in [
+        (&deviations["translation"][0], variance(0).sqrt()),
+        (&deviations["translation"][1], variance(1).sqrt()),
+        (&deviations["scale"], scale * variance(2).sqrt()),
+        (&deviations["rotation"], variance(3).sqrt()),
+    ] {
+        let deviation = deviation.as_f64().unwrap();
+        assert!(deviation > 0.0 && (deviation / expected - 1.0).abs() < 1e-5, "{deviation} {expected}");
+    }
     let table = dvp_done(arguments);
     assert!(table.contains("unexplained") && table.contains("1, to "), "{table}");
 }

@@ -83,7 +83,7 @@ fn a_picture_that_is_no_better_than_flat_says_so() {
     let value = |x: u32, y: u32| 127.5 + 127.5 * wave(f64::from(x) - 47.5, f64::from(y) - 47.5);
     let spiral = ImageBuffer::from_fn(96, 96, |x, y| Rgb([value(x, y).round() as u8; 3]));
     let said = fitted(folder.path(), "spiral.png", &DynamicImage::from(spiral));
-    assert_eq!((&said["objects"], &said["stop"]), (&Value::from(0), &Value::from("no better than flat")), "{said}");
+    assert_eq!((&said["objects"], &said["stop"]), (&Value::from(0), &Value::from("no_better_than_flat")), "{said}");
     assert!(said["doubts"].as_array().unwrap().contains(&Value::from("stop")), "{said}");
     let picture = folder.path().join("spiral.png");
     let table = dvp_done(["fit", text(&picture), "--out", text(&folder.path().join("out"))]);

@@ -18,6 +18,7 @@ mod render_contour;
 mod rgba;
 mod rings;
 mod scene;
+mod scene_json;
 mod scene_refine;
 mod shape;
 mod split;

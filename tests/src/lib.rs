@@ -8,6 +8,7 @@ pub mod golden;
 pub mod hard_geometry;
 pub mod inside_integral;
 pub mod picture_set;
+pub mod scene_strategy;
 pub mod shape_strategy;
 pub mod strategy;
 

@@ -10,7 +10,9 @@ use rayon::prelude::*;
 
 use super::options::{BankChoice, CompositingName, PaintArguments, size_or, square, with_threads};
 use super::{Console, Outcome, progress};
-use crate::format::{BitDepth, Place, SCENES_FILE, SceneJson, bank_to_json, edge_cut, encode_png, write_atomic};
+use crate::format::{
+    BitDepth, Place, SCENES_FILE, SceneJson, ShapeJson, bank_to_json, edge_cut, encode_png, write_atomic,
+};
 use crate::generate::{Range, SceneSettings, sample_scene};
 use crate::paint::Painter;
 
@@ -168,11 +170,13 @@ fn write_image(
     index: usize,
 ) -> Result<String> {
     let path = arguments.out.join(format!("{index:05}.png"));
-    let mut json = SceneJson::from_scene(scene, size);
+    let mut json = SceneJson::from_scene(scene, size)?;
     json.id = Some(index as u64);
     for object in &mut json.objects {
         // The bank stands beside the scenes.
-        object.efd = None;
+        if let ShapeJson::Prototype { efd, .. } = &mut object.shape {
+            *efd = None;
+        }
     }
     let place = Place::file(&path);
     // What is painted is what was written, after rounding.

@@ -21,11 +21,14 @@ pub(super) fn mds_hr(count: u64, seed: u64) -> Result<DataSet<f32>> {
 pub(super) fn scenes(settings: &SceneSettings, count: u64, seed: u64) -> Result<DataSet<f32>> {
     let (bank, size) = (mdshr_bank(), square(TRAINED_SIDE)?);
     let place = Place::file(&PathBuf::from("generated"));
-    let sample = |index| Sample {
-        stem: format!("{index:05}"),
-        image: PathBuf::new(),
-        scene: Some((SceneJson::from_scene(&sample_scene(settings, &bank, size, seed, index), size), place.clone())),
-        labels: None,
+    let sample = |index| {
+        let scene = sample_scene(settings, &bank, size, seed, index);
+        Ok(Sample {
+            stem: format!("{index:05}"),
+            image: PathBuf::new(),
+            scene: Some((SceneJson::from_scene(&scene, size)?, place.clone())),
+            labels: None,
+        })
     };
-    Ok(DataSet { samples: (0..count).map(sample).collect(), bank })
+    Ok(DataSet { samples: (0..count).map(sample).collect::<Result<_>>()?, bank })
 }

@@ -77,7 +77,7 @@ fn write<T: Real>(arguments: &Arguments, scene: &Scene<T>, size: ImageSize, bank
     let output = &arguments.output;
     let bytes = match output.extension().and_then(|ending| ending.to_str()).unwrap_or("") {
         "svg" => to_svg(scene, size, bank)?.into_bytes(),
-        "json" => (SceneJson::from_scene(scene, size).to_line(&Place::file(output))? + "\n").into_bytes(),
+        "json" => (SceneJson::from_scene(scene, size)?.to_line(&Place::file(output))? + "\n").into_bytes(),
         "png" => png(arguments, scene, size)?,
         _ => bail!("{}: the output must end in .png, .svg or .json", output.display()),
     };

@@ -11,8 +11,7 @@ use dvp_fit::Bank;
 use serde::{Deserialize, Serialize};
 
 use super::error::{FormatError, Place};
-use super::scene_checks::checked_efd;
-use super::scene_json::read_text;
+use super::scene_json::{checked_efd, read_text};
 
 /// Harmonics that the data of MDS-HR were drawn with.
 const MDSHR_HARMONICS: usize = 64;

@@ -73,7 +73,7 @@ pub enum FormatError {
         source: serde_json::Error,
     },
     /// A version that this program does not know.
-    #[error("{place}: format version {version}, this program reads version 1; use a newer dvp")]
+    #[error("{place}: format version {version}, this program reads versions 1 to 3; use a newer dvp")]
     Version {
         /// The file or line.
         place: Place,
@@ -89,6 +89,12 @@ pub enum FormatError {
         field: String,
         /// What is wrong, and what it must be.
         problem: String,
+    },
+    /// A shape of a kind that the format has no name for.
+    #[error("shapes of kind {kind} cannot be written to a scene file")]
+    Kind {
+        /// The kind.
+        kind: &'static str,
     },
     /// An image file that its decoder refuses.
     #[error("{path}: not a readable image: {source}", path = path.display())]

@@ -3,8 +3,7 @@
 //! | file | comes in | goes out |
 //! |---|---|---|
 //! | `error.rs` | | the one error of this module, with file, line, field and remedy |
-//! | `scene_json.rs` | scene JSON | [`SceneJson`], the text's structure, unknown fields refused |
-//! | `scene_checks.rs` | [`SceneJson`] | a [`Scene`](dvp_core::Scene) with every number checked, and the way back |
+//! | `scene_json/` | scene JSON | [`SceneJson`], the text's structure, and a [`Scene`](dvp_core::Scene) with every number checked; and the way back |
 //! | `bank.rs` | bank JSON, or the name `mdshr` | a [`Bank`](dvp_fit::Bank) |
 //! | `data_set.rs` | a folder | its images and, where known, their scenes |
 //! | `labels.rs` | STEM.labels.png | which object each pixel belongs to |
@@ -25,7 +24,6 @@ mod matte;
 mod npy;
 mod picture;
 mod png;
-mod scene_checks;
 mod scene_json;
 
 pub use atomic::write_atomic;
@@ -36,9 +34,12 @@ pub use labels::{labels_beside, read_labels};
 pub use npy::read_npy;
 pub use picture::{DEFAULT_MAX_PIXELS, Picture, read_picture};
 pub use png::{BitDepth, encode_png, encode_png_rgba, from_rgb8, to_rgb8};
-pub use scene_checks::edge_cut;
 pub(crate) use scene_json::read_text;
-pub use scene_json::{CompositingJson, EdgeJson, EdgeLawJson, ObjectJson, SceneJson, read_scene};
+pub use scene_json::{
+    CapJson, CompletionJson, CompositingJson, DeviationsJson, DoubtJson, EdgeJson, EdgeLawJson, FillJson, INVISIBLE,
+    JoinJson, ObjectJson, ObjectKnownJson, RingJson, SceneJson, SceneKnownJson, SegmentJson, ShapeJson, StopJson,
+    edge_cut, read_scene,
+};
 
 #[cfg(test)]
 mod tests;

@@ -25,8 +25,8 @@ use crate::svg::to_svg;
 /// Finds the objects of pictures: shapes, poses and colors.
 ///
 /// Pictures may have 8 or 16 bits, be gray, in color or have a palette; what is transparent is put over a color that the picture does
-/// not show. Writes for every picture STEM.json (the scene), STEM.svg (its outlines) and STEM.png (the reconstruction, of 16 bits
-/// for pictures of more than 8).
+/// not show. Writes for every picture STEM.json (the scene, and what is known of its numbers), STEM.svg (its outlines) and STEM.png
+/// (the reconstruction, of 16 bits for pictures of more than 8).
 #[derive(Debug, Args)]
 #[command(before_help = "Example: dvp fit picture.png --out out\n         \
                          dvp fit photos/ 'more/*.jpg' --out out --json > fits.json\n         \
@@ -222,7 +222,7 @@ fn write_results(
 ) -> Result<()> {
     let size = picture.image.size();
     let target = arguments.target(input, "json");
-    let json = SceneJson::from_scene(&fit.scene, size);
+    let json = SceneJson::from_fit(fit, picture)?;
     write_atomic(&target, (json.to_line(&Place::file(&target))? + "\n").as_bytes())?;
     if !arguments.no_svg {
         write_atomic(&arguments.target(input, "svg"), to_svg(&fit.scene, size, bank)?.as_bytes())?;

@@ -3,16 +3,11 @@
 use comfy_table::{Table, presets};
 use dvp_core::render::{EdgeLaw, EdgeProfile};
 use dvp_core::{ImageSize, Real};
-use dvp_fit::{Ambiguity, Completion, Fit, StopReason};
+use dvp_fit::Fit;
 use serde::Serialize;
 
 use crate::command::statistics::{mean, quantile};
-use crate::format::Picture;
-
-/// Why a scene is one flat color.
-const NO_BETTER: &str = "no better than flat";
-/// The doubt of a scene of nothing.
-const INVISIBLE: &str = "invisible";
+use crate::format::{DoubtJson, INVISIBLE, ObjectKnownJson, Picture, SceneKnownJson, StopJson};
 
 /// Tables of more pictures than this show the summary only.
 const MOST_ROWS: usize = 25;
@@ -39,22 +34,15 @@ pub(super) struct FoundScene {
     /// Processor time of the fit alone.
     cpu_ms: f64,
     steps: usize,
-    stop: &'static str,
     edge: EdgeReport,
-    /// Share of the picture's variance that neither the scene nor noise explains; null for methods that do not count it.
-    unexplained: Option<f64>,
-    /// Per object: the share of the picture's variance that would be unexplained in addition without it.
-    marginal_gain: Vec<f64>,
+    /// What STEM.json says of the scene as a whole.
+    #[serde(flatten)]
+    known: SceneKnownJson,
+    /// What STEM.json says of each object.
+    #[serde(rename = "known")]
+    objects_known: Vec<ObjectKnownJson>,
     /// Objects by falling marginal gain.
     ranking: Vec<usize>,
-    /// What the fit says against itself: `pose`, `ambiguity`, `stop`, `unexplained`, `redundant`, `faint`; and `invisible` where the
-    /// picture is transparent everywhere.
-    doubts: Vec<&'static str>,
-    /// Standard deviation taken for noise; null for methods that do not estimate it.
-    noise: Option<f32>,
-    /// Description length; null for methods that do not count it.
-    bits: Option<f64>,
-    ambiguity: Vec<AmbiguityReport>,
     /// Per object, row by row: covariance of (x, y, log scale, rotation).
     covariance: Vec<[f32; 16]>,
 }
@@ -71,19 +59,6 @@ struct EdgeReport {
 /// Hard edges are narrower, px.
 const HARD_PX: f32 = 0.2;
 
-/// An ambiguity under its name. `by` is what completes a hidden part: `prototype`, `rotation` (with its order, 0 for a disk),
-/// `mirror`, or `straight`, the shortest way.
-#[derive(Debug, Serialize)]
-#[serde(rename_all = "lowercase", tag = "kind")]
-enum AmbiguityReport {
-    Symmetry { object: usize, order: usize },
-    Hidden { object: usize, share: f64, by: &'static str, order: Option<usize> },
-    Merged { object: usize, other: usize, visible: f64 },
-    Cropped { object: usize, visible: f64 },
-    Twin { object: usize, prototype: usize, ratio: f64 },
-    Other,
-}
-
 /// Figures over all pictures that were fitted.
 #[derive(Debug, Serialize)]
 pub(super) struct Summary {
@@ -99,47 +74,34 @@ pub(super) struct Summary {
 
 impl FoundScene {
     pub(super) fn new(fit: &Fit<f32>, picture: &Picture<f32>, cpu_ms: f64) -> Self {
-        let doubts = fit.doubts().named().into_iter().filter_map(|(name, is)| is.then_some(name));
         Self {
             objects: fit.scene.objects.len(),
             transparent: picture.transparent,
             mae: fit.loss,
             cpu_ms,
             steps: fit.steps,
-            stop: match fit.stop {
-                StopReason::Converged => "converged",
-                StopReason::StepLimit => "step limit",
-                StopReason::Stalled => "stalled",
-                StopReason::Empty => "empty",
-                StopReason::NotFlat => "not flat",
-                StopReason::NoBetterThanFlat => NO_BETTER,
-                _ => "other",
-            },
             edge: EdgeReport::of(&fit.scene.edge, picture.image.size()),
-            unexplained: fit.unexplained.is_finite().then_some(fit.unexplained),
-            marginal_gain: fit.marginal_gain.clone(),
+            known: SceneKnownJson::of(fit, picture.visible),
+            objects_known: ObjectKnownJson::of(fit),
             ranking: fit.ranking(),
-            doubts: doubts.chain((!picture.visible).then_some(INVISIBLE)).collect(),
-            noise: fit.noise.is_finite().then_some(fit.noise),
-            bits: fit.bits.is_finite().then_some(fit.bits),
-            ambiguity: fit.ambiguity.iter().map(AmbiguityReport::of).collect(),
             covariance: fit.covariance.clone(),
         }
     }
 
     fn is_invisible(&self) -> bool {
-        self.doubts.contains(&INVISIBLE)
+        self.known.doubts.iter().any(|doubt| doubt == INVISIBLE)
     }
 
     /// Why there is no more in the scene than there is: why the fit stopped, or that there was nothing to see.
-    fn stop(&self) -> &'static str {
-        if self.is_invisible() { INVISIBLE } else { self.stop }
+    fn stop(&self) -> String {
+        if self.is_invisible() { INVISIBLE.to_owned() } else { self.known.stop.to_string() }
     }
 
     /// How many objects are guessed in part, and how much of the outline most.
     fn hidden(&self) -> String {
-        let shares = self.ambiguity.iter().filter_map(|ambiguity| match *ambiguity {
-            AmbiguityReport::Hidden { share, .. } => Some(share),
+        let doubts = self.objects_known.iter().flat_map(|known| &known.doubts);
+        let shares = doubts.filter_map(|doubt| match *doubt {
+            DoubtJson::Hidden { share, .. } => Some(share),
             _ => None,
         });
         let (count, most) = shares.fold((0, 0.0_f64), |(count, most), share| (count + 1, most.max(share)));
@@ -162,28 +124,6 @@ impl EdgeReport {
     }
 }
 
-impl AmbiguityReport {
-    fn of(ambiguity: &Ambiguity) -> Self {
-        match *ambiguity {
-            Ambiguity::Symmetry { object, order } => Self::Symmetry { object, order },
-            Ambiguity::Cropped { object, visible } => Self::Cropped { object, visible },
-            Ambiguity::Hidden { object, share, completion } => {
-                let (by, order) = match completion {
-                    Completion::Prototype => ("prototype", None),
-                    Completion::Rotation { order } => ("rotation", Some(order)),
-                    Completion::Mirror => ("mirror", None),
-                    Completion::Straight => ("straight", None),
-                    _ => ("other", None),
-                };
-                Self::Hidden { object, share, by, order }
-            }
-            Ambiguity::Merged { object, other, visible } => Self::Merged { object, other, visible },
-            Ambiguity::Twin { object, prototype, ratio } => Self::Twin { object, prototype, ratio },
-            _ => Self::Other,
-        }
-    }
-}
-
 impl Summary {
     pub(super) fn of(reports: &[Report]) -> Self {
         let found = || reports.iter().filter_map(|report| report.found.as_ref());
@@ -195,7 +135,7 @@ impl Summary {
             failed: reports.len() - count,
             objects: found().map(|found| found.objects).sum(),
             mae: mean(found().map(|found| f64::from(found.mae))).unwrap_or(0.0),
-            unexplained: mean(found().filter_map(|found| found.unexplained)),
+            unexplained: mean(found().filter_map(|found| found.known.unexplained)),
             cpu_ms_median: quantile(&times, 50),
             cpu_ms_p95: quantile(&times, 95),
         }
@@ -230,10 +170,10 @@ pub(super) fn table(reports: &[Report]) -> String {
                     report.path.clone(),
                     found.objects.to_string(),
                     format!("{:.5}", found.mae),
-                    percent(found.unexplained),
+                    percent(found.known.unexplained),
                     format!("{:.2}", found.cpu_ms),
                     found.steps.to_string(),
-                    found.stop().to_owned(),
+                    found.stop(),
                     format!("{} {:.1} px", found.edge.kind, found.edge.width_px),
                     found.hidden(),
                 ]),
@@ -254,7 +194,10 @@ pub(super) fn table(reports: &[Report]) -> String {
         |is: &dyn Fn(&FoundScene) -> bool| reports.iter().filter_map(|r| r.found.as_ref()).filter(|f| is(f)).count();
     let remarks = [
         (summary.failed, "failed"),
-        (count(&|found| found.stop == NO_BETTER), "no better than one flat color, which is their scene"),
+        (
+            count(&|found| found.known.stop == StopJson::NoBetterThanFlat),
+            "no better than one flat color, which is their scene",
+        ),
         (count(&FoundScene::is_invisible), "transparent everywhere: nothing is visible"),
     ];
     let remarks = remarks.into_iter().filter(|(count, _)| *count > 0);

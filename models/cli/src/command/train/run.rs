@@ -239,7 +239,7 @@ impl Run {
             let path = folder.join(format!("{k:05}.png"));
             write_atomic(&path, &encode_png(image.view(), BitDepth::Eight)?)?;
             if let Some(scene) = batch.scenes.get(k) {
-                let mut json = SceneJson::from_scene(scene, image.size());
+                let mut json = SceneJson::from_scene(scene, image.size())?;
                 json.id = Some(k as u64);
                 lines += &(json.to_line(&crate::format::Place::file(&path))? + "\n");
             }
