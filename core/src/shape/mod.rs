@@ -50,7 +50,7 @@ use crate::real::Real;
 
 pub use any::AnyShape;
 pub use bank::{PrototypeBank, PrototypeModel};
-pub use curve::{Boundary, Moments, PathElement, Piece, PieceGrad};
+pub use curve::{Axes, Boundary, Moments, PathElement, Piece, PieceGrad};
 pub use efd::OutlineBasis;
 pub use efd_model::EfdModel;
 pub use kind::{

@@ -3,7 +3,8 @@
 use alloc::vec::Vec;
 use core::ops::Range;
 
-use super::OutlineBasis;
+use super::resolve::resolve;
+use super::{FillRule, OutlineBasis, ShapeError};
 use crate::real::Real;
 
 /// How far a polygon may stray from the curve it stands for unless said otherwise, scene units: 0.008 px at 128 px.
@@ -74,6 +75,17 @@ impl<T: Real> Outline<T> {
     #[must_use]
     pub fn rings(&self) -> Rings<'_, T> {
         Rings { vertices: &self.vertices, breaks: &self.breaks, first: 0 }
+    }
+
+    /// Rings that enclose, under the even-odd rule, what these fill by `rule`, but neither cross nor overlap: outer ones turn
+    /// from +x to +y, holes the other way.
+    ///
+    /// # Errors
+    /// [`ShapeError::NotFinite`], [`ShapeError::TooLarge`] if the size overflows.
+    pub fn resolved(&self, rule: FillRule) -> Result<Self, ShapeError> {
+        let mut simple = Self { vertices: Vec::new(), breaks: Vec::new() };
+        resolve(self.rings(), rule)?.append(&self.vertices, &mut simple);
+        Ok(simple)
     }
 }
 

@@ -3,6 +3,7 @@
 //! | module | does |
 //! |---|---|
 //! | [`mod@format`] | files in and out |
+//! | [`export`] | what people measure, and what other programs read |
 //! | [`chart`] | line charts |
 //! | [`svg`] | scenes as vector graphics |
 //! | [`paint`] | scenes to images with a renderer chosen by name |
@@ -18,6 +19,7 @@ extern crate alloc;
 pub mod agreement;
 pub mod chart;
 pub mod command;
+pub mod export;
 pub mod format;
 pub mod generate;
 pub mod method;

@@ -12,6 +12,7 @@
 //! | `free` | samples, no bank | elliptic Fourier descriptors, as few as the samples support |
 //! | `fitter` | all of it | a [`Fit`] |
 //! | [`prototypes`] | fits without a bank | the few shapes they share, a [`Bank`] |
+//! | [`masks`] | a label map of another program | an outline per label |
 //! | [`refine`] | an image, a start | a [`Fit`] by Levenberg-Marquardt |
 //! | [`scene_refine`] | an image, a drawing near it | the drawing with every number refined |
 //! | [`opt_p`], [`opt_iter`], [`rand_opt_p`] | an image, for OptP and Rand-OptP a start | a [`Fit`] by the paper's Adam |
@@ -20,6 +21,7 @@
 extern crate alloc;
 
 pub mod adam;
+pub mod masks;
 pub mod opt_iter;
 pub mod opt_p;
 pub mod parameters;

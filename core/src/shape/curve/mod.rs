@@ -40,7 +40,7 @@ use crate::geometry::Vec2;
 use crate::real::Real;
 
 pub use element::PathElement;
-pub use moments::Moments;
+pub use moments::{Axes, Moments};
 
 pub(super) use arc::{CutArc, edges, edges_of_length, stand_out, sweep};
 pub(super) use arc_vjp::stand_out_slope;

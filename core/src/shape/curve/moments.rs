@@ -25,6 +25,17 @@ pub struct Moments<T> {
     pub covariance: [T; 3],
 }
 
+/// The axes of an ellipse, as full lengths.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Axes<T> {
+    /// The length of the longer axis.
+    pub major: T,
+    /// The length of the shorter axis.
+    pub minor: T,
+    /// The direction of the longer axis: radians from +x toward +y, in (-pi/2, pi/2\]; meaningless where both are equal.
+    pub angle: T,
+}
+
 /// Integrals of 1, x, y, x x, x y, y y over what a ring encloses, negative if it turns from +y to +x.
 type Integrals = [f64; 6];
 
@@ -135,6 +146,18 @@ impl Piece<f64> {
             }
         }
         sums
+    }
+}
+
+impl<T: Real> Moments<T> {
+    /// The axes of the ellipse with the same second moments: four times the standard deviation along each.
+    #[must_use]
+    pub fn axes(&self) -> Axes<T> {
+        let [xx, xy, yy] = self.covariance;
+        let half = T::of(0.5);
+        let (mean, apart) = ((xx + yy) * half, ((xx - yy) * half).hypot(xy));
+        let length = |variance: T| T::of(4.0) * variance.max(T::zero()).sqrt();
+        Axes { major: length(mean + apart), minor: length(mean - apart), angle: half * (xy + xy).atan2(xx - yy) }
     }
 }
 

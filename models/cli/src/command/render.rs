@@ -92,7 +92,7 @@ fn png<T: Real>(arguments: &Arguments, scene: &Scene<T>, size: ImageSize) -> Res
     }
     let painter = arguments.paint.painter();
     Ok(if scene.transparent {
-        encode_png_rgba(&painter.paint_rgba(scene, size)?)?
+        encode_png_rgba(&painter.paint_rgba(scene, size)?, BitDepth::Eight)?
     } else {
         encode_png(painter.paint(scene, size)?.view(), BitDepth::Eight)?
     })

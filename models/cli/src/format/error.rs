@@ -125,12 +125,20 @@ pub enum FormatError {
         source: dvp_core::image::ImageError,
     },
     /// A label map whose pixels are no labels.
-    #[error("{path}: pixels of kind {found:?} are no labels; write gray of 8 or 16 bits, or a palette", path = path.display())]
+    #[error("{path}: pixels of kind {found:?} are no labels; write gray of 8 or 16 bits (as TIFF also of 32), or a palette", path = path.display())]
     Labels {
         /// The file.
         path: PathBuf,
         /// How its pixels are stored.
         found: image::ColorType,
+    },
+    /// A pixel of a label map that is no label.
+    #[error("{path}: a pixel is {value}; labels are whole numbers from 0 to 4294967295", path = path.display())]
+    Label {
+        /// The file.
+        path: PathBuf,
+        /// What it is.
+        value: f64,
     },
     /// The image could not be encoded.
     #[error("the image cannot be encoded as PNG: {source}")]

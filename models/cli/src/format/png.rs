@@ -24,40 +24,49 @@ pub enum BitDepth {
 /// # Errors
 /// As [`to_rgb8`].
 pub fn encode_png<T: Real>(image: ImageView<'_, T>, bits: BitDepth) -> Result<Vec<u8>, FormatError> {
-    let [width, height] = sides(image.size())?;
     let (bytes, color) = match bits {
         BitDepth::Eight => (bytes(image), ExtendedColorType::Rgb8),
-        BitDepth::Sixteen => {
-            let native = |step: i32| {
-                let [low, high, ..] = step.to_le_bytes();
-                u16::from_le_bytes([low, high]).to_ne_bytes()
-            };
-            (interleaved(image, 65535.0, native), ExtendedColorType::Rgb16)
-        }
+        BitDepth::Sixteen => (interleaved(image, 65535.0, native), ExtendedColorType::Rgb16),
     };
-    let mut png = Vec::new();
-    let encoder = PngEncoder::new(&mut png);
-    encoder.write_image(&bytes, width, height, color).map_err(|source| FormatError::Encode { source })?;
-    Ok(png)
+    png(&bytes, image.size(), color)
 }
 
-/// The bytes of an RGBA PNG of 8 bits with straight colors; values are clamped to [0, 1] and rounded to the nearest step.
+/// The bytes of an RGBA PNG with straight colors; values are clamped to [0, 1] and rounded to the nearest step.
 ///
 /// # Errors
 /// As [`to_rgb8`].
-pub fn encode_png_rgba<T: Real>(image: &RgbaImage<T>) -> Result<Vec<u8>, FormatError> {
-    let [width, height] = sides(image.size())?;
-    let bytes: Vec<u8> = image.to_straight().into_iter().map(byte).collect();
+pub fn encode_png_rgba<T: Real>(image: &RgbaImage<T>, bits: BitDepth) -> Result<Vec<u8>, FormatError> {
+    let straight = image.to_straight();
+    let (bytes, color): (Vec<u8>, _) = match bits {
+        BitDepth::Eight => {
+            (straight.iter().map(|&value| step(value, 255.0).to_le_bytes()[0]).collect(), ExtendedColorType::Rgba8)
+        }
+        BitDepth::Sixteen => {
+            (straight.iter().flat_map(|&value| native(step(value, 65535.0))).collect(), ExtendedColorType::Rgba16)
+        }
+    };
+    png(&bytes, image.size(), color)
+}
+
+fn png(bytes: &[u8], size: ImageSize, color: ExtendedColorType) -> Result<Vec<u8>, FormatError> {
+    let [width, height] = sides(size)?;
     let mut png = Vec::new();
-    let encoder = PngEncoder::new(&mut png);
-    let written = encoder.write_image(&bytes, width, height, ExtendedColorType::Rgba8);
+    let written = PngEncoder::new(&mut png).write_image(bytes, width, height, color);
     written.map_err(|source| FormatError::Encode { source })?;
     Ok(png)
 }
 
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to [0, 255] before")]
-fn byte<T: Real>(value: T) -> u8 {
-    (value.as_f64().clamp(0.0, 1.0) * 255.0).round() as u8
+/// The nearest of the steps 0 to `most` of a value from 0 to 1.
+#[inline(always)]
+#[expect(clippy::cast_possible_truncation, reason = "at most 65535.5, and meant to be cut down")]
+fn step<T: Real>(value: T, most: f64) -> i32 {
+    (value.as_f64().clamp(0.0, 1.0) * most + 0.5) as i32
+}
+
+/// The bytes of a step of 16 bits, in the order of the machine.
+fn native(step: i32) -> [u8; 2] {
+    let [low, high, ..] = step.to_le_bytes();
+    u16::from_le_bytes([low, high]).to_ne_bytes()
 }
 
 /// A picture of 8 bits; values are clamped to [0, 1] and rounded to the nearest step.
@@ -108,14 +117,13 @@ impl<T: Real, F: Fn(i32) -> [u8; N], const N: usize> simd::Kernel for Interleave
     type Output = ();
 
     #[inline(always)]
-    #[expect(clippy::cast_possible_truncation, reason = "at most 65535.5, and meant to be cut down")]
     fn run(self) {
         let mut steps = [[0; BLOCK]; 3];
         let [red, green, blue] = [0, 1, 2].map(|channel| self.image.channel(channel).chunks(BLOCK));
         for (((out, red), green), blue) in self.out.chunks_mut(BLOCK).zip(red).zip(green).zip(blue) {
             for (steps, values) in steps.iter_mut().zip([red, green, blue]) {
-                for (step, value) in steps.iter_mut().zip(values) {
-                    *step = (value.as_f64().clamp(0.0, 1.0) * self.most + 0.5) as i32;
+                for (own, &value) in steps.iter_mut().zip(values) {
+                    *own = step(value, self.most);
                 }
             }
             let [red, green, blue] = &steps;

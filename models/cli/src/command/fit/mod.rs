@@ -1,23 +1,26 @@
 //! `dvp fit`: pictures to scenes.
 
+mod exports;
 mod inputs;
+mod masks;
 mod report;
 mod solver;
 
-use alloc::collections::BTreeSet;
+use core::time::Duration;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use dvp_core::render::Compositing;
-use dvp_fit::{Bank, Fit, FitOptions};
+use dvp_fit::FitOptions;
 
+use self::exports::{ExportArguments, Measurable};
 use self::inputs::Input;
 use self::report::{FoundScene, Report};
 use self::solver::{Method, Scratch, Solver, Start};
 use super::options::{BankChoice, BatchArguments, CompositingName};
 use super::{Console, Outcome, in_words};
-use crate::format::{Picture, Place, SceneJson, encode_png, read_npy, read_picture, write_atomic};
+use crate::format::{Picture, Place, SceneJson, encode_png, encode_png_rgba, read_npy, read_picture, write_atomic};
 use crate::method::load_network;
 use crate::paint::{PaintScratch, Painter};
 use crate::svg::to_svg;
@@ -30,11 +33,17 @@ use crate::svg::to_svg;
 #[derive(Debug, Args)]
 #[command(before_help = "Example: dvp fit picture.png --out out\n         \
                          dvp fit photos/ 'more/*.jpg' --out out --json > fits.json\n         \
-                         dvp fit noisy.png --start net --model run/best.safetensors --out out")]
+                         dvp fit noisy.png --start net --model run/best.safetensors --out out\n         \
+                         dvp fit cells/ --out out --table cells.csv --scale 0.65mm/px --labels\n         \
+                         dvp fit --masks labels.tif picture.png --out out --geojson")]
 pub(super) struct Arguments {
     /// Pictures, folders of pictures, patterns, NumPy files (.npy) of float pixels
-    #[arg(required = true, value_name = "PICTURES")]
+    #[arg(required_unless_present = "masks", value_name = "PICTURES")]
     pictures: Vec<PathBuf>,
+    /// Outlines of another program's masks instead: a label map (gray PNG or TIFF, 0 the background), or a pattern; PICTURES, if any,
+    /// give the colors
+    #[arg(long, value_name = "LABELS", conflicts_with_all = ["bank", "method", "max_objects", "start", "model", "compositing"])]
+    masks: Option<PathBuf>,
     /// Folder to write to
     #[arg(long, short, value_name = "DIR")]
     out: PathBuf,
@@ -70,6 +79,8 @@ pub(super) struct Arguments {
     /// Write no reconstruction
     #[arg(long)]
     no_png: bool,
+    #[command(flatten)]
+    exports: ExportArguments,
 }
 
 impl Arguments {
@@ -93,6 +104,13 @@ impl Arguments {
             StartChoice::Net => Start::Network(Box::new(load_network(self.model.as_deref())?)),
         };
         Solver::new(self.method, options, start, self.objects, self.seed)
+    }
+
+    /// What the names of the files of a picture end with.
+    fn endings(&self) -> impl Iterator<Item = &'static str> {
+        let scenes = [(true, "json"), (!self.no_svg, "svg"), (!self.no_png, "png")];
+        let scenes = scenes.into_iter().filter_map(|(is_asked, ending)| is_asked.then_some(ending));
+        scenes.chain(self.exports.endings())
     }
 
     fn target(&self, input: &Input, ending: &str) -> PathBuf {
@@ -122,6 +140,26 @@ impl From<&str> for StartChoice {
 type Stack = (PathBuf, Vec<Picture<f32>>);
 
 pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Outcome> {
+    arguments.exports.check()?;
+    let (mut reports, mut failures) = match &arguments.masks {
+        Some(masks) => masks::fit_all(arguments, masks)?,
+        None => fit_all(arguments)?,
+    };
+    failures.extend(reports.iter().filter_map(|report| report.error.clone()));
+    failures.extend(arguments.exports.write_run(&exports::measured(&mut reports)));
+    for failure in &failures {
+        writeln!(console.err, "error: {failure}")?;
+    }
+    if arguments.batch.json {
+        writeln!(console.out, "{}", report::json(&reports)?)?;
+    } else if !reports.is_empty() {
+        writeln!(console.out, "{}", report::table(&reports))?;
+    }
+    Ok(if failures.is_empty() { Outcome::Done } else { Outcome::Partly })
+}
+
+/// What came of every picture, and of what led to none.
+fn fit_all(arguments: &Arguments) -> Result<(Vec<Report>, Vec<String>)> {
     let solver = arguments.solver()?;
     let found = inputs::find(&arguments.pictures);
     let mut failures = found.failures;
@@ -141,41 +179,29 @@ pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Ou
         }
     }
     let inputs = inputs::name(&pictures);
-    refuse_overwriting(arguments, &inputs)?;
+    refuse_overwriting(arguments, inputs.iter(), core::iter::empty())?;
     let fit = |scratch: &mut Scratch, _: usize, input: &Input| fit_one(arguments, &solver, &stacks, input, scratch);
-    let reports: Vec<Report> = arguments.batch.each(&inputs, Input::name, fit)?;
-    let errors = reports.iter().filter_map(|report| report.error.clone());
-    failures.extend(errors);
-    for failure in &failures {
-        writeln!(console.err, "error: {failure}")?;
-    }
-    if arguments.batch.json {
-        writeln!(console.out, "{}", report::json(&reports)?)?;
-    } else if !reports.is_empty() {
-        writeln!(console.out, "{}", report::table(&reports))?;
-    }
-    Ok(if failures.is_empty() { Outcome::Done } else { Outcome::Partly })
+    Ok((arguments.batch.each(&inputs, Input::name, fit)?, failures))
 }
 
-/// A reconstruction must not replace the picture it was made from.
-fn refuse_overwriting(arguments: &Arguments, inputs: &[Input]) -> Result<()> {
-    if arguments.no_png {
-        return Ok(());
-    }
-    let Ok(out) = arguments.out.canonicalize() else { return Ok(()) };
-    let pictures: BTreeSet<PathBuf> = inputs.iter().filter_map(|input| input.path.canonicalize().ok()).collect();
-    for input in inputs {
-        let target = out.join(format!("{}.png", input.stem));
-        if pictures.contains(&target) {
-            bail!("{} would be replaced by its reconstruction; choose another --out, or --no-png", target.display());
-        }
-    }
-    Ok(())
+/// What is written must not replace what is read.
+fn refuse_overwriting<'a>(
+    arguments: &Arguments,
+    inputs: impl Iterator<Item = &'a Input> + Clone,
+    also_read: impl Iterator<Item = &'a PathBuf>,
+) -> Result<()> {
+    let exports = &arguments.exports;
+    let files = |input| arguments.endings().map(move |ending| arguments.target(input, ending));
+    let read = inputs.clone().map(|input| &input.path).chain(also_read);
+    exports::refuse_overwriting(read, inputs.flat_map(files), exports.run_files())
 }
 
 fn fit_one(arguments: &Arguments, solver: &Solver, stacks: &[Stack], input: &Input, scratch: &mut Scratch) -> Report {
+    report_of(input, try_fit(arguments, solver, stacks, input, scratch))
+}
+
+fn report_of(input: &Input, result: Result<FoundScene>) -> Report {
     let path = input.name();
-    let result = try_fit(arguments, solver, stacks, input, scratch);
     let (found, error) = match result {
         Ok(found) => (Some(found), None),
         Err(error) => {
@@ -204,8 +230,24 @@ fn try_fit(
     let (mut fit, time) = solver.solve(picture.image.view(), &input.stem, scratch)?;
     // A transparent picture has no background; the one that was fitted is the color that the picture was put over.
     fit.scene.transparent = picture.transparent;
-    write_results(arguments, solver.bank(), &fit, picture, input, &mut scratch.paint)?;
-    Ok(FoundScene::new(&fit, picture, time.as_secs_f64() * 1e3))
+    let scene = Measurable::new(&fit, solver.bank(), picture.image.size());
+    finish(arguments, input, picture, &scene, time, &mut scratch.paint)
+}
+
+/// Writes what is asked for of a scene, and says what it is.
+fn finish(
+    arguments: &Arguments,
+    input: &Input,
+    picture: &Picture<f32>,
+    scene: &Measurable<'_>,
+    time: Duration,
+    scratch: &mut PaintScratch<f32>,
+) -> Result<FoundScene> {
+    write_results(arguments, scene, picture, input, scratch)?;
+    let target = |ending: &str| arguments.target(input, ending);
+    let mut found = FoundScene::new(scene.fit, picture, time.as_secs_f64() * 1e3);
+    found.measured = arguments.exports.write_picture(scene, [&*input.name(), &input.stem], target)?;
+    Ok(found)
 }
 
 fn stack_picture<'a>(stacks: &'a [Stack], path: &Path, frame: usize) -> Option<&'a Picture<f32>> {
@@ -214,13 +256,11 @@ fn stack_picture<'a>(stacks: &'a [Stack], path: &Path, frame: usize) -> Option<&
 
 fn write_results(
     arguments: &Arguments,
-    bank: Option<&Bank<f32>>,
-    fit: &Fit<f32>,
+    &Measurable { fit, bank, size, .. }: &Measurable<'_>,
     picture: &Picture<f32>,
     input: &Input,
     scratch: &mut PaintScratch<f32>,
 ) -> Result<()> {
-    let size = picture.image.size();
     let target = arguments.target(input, "json");
     let json = SceneJson::from_fit(fit, picture)?;
     write_atomic(&target, (json.to_line(&Place::file(&target))? + "\n").as_bytes())?;
@@ -228,8 +268,13 @@ fn write_results(
         write_atomic(&arguments.target(input, "svg"), to_svg(&fit.scene, size, bank)?.as_bytes())?;
     }
     if !arguments.no_png {
-        let image = Painter::default().paint_in(&fit.scene, size, scratch)?;
-        write_atomic(&arguments.target(input, "png"), &encode_png(image.view(), picture.bits)?)?;
+        let painter = Painter::default();
+        let bytes = if fit.scene.transparent {
+            encode_png_rgba(&painter.paint_rgba(&fit.scene, size)?, picture.bits)?
+        } else {
+            encode_png(painter.paint_in(&fit.scene, size, scratch)?.view(), picture.bits)?
+        };
+        write_atomic(&arguments.target(input, "png"), &bytes)?;
     }
     Ok(())
 }

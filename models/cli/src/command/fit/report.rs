@@ -7,6 +7,7 @@ use dvp_fit::Fit;
 use serde::Serialize;
 
 use crate::command::statistics::{mean, quantile};
+use crate::export::MeasuredPicture;
 use crate::format::{DoubtJson, INVISIBLE, ObjectKnownJson, Picture, SceneKnownJson, StopJson};
 
 /// Tables of more pictures than this show the summary only.
@@ -45,6 +46,9 @@ pub(super) struct FoundScene {
     ranking: Vec<usize>,
     /// Per object, row by row: covariance of (x, y, log scale, rotation).
     covariance: Vec<[f32; 16]>,
+    /// What goes into the files of all pictures.
+    #[serde(skip)]
+    pub(super) measured: Option<MeasuredPicture>,
 }
 
 /// The edges of the picture.
@@ -85,6 +89,7 @@ impl FoundScene {
             objects_known: ObjectKnownJson::of(fit),
             ranking: fit.ranking(),
             covariance: fit.covariance.clone(),
+            measured: None,
         }
     }
 

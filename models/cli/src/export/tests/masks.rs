@@ -1,0 +1,48 @@
+use super::*;
+
+fn decoded(png: &[u8]) -> image::DynamicImage {
+    image::load_from_memory(png).unwrap()
+}
+
+#[test]
+fn pixels_belong_to_the_last_object_that_covers_half() {
+    let size = ImageSize::new(4, 1).unwrap();
+    // Scene units are the one pixel of height.
+    let bar = |low: f32, high: f32| polygons(&[&corners([10.0 * low, 0.0], [10.0 * high, 10.0])], [0.0; 3]);
+    let scene = scene(vec![bar(0.0, 2.4), bar(1.6, 3.4), bar(3.8, 4.0)]);
+    // The second covers 0.4 of pixel 1 and 0.4 of pixel 3.
+    let labels = label_map(&scene, &[1, 2, 7], size).unwrap();
+    assert_eq!(labels, [1, 1, 2, 0]);
+    let image = decoded(&label_map_png(&labels, size).unwrap());
+    assert_eq!((image.color(), image.to_luma8().into_raw()), (image::ColorType::L8, vec![1, 1, 2, 0]));
+}
+
+#[test]
+fn many_objects_take_16_bits_and_too_many_are_refused() {
+    let size = ImageSize::new(2, 1).unwrap();
+    let image = decoded(&label_map_png(&[0, 256], size).unwrap());
+    assert_eq!((image.color(), image.to_luma16().into_raw()), (image::ColorType::L16, vec![0, 256]));
+    let error = label_map_png(&[0, 70_000], size).unwrap_err().to_string();
+    assert!(error.contains("65535") && error.contains("70000"), "{error}");
+}
+
+#[test]
+fn whole_objects_stand_side_by_side() {
+    let low = polygons(&[&corners([0.0, 0.0], [5.0, 10.0])], [0.0; 3]);
+    let high = polygons(&[&corners([2.0, 0.0], [10.0, 5.0])], [0.0; 3]);
+    let image = decoded(&whole_png(&scene(vec![low, high]), size()).unwrap());
+    assert_eq!((image.width(), image.height(), image.color()), (20, 10, image::ColorType::L8));
+    let image = image.to_luma8();
+    let at = |x, y| image.get_pixel(x, y).0[0];
+    assert_eq!([at(0, 9), at(4, 4), at(5, 4)], [255, 255, 0], "the first, hidden or not");
+    assert_eq!([at(11, 0), at(12, 0), at(19, 4), at(19, 5)], [0, 255, 255, 0], "the second");
+    let empty = decoded(&whole_png(&scene(Vec::new()), size()).unwrap()).to_luma8();
+    assert_eq!((empty.width(), empty.iter().copied().max()), (10, Some(0)));
+}
+
+#[test]
+fn an_image_of_whole_objects_has_a_limit() {
+    let size = ImageSize::new(1 << 14, 1 << 14).unwrap();
+    let error = whole_png(&scene(vec![frame(); 5]), size).unwrap_err().to_string();
+    assert!(error.contains("5") && error.contains("4 of them"), "{error}");
+}
