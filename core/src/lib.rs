@@ -47,6 +47,8 @@ pub mod diff_op;
 pub mod dims;
 pub mod geometry;
 pub mod image;
+#[doc(hidden)]
+pub mod instances;
 pub mod loss;
 pub mod matching;
 pub mod metric;

@@ -8,15 +8,16 @@ use serde::Deserialize;
 use crate::source::root;
 
 /// Every crate of the workspace, its folder, and the crates of the workspace that it may use.
-const PLAN: [(&str, &str, &[&str]); 7] = [
+const PLAN: [(&str, &str, &[&str]); 8] = [
     ("dvp-core", "core", &[]),
     ("dvp-burn", "backends/burn", &["dvp-core"]),
     ("dvp-candle", "backends/candle", &["dvp-core"]),
     ("dvp-fit", "models/fit", &["dvp-core"]),
+    ("dvp-double", "models/double", &["dvp-core", "dvp-fit"]),
     ("dvp-net", "models/net", &["dvp-core", "dvp-fit"]),
     // The adapters behind features that the default build leaves out, as another test here shows.
-    ("dvp", "models/cli", &["dvp-core", "dvp-burn", "dvp-candle", "dvp-fit", "dvp-net"]),
-    ("dvp-tests", "tests", &["dvp-core", "dvp-burn", "dvp-candle", "dvp-fit", "dvp-net", "dvp"]),
+    ("dvp", "models/cli", &["dvp-core", "dvp-burn", "dvp-candle", "dvp-fit", "dvp-double", "dvp-net"]),
+    ("dvp-tests", "tests", &["dvp-core", "dvp-burn", "dvp-candle", "dvp-fit", "dvp-double", "dvp-net", "dvp"]),
 ];
 
 /// How names of tensor frameworks, and of the compilers and drivers below them, begin.

@@ -3,7 +3,7 @@
 use crate::source::{code_lines, rust_sources};
 
 /// Modules in the order in which they may use each other: only earlier rows, never their own.
-const ORDER: [&[&str]; 9] = [
+const ORDER: [&[&str]; 10] = [
     &["real", "dims", "simd", "optim"],
     &["geometry", "diff_op"],
     &["tensor", "image"],
@@ -13,6 +13,7 @@ const ORDER: [&[&str]; 9] = [
     &["render", "matching"],
     &["loss"],
     &["metric"],
+    &["instances"],
 ];
 
 fn row(module: &str) -> Option<usize> {

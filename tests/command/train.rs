@@ -58,6 +58,7 @@ fn a_run_leaves_all_its_files() {
     assert!(again.code == 1 && again.err.contains("--resume"), "{}", again.err);
 }
 
+#[cfg(feature = "frameworks")]
 #[test]
 fn every_mode_runs_on_every_backend_to_the_same_losses() {
     let folder = tempfile::tempdir().unwrap();

@@ -9,7 +9,7 @@ use dvp_core::scene::rotation_from_pair_vjp;
 use dvp_core::shape::REFERENCE_VERTICES;
 use dvp_core::{Scene, SceneGrad};
 
-use crate::scene_pairs::{self, PairRecord};
+use super::scene_pairs::{self, PairRecord};
 
 /// The reference's form of the rotation term is not the default.
 fn reference() -> SceneLoss<f64> {

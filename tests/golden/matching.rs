@@ -2,7 +2,7 @@
 
 use dvp_core::matching::{CostMatrix, Hungarian, MatchingCost};
 
-use crate::scene_pairs;
+use super::scene_pairs;
 
 #[test]
 fn matchings_of_the_reference() {

@@ -10,7 +10,7 @@ use dvp_tests::finite_difference::{compare, dot};
 use dvp_tests::strategy;
 use proptest::prelude::*;
 
-use crate::smooth::smooth;
+use super::smooth::smooth;
 
 /// Not a multiple of a chunk, not square.
 fn size() -> ImageSize {

@@ -1,5 +1,8 @@
 //! What the tests share: strategies, finite differences, golden numbers.
 
+// Its compiled code is what is used.
+use dvp_double as _;
+
 pub mod coverage;
 pub mod draw_svg;
 pub mod finite_difference;

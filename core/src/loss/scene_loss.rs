@@ -180,10 +180,12 @@ impl<T: Real> Loss<T> for SceneLoss<T> {
     type Grad = [SceneGrad<T>];
     type Scratch = SceneLossScratch<T>;
 
+    #[inline(never)]
     fn value(&self, pairs: ScenePairs<'_, T>, scratch: &mut SceneLossScratch<T>) -> Result<T, LossError> {
         Ok(self.terms(pairs, scratch)?.sum())
     }
 
+    #[inline(never)]
     fn vjp(
         &self,
         pairs: ScenePairs<'_, T>,

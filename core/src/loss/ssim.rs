@@ -66,6 +66,7 @@ impl<T: Real> Ssim<T> {
     ///
     /// # Errors
     /// [`LossError::SmallerThanWindow`] if a side is below [`SSIM_WINDOW`].
+    #[inline(never)]
     pub fn similarity(&self, pair: ImagePair<'_, T>, scratch: &mut SsimScratch<T>) -> Result<T, LossError> {
         check_window(pair.size())?;
         let mut sum = 0.0;
@@ -92,6 +93,7 @@ impl<T: Real> Loss<T> for Ssim<T> {
         Ok(T::one() - self.similarity(pair, scratch)?)
     }
 
+    #[inline(never)]
     fn vjp(
         &self,
         pair: ImagePair<'_, T>,

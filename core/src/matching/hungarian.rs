@@ -66,6 +66,7 @@ impl<T: Real> Hungarian<T> {
     ///
     /// # Errors
     /// [`MatchingError::Infeasible`] if forbidden pairs (+infinity) leave no such assignment.
+    #[inline(never)]
     pub fn solve(&mut self, costs: CostMatrix<'_, T>) -> Result<&Assignment<T>, MatchingError> {
         let (rows, columns) = (costs.rows(), costs.columns());
         self.assignment.column_of.clear();

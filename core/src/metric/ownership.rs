@@ -62,6 +62,7 @@ impl Ownership {
     ///
     /// # Errors
     /// [`MetricError::Render`] if the renderer refuses the drawing.
+    #[inline(never)]
     pub fn fill_drawing<T: Real, C: CoverageModel<T>>(
         &mut self,
         rule: OwnershipRule,

@@ -50,6 +50,7 @@ impl<T: Real> Tally<T> {
     ///
     /// # Errors
     /// [`MetricError`] if sizes differ or a side is below the window of SSIM; then nothing was added.
+    #[inline(never)]
     pub fn add(
         &mut self,
         pair: ImagePair<'_, T>,

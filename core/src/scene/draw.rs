@@ -28,7 +28,11 @@ impl<T: Real> Scene<T> {
     /// # Ok::<(), dvp_core::shape::ShapeError>(())
     /// ```
     pub fn draw<'a>(&self, how: impl Into<Flattening<'a, T>>, drawing: &mut Drawing<T>) -> Result<(), ShapeError> {
-        let how = how.into();
+        self.draw_flattened(how.into(), drawing)
+    }
+
+    #[inline(never)]
+    pub(crate) fn draw_flattened(&self, how: Flattening<'_, T>, drawing: &mut Drawing<T>) -> Result<(), ShapeError> {
         drawing.clear();
         drawing.background = self.background;
         for object in &self.objects {

@@ -22,7 +22,16 @@ impl<T: Real> Scene<T> {
         grad_drawing: &DrawingGrad<T>,
         grad: &mut SceneGrad<T>,
     ) -> Result<(), ShapeError> {
-        let how = how.into();
+        self.pull_back_flattened(how.into(), grad_drawing, grad)
+    }
+
+    #[inline(never)]
+    pub(crate) fn pull_back_flattened(
+        &self,
+        how: Flattening<'_, T>,
+        grad_drawing: &DrawingGrad<T>,
+        grad: &mut SceneGrad<T>,
+    ) -> Result<(), ShapeError> {
         self.check_layout(how.basis, grad_drawing, grad)?;
         for (value, &g) in grad.background.iter_mut().zip(&grad_drawing.background) {
             *value += g;

@@ -36,6 +36,7 @@ impl<T: Real> OutlineBasis<T> {
     ///
     /// # Errors
     /// [`ShapeError::TooFewPoints`] below 4 vertices (3 distinct ones), [`ShapeError::Zero`] without a harmonic.
+    #[inline(never)]
     pub fn new(vertex_count: usize, harmonic_count: usize) -> Result<Self, ShapeError> {
         if vertex_count < 4 {
             return Err(ShapeError::TooFewPoints { len: vertex_count.saturating_sub(1) });

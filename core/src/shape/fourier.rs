@@ -52,6 +52,7 @@ impl<T: Real> Efd<T> {
     /// assert!((efd.signed_area() - 1.0).abs() < 1e-4);
     /// # Ok::<(), dvp_core::shape::ShapeError>(())
     /// ```
+    #[inline(never)]
     pub fn from_contour(contour: &[[T; 2]], harmonic_count: usize) -> Result<(Self, [T; 2]), ShapeError> {
         if let Some(index) = contour.iter().position(|[x, y]| !(x.is_finite() && y.is_finite())) {
             return Err(ShapeError::NotFinite { index });

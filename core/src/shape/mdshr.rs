@@ -12,6 +12,7 @@ pub const MDSHR_NAMES: [&str; 3] = ["heart", "square", "ellipse"];
 /// Up to 64 harmonics are known, which the data were drawn with; more are zero. The reference system's own prototypes have 16.
 /// *Source*: the reference system's tables to 9 digits; the heart's outline was traced again from the same drawing.
 #[must_use]
+#[inline(never)]
 pub fn mdshr_bank<T: Real>(harmonic_count: usize) -> PrototypeBank<T> {
     let tables: [&[[f64; 4]]; 3] = [&HEART, &SQUARE, &ELLIPSE];
     let prototypes = tables.map(|rows| {

@@ -32,6 +32,7 @@ impl<T: Real> Efd<T> {
     ///
     /// # Errors
     /// [`ShapeError::Degenerate`] if the first harmonic is missing or zero, [`ShapeError::NotFinite`].
+    #[inline(never)]
     pub fn normalize(&self) -> Result<Normalized<T>, ShapeError> {
         if let Some(index) = self.rows.iter().position(|row| !row.iter().all(|value| value.is_finite())) {
             return Err(ShapeError::NotFinite { index });

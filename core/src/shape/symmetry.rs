@@ -31,6 +31,7 @@ impl<T: Real> Efd<T> {
     /// One frequency alone is a circle. Outlines that are symmetric as sets of points but not in their parameter are not
     /// seen; arc length, the parameter of [`Efd::from_contour`], is symmetric whenever the outline is.
     #[must_use]
+    #[inline(never)]
     pub fn symmetry(&self, tolerance: T) -> Symmetry {
         let spectrum = || {
             (1_i32..).zip(&self.rows).flat_map(|(n, &[a, b, c, d])| {

@@ -16,6 +16,11 @@
 
 extern crate alloc;
 
+// Its compiled code is what is used.
+#[cfg(feature = "lab")]
+use dvp_double as _;
+
+#[cfg(feature = "lab")]
 pub mod agreement;
 pub mod chart;
 pub mod command;

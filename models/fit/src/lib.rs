@@ -36,6 +36,8 @@ mod colors;
 mod doubt;
 mod fitter;
 mod free;
+#[doc(hidden)]
+pub mod instances;
 mod joint;
 mod marginal_gain;
 mod options;
@@ -174,6 +176,7 @@ impl<T: Real> Fit<T> {
     /// leaves unexplained and the marginal gain of its objects. It knows neither loss (NaN) nor steps (0, at their limit), covariance,
     /// ambiguity or description length (NaN).
     #[must_use]
+    #[inline(never)]
     pub fn of_painted(scene: Scene<T>, drawing: &Drawing<T>, image: &ImageView<'_, T>, painted: &[T]) -> Self {
         let Unexplained { share, noise, variance, .. } = Unexplained::of(image, painted);
         Self {

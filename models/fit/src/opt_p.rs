@@ -37,6 +37,7 @@ impl OptP {
     /// [`DescentError`] as [`Descent::run`].
     ///
     /// *Source*: the paper, TI-TP-OptP.
+    #[inline(never)]
     pub fn fit<T: Real, R: Renderer<T>>(
         &self,
         descent: &mut Descent<'_, T, R>,

@@ -78,6 +78,7 @@ impl Prices {
 /// This is the law by which fits decide what a picture needs; see [`Unexplained::bits`](crate::Unexplained) for what a scene
 /// leaves of it.
 #[must_use]
+#[inline(never)]
 pub fn scene_bits<T: Real>(scene: &Scene<T>, bank: usize) -> f64 {
     Prices::default().scene_bits(scene, bank)
 }

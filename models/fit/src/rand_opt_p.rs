@@ -39,6 +39,7 @@ impl RandOptP {
     /// [`DescentError`] as [`Descent::run`].
     ///
     /// *Source*: the paper, Rand-OptP; the schedule is its evaluation's.
+    #[inline(never)]
     pub fn fit<T: Real, R: Renderer<T>>(
         &self,
         descent: &mut Descent<'_, T, R>,
@@ -62,6 +63,7 @@ impl RandOptP {
 /// A scene of `object_count` objects with the ranges of MDS-HR: positions in [0.05, 0.95], scales in [0.1, 0.3], any angle,
 /// any color, each shape one of `shapes` by chance (none: no objects). The same seed gives the same scene, on any machine.
 #[must_use]
+#[inline(never)]
 pub fn random_scene<T: Real>(object_count: usize, shapes: &[Efd<T>], seed: u64) -> Scene<T> {
     let mut chance = SplitMix(seed);
     let mut scene = Scene::empty(chance.color());

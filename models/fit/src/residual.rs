@@ -149,6 +149,7 @@ pub struct Unexplained<T> {
 impl<T: Real> Unexplained<T> {
     /// Compares `painted` (planar, as long as the image's data) with the image, whose noise is estimated.
     #[must_use]
+    #[inline(never)]
     pub fn of(image: &ImageView<'_, T>, painted: &[T]) -> Self {
         let noise = noise_level(image, &mut Vec::new()).max(T::of(PIXEL_NOISE));
         let mut residual = Residual::default();

@@ -37,6 +37,8 @@ pub mod dinov2;
 pub mod encoder;
 pub mod error;
 pub mod initial;
+#[doc(hidden)]
+pub mod instances;
 pub mod layers;
 pub mod model;
 pub mod optimize;

@@ -187,6 +187,7 @@ impl<C> TileRenderer<C> {
 impl<T: Real, C: CoverageModel<T>> Renderer<T> for TileRenderer<C> {
     type Scratch = TileScratch<T, C::Record>;
 
+    #[inline(never)]
     fn render(
         &self,
         drawing: &Drawing<T>,
@@ -197,6 +198,7 @@ impl<T: Real, C: CoverageModel<T>> Renderer<T> for TileRenderer<C> {
         self.paint::<T, CHANNELS>(drawing, size, scratch, image)
     }
 
+    #[inline(never)]
     fn render_rgba(
         &self,
         drawing: &Drawing<T>,
@@ -207,6 +209,7 @@ impl<T: Real, C: CoverageModel<T>> Renderer<T> for TileRenderer<C> {
         self.paint::<T, RGBA_CHANNELS>(drawing, size, scratch, image)
     }
 
+    #[inline(never)]
     fn render_vjp(
         &self,
         drawing: &Drawing<T>,
@@ -218,6 +221,7 @@ impl<T: Real, C: CoverageModel<T>> Renderer<T> for TileRenderer<C> {
         self.paint_vjp::<T, CHANNELS>(drawing, size, scratch, grad_image, grad)
     }
 
+    #[inline(never)]
     fn render_rgba_vjp(
         &self,
         drawing: &Drawing<T>,
@@ -229,6 +233,7 @@ impl<T: Real, C: CoverageModel<T>> Renderer<T> for TileRenderer<C> {
         self.paint_vjp::<T, RGBA_CHANNELS>(drawing, size, scratch, grad_image, grad)
     }
 
+    #[inline(never)]
     fn loss<const N: usize>(
         &self,
         drawing: &Drawing<T>,
@@ -240,6 +245,7 @@ impl<T: Real, C: CoverageModel<T>> Renderer<T> for TileRenderer<C> {
         Ok(self.compare::<T, N, false>(drawing, target, loss, scratch))
     }
 
+    #[inline(never)]
     fn loss_and_grad<const N: usize>(
         &self,
         drawing: &Drawing<T>,

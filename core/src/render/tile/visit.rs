@@ -63,6 +63,7 @@ impl<C> TileRenderer<C> {
     ///
     /// # Errors
     /// As [`Renderer::render`](crate::render::Renderer::render).
+    #[inline(never)]
     pub fn object_coverage<T: Real>(
         &self,
         drawing: &Drawing<T>,

@@ -10,13 +10,18 @@
 //! | `pixels` | a drawing as PNG |
 //! | `text` | text in pixels, by a font of ours |
 
+#[cfg(feature = "lab")]
 mod labels;
 mod lines;
+#[cfg(feature = "lab")]
 mod marks;
+#[cfg(feature = "lab")]
 mod pixels;
+#[cfg(feature = "lab")]
 mod scatter;
-#[cfg(test)]
+#[cfg(all(test, feature = "lab"))]
 mod tests;
+#[cfg(feature = "lab")]
 mod text;
 
 use std::path::Path;
@@ -25,7 +30,9 @@ use anyhow::{Result, bail};
 use plotters::style::RGBColor;
 
 pub use lines::{Chart, Line};
+#[cfg(feature = "lab")]
 pub use marks::Shape;
+#[cfg(feature = "lab")]
 pub use scatter::{Mark, Scatter, Series, Strip};
 
 /// The font of all charts: viewers of SVG take their own of this kind.

@@ -3,20 +3,26 @@
 //! Results go to the first stream (standard output), complaints and progress to the second (standard error). Exit codes:
 //! 0 if all was done, 1 if something failed (everything else was done all the same), 2 for wrong usage.
 
+#[cfg(feature = "lab")]
 mod chart;
 mod evaluate;
 mod fit;
 mod generate;
 mod generated;
+#[cfg(feature = "lab")]
 mod gradients;
+#[cfg(feature = "lab")]
 mod html;
 mod options;
+#[cfg(feature = "lab")]
 mod parsimony;
+#[cfg(feature = "lab")]
 mod pictures;
 mod progress;
 mod prototypes;
 mod render;
 mod score;
+#[cfg(feature = "lab")]
 mod stability;
 mod statistics;
 mod totals;
@@ -46,6 +52,10 @@ enum Outcome {
 /// Turns pictures into the flat objects they are made of, and back.
 #[derive(Debug, Parser)]
 #[command(name = "dvp", version, before_help = "Example: dvp fit picture.png --out out")]
+#[cfg_attr(
+    not(feature = "lab"),
+    command(after_help = "Built without the laboratory (chart, gradients, parsimony, stability): --features lab")
+)]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -59,9 +69,13 @@ enum Command {
     Prototypes(prototypes::Arguments),
     Train(train::Arguments),
     Evaluate(evaluate::Arguments),
+    #[cfg(feature = "lab")]
     Gradients(gradients::Arguments),
+    #[cfg(feature = "lab")]
     Stability(stability::Arguments),
+    #[cfg(feature = "lab")]
     Chart(chart::Arguments),
+    #[cfg(feature = "lab")]
     Parsimony(parsimony::Arguments),
 }
 
@@ -106,9 +120,13 @@ fn dispatch(command: Command, console: &mut Console<'_>) -> Result<Outcome> {
         Command::Prototypes(arguments) => prototypes::run(&arguments, console),
         Command::Train(arguments) => train::run(&arguments, console),
         Command::Evaluate(arguments) => evaluate::run(&arguments, console),
+        #[cfg(feature = "lab")]
         Command::Gradients(arguments) => gradients::run(&arguments, console),
+        #[cfg(feature = "lab")]
         Command::Stability(arguments) => stability::run(&arguments, console),
+        #[cfg(feature = "lab")]
         Command::Chart(arguments) => chart::run(&arguments, console),
+        #[cfg(feature = "lab")]
         Command::Parsimony(arguments) => parsimony::run(&arguments, console),
     }
 }

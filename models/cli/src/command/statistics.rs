@@ -1,5 +1,6 @@
 //! Means and quantiles of the figures of many images.
 
+#[cfg(feature = "lab")]
 use serde::Serialize;
 
 /// The mean; none of no values.
@@ -14,6 +15,7 @@ pub(super) fn quantile(sorted: &[f64], percent: usize) -> f64 {
     sorted.get(rank.saturating_sub(1)).copied().unwrap_or(0.0)
 }
 
+#[cfg(feature = "lab")]
 /// The median and the quartiles beside it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub(super) struct Quartiles {
@@ -22,6 +24,7 @@ pub(super) struct Quartiles {
     pub(super) high: f64,
 }
 
+#[cfg(feature = "lab")]
 impl Quartiles {
     /// Those of values in any order; zeros if there are none.
     pub(super) fn of(mut values: Vec<f64>) -> Self {
@@ -31,7 +34,7 @@ impl Quartiles {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "lab"))]
 mod tests {
     use super::*;
 

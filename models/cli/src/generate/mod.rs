@@ -14,11 +14,14 @@
 //! positions are the best of 8 draws by the smallest distance between two of them; the rotation is the direction of a
 //! point in a square, which is not quite uniform in the angle. The random numbers are our own, not the benchmark's.
 
+#[cfg(feature = "lab")]
 mod hard;
 mod sample;
 mod settings;
+#[cfg(feature = "lab")]
 pub mod spoil;
 
+#[cfg(feature = "lab")]
 pub use hard::{contrasting, cropped, twins};
 pub use sample::sample_scene;
 pub use settings::{Range, SceneSettings};

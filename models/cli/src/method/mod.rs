@@ -18,7 +18,7 @@ mod perturb;
 mod precision;
 mod refine;
 mod runner;
-#[cfg(test)]
+#[cfg(all(test, feature = "lab"))]
 mod tests;
 
 use clap::ValueEnum;

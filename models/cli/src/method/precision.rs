@@ -3,7 +3,9 @@
 use clap::ValueEnum;
 use dvp_core::render::EdgeProfile;
 use dvp_core::{Object, Pose, Real, Scene};
-use dvp_fit::{Bank, Fit};
+use dvp_fit::Bank;
+#[cfg(feature = "lab")]
+use dvp_fit::Fit;
 
 /// Numbers to compute with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, ValueEnum)]
@@ -12,6 +14,7 @@ pub enum Precision {
     #[default]
     F32,
     /// 64 bits
+    #[cfg(feature = "lab")]
     F64,
 }
 
@@ -45,6 +48,7 @@ pub fn scene<A: Real, B: Real>(scene: &Scene<A>) -> Scene<B> {
     }
 }
 
+#[cfg(feature = "lab")]
 pub(super) fn fit<A: Real, B: Real>(fit: &Fit<A>) -> Fit<B> {
     Fit {
         scene: scene(&fit.scene),

@@ -58,6 +58,7 @@ pub struct Found {
 #[derive(Debug, Default)]
 pub struct Memory {
     single: Scratch<f32>,
+    #[cfg(feature = "lab")]
     double: Scratch<f64>,
 }
 
@@ -74,6 +75,7 @@ pub struct Runner {
     setting: Setting,
     tools: Tools,
     single: Option<Fitter<f32>>,
+    #[cfg(feature = "lab")]
     double: Option<Fitter<f64>>,
 }
 
@@ -93,10 +95,18 @@ impl Runner {
         if method == Method::SegmentBank && tools.bank.is_none() {
             bail!("{name} needs a bank");
         }
-        let mut runner = Self { method, setting, tools: tools.clone(), single: None, double: None };
+        let mut runner = Self {
+            method,
+            setting,
+            tools: tools.clone(),
+            single: None,
+            #[cfg(feature = "lab")]
+            double: None,
+        };
         if matches!(method, Method::SegmentBank | Method::SegmentFree) {
             match setting.precision {
                 Precision::F32 => runner.single = Some(runner.fitter()?),
+                #[cfg(feature = "lab")]
                 Precision::F64 => runner.double = Some(runner.fitter()?),
             }
         }
@@ -133,6 +143,7 @@ impl Runner {
         let (fit, cpu) = match (&self.tools.network, self.setting.precision) {
             (Some(network), _) if self.method.needs_network() => self.see(network, task, &mut memory.single)?,
             (_, Precision::F32) => self.fit(self.single.as_ref(), task, &mut memory.single)?,
+            #[cfg(feature = "lab")]
             (_, Precision::F64) => {
                 let (fit, cpu) = self.fit(self.double.as_ref(), task, &mut memory.double)?;
                 (precision::fit(&fit), cpu)

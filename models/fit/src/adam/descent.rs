@@ -59,6 +59,7 @@ impl<'a, T: Real, R: Renderer<T>> Descent<'a, T, R> {
     ///
     /// # Errors
     /// [`DescentError::Shape`] if there are fewer than 4 vertices or no harmonic.
+    #[inline(never)]
     pub fn new(renderer: &'a R, vertex_count: usize, harmonic_count: usize) -> Result<Self, DescentError> {
         Ok(Self {
             renderer,
@@ -79,6 +80,7 @@ impl<'a, T: Real, R: Renderer<T>> Descent<'a, T, R> {
     /// # Errors
     /// [`DescentError`] if the scene or the image holds a number that is not finite, or the scene has more harmonics than
     /// this descent was made for; `scene` is then somewhere on the way.
+    #[inline(never)]
     pub fn run(
         &mut self,
         target: ImageView<'_, T>,
@@ -115,6 +117,7 @@ impl<'a, T: Real, R: Renderer<T>> Descent<'a, T, R> {
     ///
     /// # Errors
     /// As [`Self::run`].
+    #[inline(never)]
     pub fn paint(&mut self, scene: &Scene<T>, target: ImageView<'_, T>, image: &mut [T]) -> Result<(), DescentError> {
         scene.draw(&self.basis, &mut self.drawing)?;
         Ok(self.renderer.render(&self.drawing, target.size(), &mut self.scratch, image)?)

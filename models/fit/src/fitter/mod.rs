@@ -113,6 +113,7 @@ impl<T: Real> Fitter<T> {
     ///
     /// # Errors
     /// [`FitError`] if a prototype is no closed shape or a setting is out of range.
+    #[inline(never)]
     pub fn new(options: FitOptions<T>) -> Result<Self, FitError> {
         if !(1..=MAX_HARMONICS).contains(&options.max_harmonics) {
             return Err(FitError::Setting { what: "max_harmonics", must: "1 to 31: 64 vertices carry no more" });
@@ -142,6 +143,7 @@ impl<T: Real> Fitter<T> {
     ///
     /// # Errors
     /// [`FitError::NotFinite`] for an image with NaN or infinity.
+    #[inline(never)]
     pub fn fit(&self, image: ImageView<'_, T>, scratch: &mut FitScratch<T>) -> Result<Fit<T>, FitError> {
         check_finite(&image)?;
         scratch.forget();

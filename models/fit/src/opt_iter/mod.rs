@@ -85,6 +85,7 @@ impl OptIter {
     /// [`DescentError`] as [`Descent::run`].
     ///
     /// *Source*: the paper, Opt-Iter; the schedule is its evaluation's.
+    #[inline(never)]
     pub fn fit<T: Real, R: Renderer<T>>(
         &self,
         descent: &mut Descent<'_, T, R>,

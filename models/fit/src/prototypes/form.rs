@@ -48,6 +48,7 @@ impl Form {
     ///
     /// # Errors
     /// [`ShapeError`] if the outline is no closed curve or encloses nothing ([`ShapeError::Degenerate`]).
+    #[inline(never)]
     pub fn new<T: Real>(efd: &Efd<T>) -> Result<Self, ShapeError> {
         let rows: Vec<[f64; 4]> = efd.rows().iter().map(|row| row.map(Real::as_f64)).collect();
         let basis = OutlineBasis::<f64>::new(VERTICES, rows.len().max(1))?;

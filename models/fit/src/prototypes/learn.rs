@@ -231,6 +231,7 @@ fn prototype(members: &[Member], own: Vec<usize>, medoid: usize, options: &Proto
 impl Learned {
     /// The shapes as a bank: "shape 1", "shape 2", ...; of a shape that was seen in both hands also "shape 1 mirrored".
     #[must_use]
+    #[inline(never)]
     pub fn bank<T: Real>(&self) -> Bank<T> {
         let mut bank = Bank { prototypes: Vec::new() };
         for (number, prototype) in (1..).zip(&self.prototypes) {

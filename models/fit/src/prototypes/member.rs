@@ -36,6 +36,7 @@ pub struct Member {
 ///
 /// # Errors
 /// [`ShapeError`] if an object of the fit is no closed shape.
+#[inline(never)]
 pub fn members<T: Real>(fit: &Fit<T>, size: ImageSize, image: usize) -> Result<Vec<Member>, ShapeError> {
     let outlines = outlines_px(&fit.scene, size)?;
     let hides = fit.scene.compositing == Compositing::Over;

@@ -51,6 +51,7 @@ impl<T: Real> Pool<T> {
     ///
     /// # Errors
     /// [`ShapeError`] if a prototype is no outline.
+    #[inline(never)]
     pub fn new(bank: &Bank<T>) -> Result<Self, ShapeError> {
         let harmonics = bank.prototypes.iter().map(|(_, efd)| efd.harmonic_count()).max().unwrap_or(0);
         let basis = OutlineBasis::<f64>::new(REFERENCE_VERTICES, harmonics.max(1))?;
@@ -66,6 +67,7 @@ impl<T: Real> Pool<T> {
     }
 
     /// Takes the samples of the objects of `fit`, which must be the last fit that `scratch` was used for.
+    #[inline(never)]
     pub fn add(&mut self, fit: &Fit<T>, size: ImageSize, scratch: &FitScratch<T>) {
         let unit = f64::of_usize(size.unit_px());
         for object in &fit.scene.objects {
@@ -111,6 +113,7 @@ impl<T: Real> Pool<T> {
     }
 
     /// Adds the samples of another pool for the same bank.
+    #[inline(never)]
     pub fn merge(&mut self, other: Self) {
         for (own, more) in self.samples.iter_mut().zip(other.samples) {
             let room = SAMPLES_PER_PROTOTYPE.saturating_sub(own.len());
@@ -122,6 +125,7 @@ impl<T: Real> Pool<T> {
     ///
     /// # Errors
     /// [`FitError::Shape`] if a refined outline is no shape.
+    #[inline(never)]
     pub fn bank(&self) -> Result<Bank<T>, FitError> {
         let basis = Basis::new(REFERENCE_VERTICES, MAX_HARMONICS);
         let mut prototypes = Vec::new();

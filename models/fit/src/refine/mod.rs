@@ -50,6 +50,7 @@ impl Refine {
     /// # Errors
     /// [`FitError`] if the image or the start is not finite, a scale is not above 0, an outline encloses no area, or a
     /// setting is out of range.
+    #[inline(never)]
     pub fn fit<T: Real>(
         &self,
         image: ImageView<'_, T>,

@@ -88,6 +88,7 @@ impl<B: Backend> Model<B> {
     ///
     /// # Errors
     /// [`NetError::Config`], also for an empty bank; as [`Weights::get`].
+    #[inline(never)]
     pub fn load<T: Real>(
         config: &ModelConfig,
         bank: &PrototypeBank<T>,
@@ -114,6 +115,7 @@ impl<B: Backend> Model<B> {
     ///
     /// # Errors
     /// As [`Encoder::forward`].
+    #[inline(never)]
     pub fn features(&self, images: &Tensor<B>) -> Result<Tensor<B>, NetError> {
         self.encoder.forward(images)
     }
@@ -122,6 +124,7 @@ impl<B: Backend> Model<B> {
     ///
     /// # Errors
     /// [`NetError::Tensor`] or [`NetError::Input`] if these are no features of this model.
+    #[inline(never)]
     pub fn latents(&self, features: &Tensor<B>, phase: Phase) -> Result<(Latents<B>, Running<B>), NetError> {
         let mut running = Vec::new();
         let features = match &self.norm {
@@ -141,6 +144,7 @@ impl<B: Backend> Model<B> {
     ///
     /// # Errors
     /// [`NetError::Tensor`] if these are no latents of this model.
+    #[inline(never)]
     pub fn scenes<T: Real>(&self, latents: &Latents<B>) -> Result<Prediction<B>, NetError> {
         self.heads.forward::<T>(latents)
     }

@@ -46,6 +46,7 @@ impl Checkpoint {
     ///
     /// # Errors
     /// If the framework refuses to hand out its values.
+    #[inline(never)]
     pub fn of<B: Backend, T: Real>(trainer: &Trainer<B, T>, resumable: bool, about: &str) -> Result<Self, NetError> {
         let mut tensors = Parameters::new();
         let mut take = |prefix: &str, parameters: &Parameters<B>| -> Result<(), NetError> {
@@ -123,6 +124,7 @@ impl Checkpoint {
     ///
     /// # Errors
     /// If the framework refuses.
+    #[inline(never)]
     pub fn weights<B: Backend>(&self, device: &B::Device) -> Result<Parameters<B>, NetError> {
         self.part("model.", device)
     }
@@ -139,6 +141,7 @@ impl Checkpoint {
     ///
     /// # Errors
     /// [`NetError::Checkpoint`] if the file is of a model of other sizes or holds no optimizer. The trainer is then as before.
+    #[inline(never)]
     pub fn resume<B: Backend, T: Real>(&self, trainer: &mut Trainer<B, T>, device: &B::Device) -> Result<(), NetError> {
         if self.config != *trainer.config() {
             return Err(NetError::Checkpoint("it is of a model of other sizes".into()));

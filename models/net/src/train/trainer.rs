@@ -76,6 +76,7 @@ impl<B: Backend, T: Real> Trainer<B, T> {
     ///
     /// # Errors
     /// [`NetError::Config`].
+    #[inline(never)]
     pub fn new(
         config: ModelConfig,
         bank: PrototypeBank<T>,
@@ -113,6 +114,7 @@ impl<B: Backend, T: Real> Trainer<B, T> {
     ///
     /// # Errors
     /// [`ParametersError::Missing`] if the model has none of that name, [`ParametersError::Dims`].
+    #[inline(never)]
     pub fn set_weights(&mut self, weights: &Parameters<B>) -> Result<(), NetError> {
         for (name, tensor) in weights.iter() {
             self.parameters.set(name, &tensor.cast(T::DTYPE)?)?;
@@ -139,6 +141,7 @@ impl<B: Backend, T: Real> Trainer<B, T> {
     ///
     /// # Errors
     /// As [`Judge::judge`]; [`NetError::NotFinite`] if the loss or a gradient is no number. The weights are then as before.
+    #[inline(never)]
     pub fn step(&mut self, batch: &Batch<T>) -> Result<Step, NetError> {
         let number = self.steps() + 1;
         let parts = self.parts(batch, number)?;
@@ -174,6 +177,7 @@ impl<B: Backend, T: Real> Trainer<B, T> {
     ///
     /// # Errors
     /// As [`Judge::judge`].
+    #[inline(never)]
     pub fn validate(&self, mode: Mode, batch: &Batch<T>) -> Result<Step, NetError> {
         let judge = Judge { mode, ..self.judge.clone() };
         let (mut losses, mut total) = ([0.0; 3], 0.0);
@@ -196,6 +200,7 @@ impl<B: Backend, T: Real> Trainer<B, T> {
     ///
     /// # Errors
     /// As [`Model::predict`].
+    #[inline(never)]
     pub fn reconstruct(&self, images: &[Image<T>]) -> Result<Vec<Image<T>>, NetError> {
         let scenes = self.frozen()?.predict::<T>(&image_tensor(images, &self.device)?)?;
         let paint = |(mut scene, image): (Scene<T>, &Image<T>)| {
@@ -209,6 +214,7 @@ impl<B: Backend, T: Real> Trainer<B, T> {
     ///
     /// # Errors
     /// As [`Model::features`].
+    #[inline(never)]
     pub fn features(&self, images: &[Image<T>]) -> Result<Vec<Features<T>>, NetError> {
         let model = self.frozen()?;
         let mut all = Vec::with_capacity(images.len());

@@ -1,7 +1,5 @@
 //! The golden tests; a module per concern.
 
-extern crate alloc;
-
 mod efd;
 mod fit;
 mod hard_geometry;
