@@ -50,7 +50,7 @@ fn eight_bit_files_agree() {
 #[test]
 fn what_is_transparent_is_put_over_a_color_that_is_far_from_what_is_seen() {
     let folder = tempfile::tempdir().unwrap();
-    let mut judge = |left: [u8; 4], right: [u8; 4], seen: [[f64; 3]; 2]| {
+    let judge = |left: [u8; 4], right: [u8; 4], seen: [[f64; 3]; 2]| {
         let picture: RgbaImage = halves(Rgba(left), Rgba(right));
         let read = read(folder.path(), "a.png", &picture.into());
         let worst = error(&read, seen[0], seen[1]);

@@ -18,8 +18,8 @@ use dvp_tests::strategy;
 use proptest::prelude::*;
 use proptest::test_runner::{RngAlgorithm, TestRng, TestRunner};
 
-use crate::render_contour::{flat, flat_grad, unflat};
-use crate::smooth::smooth;
+use super::render_contour::{flat, flat_grad, unflat};
+use super::smooth::smooth;
 
 /// Not a multiple of a chunk, not square.
 fn size() -> ImageSize {

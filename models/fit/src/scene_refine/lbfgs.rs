@@ -76,7 +76,8 @@ impl Lbfgs {
             if slope >= T::zero() {
                 return Some(Descended { value, steps, converged: true });
             }
-            let mut length = T::one();
+            // The function is nowhere below 0: no step brings more than its value.
+            let mut length = (T::of(2.0) * value / -slope).min(T::one());
             let mut found = None;
             for _ in 0..=SHORTENED {
                 for (((next, &at), &along), &[low, high]) in next.iter_mut().zip(&*point).zip(&direction).zip(bounds) {

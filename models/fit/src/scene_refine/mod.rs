@@ -14,12 +14,13 @@ mod numbers;
 
 use alloc::vec;
 use alloc::vec::Vec;
+use core::cmp::Ordering;
 
 use dvp_core::render::{ContourRenderer, PixelLoss, Renderer};
 use dvp_core::shape::{Flattening, OutlineBasis, REFERENCE_VERTICES};
 use dvp_core::{Drawing, DrawingGrad, ImageSize, ImageView, Real, Scene, SceneGrad};
 
-use self::lbfgs::{Lbfgs, Objective};
+use self::lbfgs::{Descended, Lbfgs, Objective};
 use crate::split_mix::SplitMix;
 use crate::{FitError, StopReason};
 
@@ -27,8 +28,13 @@ use crate::{FitError, StopReason};
 const PROBES: usize = 12;
 /// How closely the polygons of curves follow them while numbers move, pixels.
 const TOLERANCE_PX: f64 = 0.01;
+/// A descent that lowers the squared error by a smaller share of it is the last one.
+const LEAST_ROUND: f64 = 0.02;
 /// A number that moves less than this share of what the number that moves most does stays where it is.
 const UNSEEN: f64 = 1e-6;
+/// A number that changes the image less than this share of what the median number does is moved as if it changed that much:
+/// control points that slide along their curve would else go far for nothing (damping, as of Levenberg and Marquardt).
+const DAMPING: f64 = 0.1;
 
 /// Settings of the refinement.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,7 +48,7 @@ pub struct SceneRefine {
 
 impl Default for SceneRefine {
     fn default() -> Self {
-        Self { max_steps: 400, least_gain: 1e-4 }
+        Self { max_steps: 1000, least_gain: 1e-4 }
     }
 }
 
@@ -80,29 +86,58 @@ impl SceneRefine {
         let harmonics = start.objects.iter().map(|object| object.efd_rows().len()).max().unwrap_or(0);
         let basis = OutlineBasis::new(REFERENCE_VERTICES, harmonics.max(1))?;
         let mut drawn = Drawn::new(image, start, basis);
-        let mut values = Vec::new();
-        numbers::load(start, &mut values);
         let start_loss = drawn.loss_and_grad()?;
+        let mut refined = RefinedScene {
+            scene: start.clone(),
+            start_loss,
+            loss: start_loss,
+            steps: 0,
+            number_count: 0,
+            stop: StopReason::StepLimit,
+        };
+        while refined.steps < self.max_steps {
+            let before = refined.loss;
+            let Some(round) = self.descend(&mut drawn, &mut refined)? else {
+                refined.stop = StopReason::Stalled;
+                break;
+            };
+            if round.converged && before - refined.loss <= T::of(LEAST_ROUND) * before {
+                refined.stop = StopReason::Converged;
+                break;
+            }
+        }
+        Ok(refined)
+    }
+
+    /// One descent from the scene of `refined`, with scales that hold there; none if nothing can move.
+    fn descend<T: Real, const N: usize>(
+        &self,
+        drawn: &mut Drawn<'_, T, N>,
+        refined: &mut RefinedScene<T>,
+    ) -> Result<Option<Descended<T>>, FitError> {
+        drawn.scene.clone_from(&refined.scene);
+        let mut values = Vec::new();
+        numbers::load(&drawn.scene, &mut values);
         let scales = drawn.scales(values.len())?;
         // Numbers that nothing seen depends on keep their value: they are not part of the point.
         let movable: Vec<usize> = (0..values.len()).filter(|&i| scales[i] > T::zero()).collect();
         let mut bounds = Vec::new();
-        numbers::bounds(start, &mut bounds);
+        numbers::bounds(&drawn.scene, &mut bounds);
         let bounds: Vec<[T; 2]> = movable.iter().map(|&i| bounds[i].map(|bound| bound / scales[i])).collect();
         let mut point: Vec<T> = movable.iter().map(|&i| values[i] / scales[i]).collect();
         // Half the sum of squares has the Gauss-Newton matrix as its Hessian: ones on the diagonal, so scaled.
-        let weight = T::of(0.5) * T::of_usize(image.data().len());
-        let mut scaled =
-            Scaled { drawn: &mut drawn, values, scales: &scales, movable: &movable, weight, grad: Vec::new() };
-        let descent = Lbfgs { max_steps: self.max_steps, least_gain: self.least_gain };
+        let weight = T::of(0.5) * T::of_usize(drawn.image.data().len());
+        let mut scaled = Scaled { drawn, values, scales: &scales, movable: &movable, weight, grad: Vec::new() };
+        let descent = Lbfgs { max_steps: self.max_steps - refined.steps, least_gain: self.least_gain };
         let ended = descent.descend(&mut scaled, &bounds, &mut point);
         scaled.place(&point);
-        let (loss, steps, stop) = match ended {
-            Some(ended) if ended.converged => (ended.value / weight, ended.steps, StopReason::Converged),
-            Some(ended) => (ended.value / weight, ended.steps, StopReason::StepLimit),
-            None => (start_loss, 0, StopReason::Stalled),
-        };
-        Ok(RefinedScene { scene: drawn.scene, start_loss, loss, steps, number_count: movable.len(), stop })
+        refined.number_count = refined.number_count.max(movable.len());
+        if let Some(ended) = ended {
+            refined.scene.clone_from(&drawn.scene);
+            refined.steps += ended.steps.max(1);
+            refined.loss = ended.value / weight;
+        }
+        Ok(ended)
     }
 }
 
@@ -189,10 +224,13 @@ impl<'a, T: Real, const N: usize> Drawn<'a, T, N> {
             numbers::load_grad(&self.scene, &self.grad, &mut values);
             sums.iter_mut().zip(&values).for_each(|(sum, &value)| *sum += value * value);
         }
-        // What a number changes is at least the part of a pixel; rounding alone is below any share of the largest.
         let most = sums.iter().copied().fold(T::zero(), T::max);
+        let is_seen = |sum: T| sum > most * T::of(UNSEEN * UNSEEN);
+        let mut seen: Vec<T> = sums.iter().copied().filter(|&sum| is_seen(sum)).collect();
+        seen.sort_by(|a, b| a.partial_cmp(b).unwrap_or(Ordering::Equal));
+        let floor = seen.get(seen.len() / 2).copied().unwrap_or_default() * T::of(DAMPING);
         let scale = |sum: T| {
-            if sum > most * T::of(UNSEEN * UNSEEN) { (sum / T::of_usize(PROBES)).sqrt().recip() } else { T::zero() }
+            if is_seen(sum) { (sum.max(floor) / T::of_usize(PROBES)).sqrt().recip() } else { T::zero() }
         };
         Ok(sums.into_iter().map(scale).collect())
     }
