@@ -17,6 +17,7 @@ mod picture_kinds;
 mod pictures;
 mod prototypes;
 mod raw_png;
+mod refine;
 mod rows;
 mod runner;
 mod svg;

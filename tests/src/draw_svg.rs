@@ -25,6 +25,28 @@ pub fn draw_svg(text: &str) -> Result<Image<f64>, String> {
     Image::from_interleaved(size, &values).map_err(|error| error.to_string())
 }
 
+/// The picture that resvg draws of an SVG text as wide as `width` pixels, clear where nothing is.
+///
+/// # Errors
+/// A sentence, if the text is no SVG or the picture is too large.
+pub fn draw_svg_rgba(text: &str, width: usize) -> Result<RgbaImage<f64>, String> {
+    let tree = usvg::Tree::from_str(text, &usvg::Options::default()).map_err(|error| error.to_string())?;
+    let scale = f32::of_usize(width) / tree.size().width();
+    let height = (tree.size().height() * scale).round().to_count().max(1);
+    let size = ImageSize::new(width, height).map_err(|error| error.to_string())?;
+    let (columns, rows) = u32::try_from(width).ok().zip(u32::try_from(height).ok()).ok_or("too large a picture")?;
+    let mut pixmap = tiny_skia::Pixmap::new(columns, rows).ok_or("too large a picture")?;
+    resvg::render(&tree, tiny_skia::Transform::from_scale(scale, scale), &mut pixmap.as_mut());
+    let mut data = vec![0.0; 4 * size.pixels()];
+    for (i, pixel) in pixmap.pixels().iter().enumerate() {
+        let values = [pixel.red(), pixel.green(), pixel.blue(), pixel.alpha()];
+        for (channel, value) in values.into_iter().enumerate() {
+            data[channel * size.pixels() + i] = f64::from(value) / 255.0;
+        }
+    }
+    RgbaImage::from_premultiplied(size, data).map_err(|error| error.to_string())
+}
+
 /// A drawing whose pixels are means of 8 x 8 that resvg drew. It measures coverage on a lattice, 4 rows per pixel: of that, means
 /// leave a sixty-fourth.
 #[derive(Debug)]

@@ -60,7 +60,7 @@ pub use kind::{
 pub use mdshr::{MDSHR_NAMES, mdshr_bank};
 pub use normalize::Normalized;
 pub use normalize_op::NormalizeOp;
-pub use outline::{Flattening, Outline, Rings};
+pub use outline::{Flattening, OUTLINE_TOLERANCE, Outline, Rings};
 pub use outline_op::{MixOp, OutlineOp};
 pub use resolve::FillRule;
 pub use stroke::{Cap, Join, Stroke};

@@ -8,7 +8,7 @@ use super::{FillRule, OutlineBasis, ShapeError};
 use crate::real::Real;
 
 /// How far a polygon may stray from the curve it stands for unless said otherwise, scene units: 0.008 px at 128 px.
-const TOLERANCE: f64 = 1.0 / 16_384.0;
+pub const OUTLINE_TOLERANCE: f64 = 1.0 / 16_384.0;
 
 /// How curves become polygons.
 #[derive(Clone, Copy, Debug)]
@@ -36,7 +36,7 @@ impl<'a, T: Real> Flattening<'a, T> {
 impl<'a, T: Real> From<&'a OutlineBasis<T>> for Flattening<'a, T> {
     /// Polygons within 1/16384 scene units of their curves: 0.008 px at 128 pixels.
     fn from(basis: &'a OutlineBasis<T>) -> Self {
-        Self::new(basis, T::of(TOLERANCE))
+        Self::new(basis, T::of(OUTLINE_TOLERANCE))
     }
 }
 

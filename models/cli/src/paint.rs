@@ -6,8 +6,11 @@ use dvp_core::render::{
     ContourRenderer, ExactArea, ExactRenderer, HardMask, HardRenderer, RenderError, Renderer, SoftTriangles,
     TriangleRenderer,
 };
-use dvp_core::shape::{OutlineBasis, REFERENCE_VERTICES, ShapeError};
+use dvp_core::shape::{Flattening, OUTLINE_TOLERANCE, OutlineBasis, REFERENCE_VERTICES, ShapeError};
 use dvp_core::{Drawing, Image, ImageSize, Real, Scene};
+
+/// How far painted polygons stray at most from curves, pixels: the edges of pixels have steps of 1/256.
+const TOLERANCE_PX: f64 = 1.0 / 128.0;
 
 /// The renderers of the command.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -67,8 +70,14 @@ impl Painter {
     /// # Errors
     /// [`PaintError::Shape`] for fewer than 4 vertices.
     pub fn draw<T: Real>(&self, scene: &Scene<T>) -> Result<Drawing<T>, PaintError> {
+        self.draw_within(scene, T::of(OUTLINE_TOLERANCE))
+    }
+
+    /// The outlines, polygons at most `tolerance` scene units from curves that are no descriptors.
+    fn draw_within<T: Real>(&self, scene: &Scene<T>, tolerance: T) -> Result<Drawing<T>, PaintError> {
         let mut drawing = Drawing::default();
-        scene.draw(&OutlineBasis::new(self.vertices, scene.harmonic_count().max(1))?, &mut drawing)?;
+        let basis = OutlineBasis::new(self.vertices, scene.harmonic_count().max(1))?;
+        scene.draw(Flattening::new(&basis, tolerance), &mut drawing)?;
         Ok(drawing)
     }
 
@@ -114,7 +123,9 @@ impl Painter {
         image: &mut Image<T, N>,
         scratch: &mut PaintScratch<T>,
     ) -> Result<(), PaintError> {
-        let drawing = self.draw(scene)?;
+        // No coarser in large pictures.
+        let tolerance = OUTLINE_TOLERANCE.min(TOLERANCE_PX / f64::of_usize(image.size().unit_px()));
+        let drawing = self.draw_within(scene, T::of(tolerance))?;
         let compositing = scene.compositing;
         match self.renderer {
             RendererName::Contour => {

@@ -5,6 +5,7 @@
 
 #[cfg(feature = "lab")]
 mod chart;
+mod drawing;
 mod evaluate;
 mod fit;
 mod generate;
@@ -20,6 +21,7 @@ mod parsimony;
 mod pictures;
 mod progress;
 mod prototypes;
+mod refine;
 mod render;
 mod score;
 #[cfg(feature = "lab")]
@@ -66,6 +68,7 @@ enum Command {
     Generate(generate::Arguments),
     Render(render::Arguments),
     Fit(fit::Arguments),
+    Refine(refine::Arguments),
     Prototypes(prototypes::Arguments),
     Train(train::Arguments),
     Evaluate(evaluate::Arguments),
@@ -117,6 +120,7 @@ fn dispatch(command: Command, console: &mut Console<'_>) -> Result<Outcome> {
         Command::Generate(arguments) => generate::run(&arguments, console),
         Command::Render(arguments) => render::run(&arguments, console),
         Command::Fit(arguments) => fit::run(&arguments, console),
+        Command::Refine(arguments) => refine::run(&arguments, console),
         Command::Prototypes(arguments) => prototypes::run(&arguments, console),
         Command::Train(arguments) => train::run(&arguments, console),
         Command::Evaluate(arguments) => evaluate::run(&arguments, console),

@@ -6,7 +6,7 @@
 
 use std::path::Path;
 
-use dvp_core::image::ImageError;
+use dvp_core::image::{ImageError, RgbaImage};
 use dvp_core::{Image, ImageSize, ImageView, Real};
 use image::{DynamicImage, ImageDecoder, ImageReader, Limits};
 
@@ -60,6 +60,22 @@ pub fn read_picture<T: Real>(path: &Path, max_pixels: usize) -> Result<Picture<T
         (_, true) => translucent(size, picture.into_rgba32f().as_raw(), f64::from, BitDepth::Sixteen),
     };
     result.map_err(|source| FormatError::Values { path: path.to_path_buf(), source })
+}
+
+/// Reads a picture of at most `max_pixels` pixels with its alpha; no pixel of an opaque one lets anything through.
+///
+/// # Errors
+/// As [`read_picture`].
+pub fn read_picture_rgba<T: Real>(path: &Path, max_pixels: usize) -> Result<RgbaImage<T>, FormatError> {
+    let (size, picture) = decode(path, max_pixels)?;
+    let color = picture.color();
+    let values: Vec<T> = match color.bytes_per_pixel() / color.channel_count() {
+        1 => picture.into_rgba8().as_raw().iter().map(|&value| T::of(f64::from(value) / 255.0)).collect(),
+        2 => picture.into_rgba16().as_raw().iter().map(|&value| T::of(f64::from(value) / 65535.0)).collect(),
+        _ => picture.into_rgba32f().as_raw().iter().map(|&value| T::of(f64::from(value))).collect(),
+    };
+    let refused = |source| FormatError::Values { path: path.to_path_buf(), source };
+    RgbaImage::from_straight(size, &values).map_err(refused)
 }
 
 /// The pixels as stored, at least one; turned as the orientation tag says.

@@ -1,0 +1,111 @@
+//! Drawings as files: scenes and SVG in; PNG, SVG and scenes out, by the ending of the name.
+
+use std::path::Path;
+
+use anyhow::{Context, Result, bail};
+use dvp_core::{ImageSize, Real, Scene};
+use dvp_fit::Bank;
+
+use super::Console;
+use super::options::{BankChoice, folder_of, square};
+use crate::format::{
+    BitDepth, Place, SceneJson, bank_near, encode_png, encode_png_rgba, read_scene, read_scene_lines, read_text,
+    write_atomic,
+};
+use crate::paint::Painter;
+use crate::svg::{SvgDrawing, from_svg, to_svg};
+
+/// A drawing as read.
+#[derive(Debug)]
+pub(super) struct Drawn<T> {
+    pub(super) scene: Scene<T>,
+    pub(super) size: ImageSize,
+    /// The shapes that the scene's prototypes are from.
+    pub(super) bank: Option<Bank<T>>,
+}
+
+/// Whether a file is an SVG.
+pub(super) fn is_svg(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending == "svg")
+}
+
+/// Reads an SVG; tells on the second stream what a scene cannot hold.
+pub(super) fn read_svg(path: &Path, console: &mut Console<'_>) -> Result<Drawn<f64>> {
+    let text = String::from_utf8(read_text(path)?);
+    let text = text.with_context(|| format!("{}: an SVG must be UTF-8", path.display()))?;
+    let SvgDrawing { scene, size, losses } = from_svg(&text).with_context(|| path.display().to_string())?;
+    if !losses.is_empty() {
+        writeln!(console.err, "{}: {losses}", path.display())?;
+    }
+    Ok(Drawn { scene, size, bank: None })
+}
+
+/// Reads a scene: of a .jsonl file that which `index` names. Its shapes may be in `bank`, else beside it.
+pub(super) fn read_json<T: Real>(path: &Path, index: Option<usize>, bank: Option<&BankChoice>) -> Result<Drawn<T>> {
+    let (json, place) = load(path, index)?;
+    let bank = match bank {
+        Some(choice) => choice.load()?,
+        None => Some(bank_near(folder_of(path))?),
+    };
+    let scene = json.to_scene(bank.as_ref(), &place)?;
+    let size = match json.size(&place)? {
+        Some(size) => size,
+        None => square(128)?,
+    };
+    Ok(Drawn { scene, size, bank })
+}
+
+fn load(path: &Path, index: Option<usize>) -> Result<(SceneJson, Place)> {
+    let is_lines = path.extension().is_some_and(|ending| ending == "jsonl");
+    match (is_lines, index) {
+        (false, None) => Ok((read_scene(path)?, Place::file(path))),
+        (false, Some(_)) => bail!("--index is for .jsonl files; {} holds one scene", path.display()),
+        (true, index) => {
+            let index = index.context("a .jsonl file holds many scenes; say which with --index")?;
+            let scenes = read_scene_lines(path)?;
+            let count = scenes.len();
+            scenes
+                .into_iter()
+                .nth(index)
+                .with_context(|| format!("{} holds {count} scenes: --index {index} must be below that", path.display()))
+        }
+    }
+}
+
+/// What a drawing is written as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum OutputFormat {
+    Png,
+    Svg,
+    Json,
+}
+
+impl OutputFormat {
+    /// By the ending of a file's name.
+    pub(super) fn of(path: &Path) -> Result<Self> {
+        match path.extension().and_then(|ending| ending.to_str()).unwrap_or("") {
+            "png" => Ok(Self::Png),
+            "svg" => Ok(Self::Svg),
+            "json" => Ok(Self::Json),
+            _ => bail!("{}: the output must end in .png, .svg or .json", path.display()),
+        }
+    }
+}
+
+impl<T: Real> Drawn<T> {
+    /// Writes the drawing in the size that it has, in the format of the ending.
+    pub(super) fn write(&self, output: &Path, painter: Painter) -> Result<()> {
+        let Self { scene, size, bank } = self;
+        let bytes = match OutputFormat::of(output)? {
+            OutputFormat::Svg => to_svg(scene, *size, bank.as_ref())?.into_bytes(),
+            OutputFormat::Json => {
+                (SceneJson::from_scene(scene, *size)?.to_line(&Place::file(output))? + "\n").into_bytes()
+            }
+            OutputFormat::Png if scene.transparent => {
+                encode_png_rgba(&painter.paint_rgba(scene, *size)?, BitDepth::Eight)?
+            }
+            OutputFormat::Png => encode_png(painter.paint(scene, *size)?.view(), BitDepth::Eight)?,
+        };
+        Ok(write_atomic(output, &bytes)?)
+    }
+}
