@@ -5,6 +5,7 @@
 //! | `property` | what must hold for every input: invariants, as proptests |
 //! | `gradient` | every gradient against central differences in f64 |
 //! | `golden` | numbers of others: the reference's, of pyefd, scipy, scikit-learn, PyTorch |
+#![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test with a line number")]
 
 extern crate alloc;
 

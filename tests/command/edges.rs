@@ -119,8 +119,7 @@ fn kind_and_width_are_found_and_painted() {
         let found = fitted(folder.path(), kind, deviation, side);
         let what = format!("{side} {kind} {deviation}: {found:?}");
         assert_eq!((found.kind.as_str(), found.objects), (kind, 3), "{what}");
-        // The format of the first version tells the reference's edges only.
-        assert_eq!(found.version, if kind == "reference" { 1 } else { 2 }, "{what}");
+        assert_eq!(found.version, 3, "{what}");
         assert!((found.width_px / width - 1.0).abs() < 0.15, "{what}, not {width}");
         assert!(found.png < png && found.svg < svg, "{what}");
     }

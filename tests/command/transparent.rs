@@ -1,5 +1,7 @@
 //! Transparent pictures are what is drawn on them; pictures of 16 bits stay pictures of 16 bits.
 
+#![expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "values of pictures, made to be in range")]
+
 use std::fs;
 use std::path::Path;
 

@@ -11,6 +11,8 @@
 //!
 //! Bulges of arcs are no lengths: they move by 2 %. A shape that the shaking leaves without a boundary stays as it was.
 
+#![expect(clippy::print_stdout, reason = "what it is for")]
+
 use std::time::Instant;
 
 use dvp::paint::{Painter, RendererName};

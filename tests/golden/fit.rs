@@ -1,8 +1,6 @@
 //! Accuracy of segment-and-fit on MDS-HR: committed scenes always, every eighth image of the validation set and its
 //! float images where the folder `shared` is there.
 
-#![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test with a line number")]
-
 use std::path::Path;
 
 use dvp::format::mdshr_bank;

@@ -1,7 +1,5 @@
 //! What lies behind other objects: how well it is guessed, and that it is said to be a guess.
 
-#![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test with a line number")]
-
 use dvp_core::contour::contains;
 use dvp_core::shape::{OutlineBasis, REFERENCE_VERTICES};
 use dvp_core::{Drawing, Real};

@@ -1,7 +1,5 @@
 //! L_p: terms, totals and gradients of the reference implementation (single precision).
 
-#![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test with a line number")]
-
 use alloc::collections::BTreeMap;
 
 use dvp_core::loss::{Loss, RotationTerm, SceneLoss, ScenePairs, SceneTerms};

@@ -1,8 +1,6 @@
 //! Image scores against scipy, labelings against scikit-learn, and, if they are there, the reference's masks,
 //! indices and scores of 16 scenes.
 
-#![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test with a line number")]
-
 use std::fs::File;
 use std::path::PathBuf;
 

@@ -1,7 +1,5 @@
 //! Pictures that are not clean: noise and compression on MDS-HR with default options, and pictures that are not flat.
 
-#![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test with a line number")]
-
 use dvp::format::mdshr_bank;
 use dvp::generate::spoil::{add_noise, jpeg};
 use dvp::generate::{SceneSettings, sample_scene};

@@ -1,7 +1,5 @@
 //! Adam and its schedule against PyTorch's; `golden_data/make_optim.py` made the numbers.
 
-#![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test with a line number")]
-
 use dvp_core::Real;
 use dvp_core::optim::{Plateau, PlateauSettings};
 use dvp_fit::adam::{Adam, AdamSettings};

@@ -1,7 +1,5 @@
 //! Shapes learned from generated pictures: as many as the pictures were drawn with, and the same ones.
 
-#![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test with a line number")]
-
 use core::f64::consts::TAU;
 
 use dvp::format::mdshr_bank;

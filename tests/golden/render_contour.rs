@@ -2,7 +2,6 @@
 //!
 //! All differences come from one thing: along the inner edges of its triangles the reference's coverage dips to 0.9933,
 //! logistic(5), and pulls on vertices; a contour has no such seams.
-#![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
 
 use dvp_core::render::{ContourRenderer, PixelLoss, Renderer};
 use dvp_core::scene::rotation_from_pair_vjp;

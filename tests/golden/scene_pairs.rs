@@ -1,7 +1,5 @@
 //! Pairs of scenes that the reference implementation was run on, with its answers.
 
-#![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test with a line number")]
-
 use alloc::collections::BTreeMap;
 
 use dvp_core::scene::rotation_from_pair;

@@ -1,7 +1,5 @@
 //! Soft triangles against the reference's object coverages, images and gradients.
 
-#![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
-
 use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;

@@ -1,7 +1,5 @@
 //! Gradients of the losses with respect to the first image, to outlines and to predicted scenes.
 
-#![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test with a line number")]
-
 use core::f64::consts::PI;
 
 use dvp_core::loss::{ContourLength, ImagePair, Loss, Pyramid, RotationTerm, SceneLoss, ScenePairs, Ssim};

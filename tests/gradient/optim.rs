@@ -1,7 +1,5 @@
 //! Gradients of the optimizers' own: the contour length, and scenes as flat vectors.
 
-#![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test with a line number")]
-
 use dvp_core::shape::OutlineBasis;
 use dvp_core::{Drawing, DrawingGrad, Scene, SceneGrad};
 use dvp_fit::adam::contour_length::mean_length_and_grad;

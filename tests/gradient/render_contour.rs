@@ -2,8 +2,6 @@
 //!
 //! Differences across kinks and jumps of coverage mean nothing: the cotangent of pixels that come near is zero.
 
-#![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
-
 use dvp_core::render::{Compositing, ContourRenderer, EdgeProfile, PixelLoss, Renderer};
 use dvp_core::{Drawing, DrawingGrad, Image, ImageSize};
 use dvp_tests::finite_difference::{compare, dot};

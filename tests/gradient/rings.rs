@@ -1,7 +1,5 @@
 //! Gradients of objects of several rings by every renderer, both ways of mixing, RGB and RGBA, by every number.
 
-#![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
-
 use core::fmt::Debug;
 use core::ops::Range;
 

@@ -5,8 +5,6 @@
 //! jumps at the cut, by up to 0.015, and where it saturates, by 1e-6. None of these is within reach of a difference if no
 //! coordinate, moved by twice the step to either side, makes the pixel follow anything else.
 
-#![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
-
 use dvp_core::render::{ContourRenderer, EdgeLaw};
 use dvp_core::shape::Rings;
 use dvp_core::{Drawing, ImageSize};

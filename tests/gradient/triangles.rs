@@ -1,7 +1,5 @@
 //! Gradients of soft triangles.
 
-#![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
-
 use dvp_core::ImageSize;
 use dvp_core::render::{EdgeProfile, SoftTriangles};
 use dvp_tests::coverage::{coverage, coverage_vjp};

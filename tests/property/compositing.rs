@@ -1,7 +1,5 @@
 //! The law of one pixel is the law that renderers paint by.
 
-#![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
-
 use dvp_core::render::{Compositing, ContourRenderer, Renderer};
 use dvp_core::scene::Layer;
 use dvp_core::shape::OutlineBasis;

@@ -1,7 +1,5 @@
 //! One scene against all renderers, and what every renderer must do with bad input.
 
-#![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
-
 use core::fmt::Debug;
 
 use dvp_core::diff_op::{Batched, HostOp as _};

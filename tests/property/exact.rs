@@ -1,7 +1,5 @@
 //! Invariants of exact coverage.
 
-#![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
-
 use dvp_core::render::{ExactArea, HardMask};
 use dvp_core::{ImageSize, Real};
 use dvp_tests::coverage::coverage;

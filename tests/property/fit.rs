@@ -1,7 +1,5 @@
 //! Invariants of segment-and-fit.
 
-#![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test with a line number")]
-
 use core::f64::consts::TAU;
 
 use dvp::paint::{Painter, RendererName};

@@ -1,7 +1,5 @@
 //! Invariants of hard coverage.
 
-#![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
-
 use dvp_core::ImageSize;
 use dvp_core::render::HardMask;
 use dvp_tests::coverage::coverage;

@@ -1,7 +1,5 @@
 //! Losses: 0 at equality, at least 0 elsewhere, unchanged by what must not matter.
 
-#![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test with a line number")]
-
 use core::f64::consts::TAU;
 
 use dvp_core::loss::{ImagePair, Loss, Pyramid, RotationTerm, SceneLoss, ScenePairs, SceneTerms, Ssim};

@@ -1,7 +1,6 @@
 //! The assignment solver against brute force, against a second implementation, and under changes that must not matter.
 
 #![expect(clippy::float_cmp, reason = "the costs are whole numbers, so their sums are exact")]
-#![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test with a line number")]
 
 use dvp_core::matching::{Assignment, CostMatrix, Hungarian};
 use pathfinding::prelude::{Matrix, kuhn_munkres_min};

@@ -1,7 +1,5 @@
 //! Metrics: 1 (or 0) at equality, unchanged by the order of objects, and against direct counts.
 
-#![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test with a line number")]
-
 use dvp_core::metric::{MaskOverlap, Ownership, OwnershipRule, RandIndexScratch, adjusted_rand_index};
 use dvp_core::render::hard::object_index;
 use dvp_core::render::{Compositing, ContourRenderer};

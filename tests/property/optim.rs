@@ -1,7 +1,5 @@
 //! Invariants of the paper's optimizers.
 
-#![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test with a line number")]
-
 use dvp_core::render::contour::ContourRenderer;
 use dvp_core::render::{Compositing, EdgeProfile, Renderer};
 use dvp_core::shape::OutlineBasis;

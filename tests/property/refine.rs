@@ -1,7 +1,5 @@
 //! Invariants of the joint second-order refinement.
 
-#![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test with a line number")]
-
 use dvp::method::perturbed;
 use dvp::paint::Painter;
 use dvp_core::render::Compositing;

@@ -1,7 +1,5 @@
 //! What holds for every image of the contour renderer.
 
-#![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
-
 use dvp_core::render::{Compositing, ContourRenderer, EdgeProfile, RenderError, Renderer};
 use dvp_core::{Drawing, Image, ImageSize, Real};
 use dvp_tests::strategy;

@@ -1,7 +1,5 @@
 //! What holds for every RGBA image.
 
-#![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
-
 use core::fmt::Debug;
 
 use dvp_core::image::RgbaImage;

@@ -1,7 +1,5 @@
 //! What holds for objects of several rings, by any renderer.
 
-#![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
-
 use core::fmt::Debug;
 
 use dvp_core::ImageSize;

@@ -1,6 +1,6 @@
 //! Scene JSON: what is written is read back exactly, and reader and schema agree on what a scene is.
 
-use std::collections::BTreeSet;
+use alloc::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
@@ -128,6 +128,10 @@ fn pointers(value: &Value) -> Vec<String> {
 fn damage(value: &mut Value, pointer: &str, how: &Damage) {
     if !pointer.contains("/known") {
         forget_numbers(value);
+    }
+    // The cut must not lie before the offset, which a schema cannot say.
+    if let ("/edge/offset", Some(edge)) = (pointer, value["edge"].as_object_mut()) {
+        edge.remove("cut");
     }
     match how {
         // The number of segments depends on that of the points, which a schema cannot say.

@@ -1,5 +1,7 @@
 //! Drawings whose numbers were shaken, brought back by the joint refinement through the renderer.
 
+#![expect(clippy::float_cmp, reason = "what does not move stays the same bit for bit")]
+
 use dvp_core::image::{CHANNELS, ImageView};
 use dvp_core::render::{Compositing, ContourRenderer, EdgeProfile, Renderer};
 use dvp_core::shape::{
@@ -116,7 +118,7 @@ proptest! {
         prop_assert_eq!(refined.scene.objects.len(), truth.objects.len());
         for (object, before) in refined.scene.objects.iter().zip(&start.objects) {
             prop_assert_eq!(object.shape.kind(), before.shape.kind());
-            prop_assert_eq!(object.confidence, before.confidence);
+            prop_assert!(object.confidence == before.confidence);
         }
         // Numbers of the first three objects are unique; control points of the leaf may slide along it.
         let (found, expected) = (numbers(&refined.scene), numbers(&truth));

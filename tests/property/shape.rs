@@ -125,7 +125,7 @@ proptest! {
         prop_assert_eq!(numbers.len(), shape.number_count());
         let names = shape.number_names();
         prop_assert_eq!(names.len(), numbers.len());
-        let distinct: std::collections::BTreeSet<_> = names.iter().collect();
+        let distinct: alloc::collections::BTreeSet<_> = names.iter().collect();
         prop_assert_eq!(distinct.len(), names.len());
         let mut copy = shape.clone();
         let others: Vec<f64> = seed.into_iter().cycle().take(numbers.len()).collect();

@@ -1,7 +1,5 @@
 //! Objects of one color that have run together are told apart by known shapes.
 
-#![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test with a line number")]
-
 use core::f64::consts::{FRAC_PI_2, TAU};
 
 use dvp_core::contour::contains;

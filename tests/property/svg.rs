@@ -1,7 +1,5 @@
 //! SVG out and in: what resvg draws of our text is what our renderer paints, and what we read of it is what we wrote.
 
-#![expect(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
-
 use core::f64::consts::PI;
 
 use dvp::paint::Painter;
@@ -64,10 +62,12 @@ fn shape() -> impl Strategy<Value = AnyShape<f64>> {
 fn object() -> impl Strategy<Value = Object<f64>> {
     let pose = (prop::array::uniform2(0.3..0.7), 0.25..0.35, -4.0..4.0);
     let confidence = prop_oneof![Just(1.0), 0.1..1.0];
-    (shape(), pose, strategy::color(), confidence).prop_map(|(shape, (translation, scale, rotation), color, confidence)| {
-        let pose = Pose { translation, scale, rotation };
-        Object { shape, pose, paint: Paint::Flat(color), confidence }
-    })
+    (shape(), pose, strategy::color(), confidence).prop_map(
+        |(shape, (translation, scale, rotation), color, confidence)| {
+            let pose = Pose { translation, scale, rotation };
+            Object { shape, pose, paint: Paint::Flat(color), confidence }
+        },
+    )
 }
 
 fn scene_of(objects: Vec<Object<f64>>, compositing: Compositing, transparent: bool) -> Scene<f64> {
@@ -149,6 +149,9 @@ proptest! {
     fn drawn_objects_come_back_as_what_they_were(object in object()) {
         let scene = scene_of(vec![object.clone()], Compositing::Over, true);
         let text = to_svg(&scene, size(), None).unwrap();
+        let drawn = FineDrawing::new(&text, 1.0, size()).unwrap();
+        // What covers no pixel is no object for a reader.
+        prop_assume!(drawn.edges.contains(&true));
         let drawing = from_svg(&text).unwrap();
         prop_assert!(drawing.losses.is_empty(), "{}", drawing.losses);
         prop_assert!(drawing.scene.transparent && drawing.size == size());
@@ -158,7 +161,7 @@ proptest! {
         for (a, b) in again.color().iter().zip(object.color()) {
             prop_assert!((a - b).abs() < 0.5 / 255.0 + 1e-9);
         }
-        let found = FineDrawing::new(&text, 1.0, size()).unwrap().difference(&painted(&drawing.scene));
+        let found = drawn.difference(&painted(&drawing.scene));
         prop_assert!(found.edges < CLOSE, "{found:?}");
         if object.shape.efd().is_some() {
             prop_assert_eq!(again.shape.kind(), "path");
@@ -166,8 +169,10 @@ proptest! {
         }
         prop_assert_eq!(again.shape.kind(), object.shape.kind(), "{}", text);
         let (before, after) = (pieces(&object), pieces(again));
-        // Neighboring lines of no length are not written.
-        prop_assert!(before.len() == after.len() && before.iter().zip(&after).all(|(a, b)| same(a, b)), "{text}: {before:?} {after:?}");
+        // A symmetric shape may begin elsewhere: it is turned by as little as its symmetry allows.
+        let begins = |shift: usize| before.iter().cycle().skip(shift).zip(&after).all(|(a, b)| same(a, b));
+        prop_assert!(before.len() == after.len(), "{text}: {before:?} {after:?}");
+        prop_assert!((0..before.len().max(1)).any(begins), "{text}: {before:?} {after:?}");
         if let (AnyShape::Stroke(a), AnyShape::Stroke(b)) = (&object.shape, &again.shape) {
             prop_assert!((a.width * object.pose.scale - b.width).abs() * UNIT < 6e-4 && a.cap == b.cap);
         }

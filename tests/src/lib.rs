@@ -3,6 +3,8 @@
 // Its compiled code is what is used.
 use dvp_double as _;
 
+extern crate alloc;
+
 pub mod coverage;
 pub mod draw_svg;
 pub mod finite_difference;

@@ -1,7 +1,7 @@
 //! Random scenes of every kind of shape, edge and background, and what a fit might know of them.
 
+use alloc::collections::BTreeMap;
 use core::f64::consts::PI;
-use std::collections::BTreeMap;
 
 use dvp::format::{
     CompletionJson, DeviationsJson, DoubtJson, INVISIBLE, ObjectJson, ObjectKnownJson, SceneJson, SceneKnownJson,

@@ -119,7 +119,7 @@ fn a_tally_of_nothing_has_no_scores() {
 #[test]
 fn errors_hand_on_what_caused_them() {
     let image = LossError::from(ImageError::NotFinite { index: 3 });
-    let metric = MetricError::from(image.clone());
+    let metric = MetricError::from(image);
     assert_eq!(metric.source().map(ToString::to_string), Some(image.to_string()));
     let cause = ImageError::NotFinite { index: 3 };
     assert_eq!(image.source().map(ToString::to_string), Some(cause.to_string()));

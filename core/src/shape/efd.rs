@@ -145,12 +145,11 @@ impl<T: Real> Kernel for Trace<'_, T> {
 
 /// An entry of the cosine and sine of each of the first `count` lanes, zero in the others.
 fn entry<T: Real>(count: usize, lane: impl Fn(usize) -> [f64; 2]) -> Entry<T> {
-    let mut entry = [[T::zero(); LANES]; 2];
-    for i in 0..count.min(LANES) {
-        let [cos, sin] = lane(i);
-        (entry[0][i], entry[1][i]) = (T::of(cos), T::of(sin));
+    let mut waves = [[T::zero(); 2]; LANES];
+    for (i, wave) in waves.iter_mut().enumerate().take(count) {
+        *wave = lane(i).map(T::of);
     }
-    entry
+    [waves.map(|[cos, _]| cos), waves.map(|[_, sin]| sin)]
 }
 
 /// Cosine and sine of `turn` / `edges` of a full turn.

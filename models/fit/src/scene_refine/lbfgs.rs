@@ -93,9 +93,9 @@ impl Lbfgs {
                     // The least value of the parabola through what is known, but not too small a part.
                     Some(new) if new.is_finite() => {
                         let least = -slope * length / (T::of(2.0) * (new - value - slope * length));
-                        length = length * least.max(T::of(0.1)).min(T::of(0.5));
+                        length *= least.max(T::of(0.1)).min(T::of(0.5));
                     }
-                    _ => length = length * T::of(0.25),
+                    _ => length *= T::of(0.25),
                 }
             }
             let Some(new) = found else {

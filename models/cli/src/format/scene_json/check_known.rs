@@ -52,8 +52,8 @@ impl Checker<'_> {
                 }
             }
         }
-        let doubts = known.doubts.iter().enumerate();
-        doubts.map(|(k, doubt)| self.doubt(&format!("{field}.doubts[{k}]"), doubt, object_count)).collect()
+        let mut doubts = known.doubts.iter().enumerate();
+        doubts.try_for_each(|(k, doubt)| self.doubt(&format!("{field}.doubts[{k}]"), doubt, object_count))
     }
 
     fn doubt(&self, field: &str, doubt: &DoubtJson, object_count: usize) -> Result<(), FormatError> {

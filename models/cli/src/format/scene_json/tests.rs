@@ -1,3 +1,5 @@
+#![expect(clippy::float_cmp, reason = "numbers are read as they were written")]
+
 use std::path::Path;
 
 use dvp_core::{ImageSize, Scene};

@@ -114,7 +114,8 @@ impl Fit {
 
 fn is_straight(run: &[Point], tolerance: f64) -> bool {
     let chord = run[run.len() - 1] - run[0];
-    let direction = unit(chord);
+    // Around an outline with one corner a run ends where it begins, in no direction.
+    let Some(direction) = chord.normalized() else { return false };
     run.len() == 2
         || run.iter().all(|&point| {
             let offset = point - run[0];

@@ -64,6 +64,26 @@ fn curves_are_few_and_close() {
 }
 
 #[test]
+fn an_outline_with_one_corner_is_followed_all_around() {
+    // A drop: a circle that runs into a tip at the right.
+    let drop: Vec<Vec2<f64>> = (0..64)
+        .map(|k| {
+            let angle = core::f64::consts::TAU * f64::from(k) / 64.0;
+            Vec2::new(20.0 * angle.cos(), 10.0 * angle.sin() * (0.5 * angle).sin())
+        })
+        .collect();
+    let pieces = smooth(&drop, 0.05);
+    assert!((2..12).contains(&pieces.len()), "{pieces:?}");
+    let area = |points: &[Vec2<f64>]| {
+        let next = points.iter().cycle().skip(1);
+        points.iter().zip(next).map(|(a, b)| 0.5 * a.cross(*b)).sum::<f64>()
+    };
+    let corners: Vec<Vec2<f64>> = pieces.iter().map(Piece::from).collect();
+    let inner = area(&corners);
+    assert!(inner > 0.5 * area(&drop) && inner <= area(&drop), "{inner} of {}", area(&drop));
+}
+
+#[test]
 fn corners_stay_and_straight_lines_are_lines() {
     let ring = |points: &[[f64; 2]]| points.iter().copied().map(Vec2::from).collect::<Vec<_>>();
     let square = ring(&[[0.0, 0.0], [0.5, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.0, 0.5], [0.0, 0.0]]);
