@@ -107,7 +107,8 @@ def fit(dvp, arguments, out, code):
 
 
 def read_table(out):
-    return PACKAGES["pandas"].read_csv(out / "table.csv")
+    # Failures have no number: whole numbers that may be missing.
+    return PACKAGES["pandas"].read_csv(out / "table.csv", dtype={"object": "Int64"})
 
 
 def check_parquet(out):
@@ -143,12 +144,14 @@ def check_labels(out, rows):
             continue
         check("label map: object", prop is not None, f"{stem} {row.object}")
         # Pixels are counted whole: an outline of length P meets about P of them, each off by up to half.
-        noise = 0.35 * np.sqrt(row.perimeter_px) + 0.5
+        # An outline from a mask rounds the corners where the border of the picture cuts the object.
+        noise = 0.35 * np.sqrt(row.perimeter_px) + 0.5 + (0.01 * row.area_px2 if row.visible < 0.999 else 0)
         close("label map: area px2", prop.area, row.area_px2 * row.visible, noise + 0.003 * row.area_px2)
         if row.visible < 0.999 or row.area_px2 < 20:
             continue
         y, x = prop.centroid
-        close("label map: centroid px", np.hypot(x + 0.5 - row.centroid_x_px, y + 0.5 - row.centroid_y_px), 0, 0.1)
+        # Pixels along a straight edge are off together, by up to half.
+        close("label map: centroid px", np.hypot(x + 0.5 - row.centroid_x_px, y + 0.5 - row.centroid_y_px), 0, 0.25)
         close("label map: axes %", 100 * prop.axis_major_length / row.major_axis_px, 100, 2)
         if row.angle_deg == row.angle_deg and row.major_axis_px > 1.3 * row.minor_axis_px:
             turn = (90 - np.degrees(prop.orientation) - row.angle_deg + 90) % 180 - 90
@@ -237,13 +240,13 @@ def check_efd(out, table):
         outer = [geometry["coordinates"][0]] if geometry["type"] == "Polygon" else [p[0] for p in geometry["coordinates"]]
         ring = np.array(max(outer, key=lambda ring: abs(polygon_area(ring))))
         known = PACKAGES["pyefd"].elliptic_fourier_descriptors(ring, order=12, normalize=True)
-        # The other end of the long axis: even harmonics with the other sign.
-        twin = known * np.where(np.arange(12) % 2 == 0, 1, -1)[:, None]
+        # The other end of the long axis: even harmonics with the other sign. pyefd leaves the sign of the whole open.
+        twins = [sign * known * other for sign in [1, -1] for other in [1, np.where(np.arange(12) % 2 == 0, 1, -1)[:, None]]]
         # Axes of equal length have no direction: such shapes are compared by their amplitudes.
         if ours[0, 3] > 0.98:
             close("efd: amplitudes", np.abs(np.linalg.norm(ours, axis=1) - np.linalg.norm(known, axis=1)).max(), 0, 5e-3)
         else:
-            close("efd = pyefd", min(np.abs(ours - known).max(), np.abs(ours - twin).max()), 0, 2e-3)
+            close("efd = pyefd", min(np.abs(ours - twin).max() for twin in twins), 0, 2e-3)
 
 
 def main():
