@@ -1,4 +1,5 @@
-//! Scenes of flat objects with elliptic Fourier outlines, and the differentiable renderers that paint them.
+//! Scenes of flat objects - circles, polygons, paths, strokes, elliptic Fourier outlines - and the differentiable renderers
+//! that paint them.
 //!
 //! # Data flow
 //!
@@ -16,8 +17,8 @@
 //! | [`tensor`] | values and extents | arrays of any framework, and networks on them |
 //! | [`image`] | slices of pixels | checked views |
 //! | [`contour`] | a mask | closed polygons traced from it |
-//! | [`shape`] | a contour or parameters | EFD, its symmetry, unit outlines |
-//! | [`scene`] | objects and background | a drawing: posed outlines with colors |
+//! | [`shape`] | the numbers of a shape, or a contour | rings of vertices, exact boundaries, measures, EFD, symmetry |
+//! | [`scene`] | objects and background | a drawing: posed rings with colors |
 //! | [`render`] | a drawing | an image and, backward, gradients |
 //! | [`matching`] | a cost matrix | the best assignment |
 //! | [`loss`], [`metric`] | two images or two scenes | a number and, for losses, gradients |
@@ -31,6 +32,7 @@
 //! | rotation | radians; a point v of the unit outline goes to `s R v + t`, R = \[\[cos a, -sin a\], \[sin a, cos a\]\] |
 //! | [`EdgeProfile`](render::EdgeProfile) `offset`, `sigma`, `cut` | by its law: squared length or length in the *doubled* frame of the reference renderer, where the shorter side is 2 |
 //! | signed distance | positive outside, negative inside |
+//! | fill | what an odd number of an object's rings goes around (even-odd); shapes that fill otherwise resolve their rings |
 //! | color | linear in the stored values, \[0, 1\] per channel |
 //! | image memory | planar: channel, row, column |
 //!

@@ -6,7 +6,7 @@ use super::Vec2;
 use crate::real::Real;
 
 /// The corners of the convex hull, in the direction of a turn from +x toward +y (clockwise on a screen), without points
-/// on its sides; fewer than three if all points lie on a line.
+/// on its sides; fewer than three if all points lie on a line, anything of points that are not finite.
 ///
 /// Time: n log n. *Source*: A. M. Andrew, "Another efficient algorithm for convex hulls in two dimensions", 1979.
 ///
@@ -18,7 +18,8 @@ use crate::real::Real;
 #[must_use]
 pub fn convex_hull<T: Real>(points: &[[T; 2]]) -> Vec<[T; 2]> {
     let mut sorted = points.to_vec();
-    sorted.sort_by(|a, b| a.partial_cmp(b).unwrap_or(core::cmp::Ordering::Equal));
+    let order = |a: T, b: T| a.as_f64().total_cmp(&b.as_f64());
+    sorted.sort_by(|a, b| order(a[0], b[0]).then_with(|| order(a[1], b[1])));
     sorted.dedup();
     if sorted.len() < 2 {
         return sorted;

@@ -84,7 +84,7 @@ impl Compositing {
     }
 
     /// How a pixel changes with the coverage of each object: `slopes[k]` becomes the derivative of its channels with respect to
-    /// the coverage of `layers[k]`. Below the guard of the weights that of [`Self::Blend`] leaves out the change of the mean.
+    /// the coverage of `layers[k]`.
     ///
     /// *Dimensions*: as many slopes as layers.
     pub fn slopes<T: Real>(self, background: [T; CHANNELS], layers: &[Layer<T>], slopes: &mut [[T; CHANNELS]]) {
@@ -93,6 +93,8 @@ impl Compositing {
         match self {
             Self::Blend => {
                 let total = total_weight(layers);
+                // Where the guard holds the sum of weights, it does not change with them.
+                let is_guarded = total <= T::of(Self::SMALLEST_WEIGHT);
                 let alpha = one - clear_of(layers);
                 let mean: [T; CHANNELS] = core::array::from_fn(|c| {
                     layers.iter().map(|layer| layer.coverage * layer.weight * layer.color[c]).sum::<T>() / total
@@ -101,8 +103,8 @@ impl Compositing {
                     // Formed of the others: dividing by 1 - p f would be 0 / 0 inside an object.
                     let others = clear_of(&layers[..k]) * clear_of(&layers[k + 1..]);
                     *slope = core::array::from_fn(|c| {
-                        (mean[c] - background[c]) * layer.confidence * others
-                            + alpha * layer.weight * (layer.color[c] - mean[c]) / total
+                        let own = if is_guarded { layer.color[c] } else { layer.color[c] - mean[c] };
+                        (mean[c] - background[c]) * layer.confidence * others + alpha * layer.weight * own / total
                     });
                 }
             }

@@ -19,7 +19,7 @@ enum Profile {
     Arc { half_sweep: f64 },
 }
 
-/// Half a sweep below which an arc is taken as the parabola that it all but is: off by less than its fourth power, while the
+/// Half a sweep below which an arc is taken as the parabola that it all but is: off by less than a twentieth of its third power of half the chord, while the
 /// formula of the arc loses as many digits as its inverse has.
 const SMALLEST_ARC: f64 = 1e-4;
 

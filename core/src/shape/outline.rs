@@ -3,7 +3,6 @@
 use alloc::vec::Vec;
 use core::ops::Range;
 
-use super::resolve::resolve;
 use super::{FillRule, OutlineBasis, ShapeError};
 use crate::real::Real;
 
@@ -83,9 +82,7 @@ impl<T: Real> Outline<T> {
     /// # Errors
     /// [`ShapeError::NotFinite`], [`ShapeError::TooLarge`] if the size overflows.
     pub fn resolved(&self, rule: FillRule) -> Result<Self, ShapeError> {
-        let mut simple = Self { vertices: Vec::new(), breaks: Vec::new() };
-        resolve(self.rings(), rule)?.append(&self.vertices, &mut simple);
-        Ok(simple)
+        self.rings().resolved(rule)
     }
 }
 

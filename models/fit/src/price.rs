@@ -63,7 +63,7 @@ impl Prices {
             } else if scene.objects[..at].iter().any(|before| before.shape == object.shape) {
                 0.0
             } else {
-                self.equal_bits(object.efd_rows().len())
+                self.harmonic * COEFFICIENT_BITS * f64::of_usize(object.shape.number_count())
             }
         };
         let shapes = scene.objects.iter().enumerate().map(shape).sum::<f64>();
@@ -72,7 +72,7 @@ impl Prices {
 }
 
 /// Bits that a scene costs to write down: its background (24) and per object color (24) and pose (48); a prototype costs the
-/// choice among `bank` shapes, a free shape 8 for each of its coefficients, the first time that it occurs. Confidences are
+/// choice among `bank` shapes, any other shape 8 for each of its numbers, the first time that it occurs. Confidences are
 /// free. The order of the objects does not matter.
 ///
 /// This is the law by which fits decide what a picture needs; see [`Unexplained::bits`](crate::Unexplained) for what a scene

@@ -43,7 +43,7 @@ impl<T: Real> Piece<T> {
     pub fn length(&self) -> T {
         match *self {
             Self::Line { from, to } => (to - from).length(),
-            Self::Arc { from, to, bulge } => (to - from).length() / sinc(sweep(bulge) * T::of(0.5)),
+            Self::Arc { from, to, bulge } => (to - from).length() / sinc(sweep(bulge) * T::of(0.5)).abs(),
             Self::Ellipse { axes, .. } => ellipse_length(axes[0].length(), axes[1].length()),
             Self::Cubic(points) => {
                 let speed = |t: T| derivatives(&points, t)[1].length();
@@ -176,7 +176,8 @@ pub(super) fn integral<T: Real>(f: &dyn Fn(T) -> T, start: T, end: T) -> T {
 fn refined<T: Real>(f: &dyn Fn(T) -> T, [start, end]: [T; 2], whole: T, tolerance: T, depth: u32) -> T {
     let middle = (start + end) * T::of(0.5);
     let (left, right) = (integral(f, start, middle), integral(f, middle, end));
-    if depth == 0 || (left + right - whole).abs() <= tolerance {
+    let is_off = (left + right - whole).abs() > tolerance;
+    if depth == 0 || !is_off {
         return left + right;
     }
     refined(f, [start, middle], left, tolerance, depth - 1) + refined(f, [middle, end], right, tolerance, depth - 1)

@@ -171,7 +171,7 @@ pub struct PoseFreedom {
 impl PoseFreedom {
     /// Of shapes whose numbers say where they stand and how they are turned.
     pub(super) const NONE: Self = Self { translation: false, scale: false, rotation: false };
-    /// Of shapes around the origin that look the same from every side.
+    /// Of shapes whose numbers, or whose symmetry, say how large they are and how they are turned.
     pub(super) const TRANSLATION: Self = Self { translation: true, scale: false, rotation: false };
     /// Of shapes around the origin whose numbers say how large they are.
     pub(super) const RIGID: Self = Self { translation: true, scale: false, rotation: true };

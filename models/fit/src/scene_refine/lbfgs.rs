@@ -86,7 +86,8 @@ impl Lbfgs {
                 let predicted: T =
                     next.iter().zip(&*point).zip(&gradient).map(|((&to, &from), &g)| (to - from) * g).sum();
                 match objective.evaluate(&next, &mut next_gradient) {
-                    Some(new) if new <= value + T::of(SUFFICIENT) * predicted => {
+                    // At the bounds a step may be cut to one uphill.
+                    Some(new) if new <= value + T::of(SUFFICIENT) * predicted.min(T::zero()) => {
                         found = Some(new);
                         break;
                     }

@@ -49,13 +49,14 @@ pub(super) fn bounds<T: Real>(scene: &Scene<T>, bounds: &mut Vec<[T; 2]>) {
     }
 }
 
-/// Writes the gradient of each number to `values`, in the order of [`load`].
-pub(super) fn load_grad<T: Real>(scene: &Scene<T>, grad: &SceneGrad<T>, values: &mut Vec<T>) {
+/// Writes the gradient of each number to `values`, in the order of [`load`] for `start`: an opacity that has come to 0 or 1 on
+/// the way remains one.
+pub(super) fn load_grad<T: Real>(start: &Scene<T>, grad: &SceneGrad<T>, values: &mut Vec<T>) {
     values.clear();
-    if !scene.transparent {
+    if !start.transparent {
         values.extend(grad.background);
     }
-    for (object, grad) in scene.objects.iter().zip(&grad.objects) {
+    for (object, grad) in start.objects.iter().zip(&grad.objects) {
         let free = object.shape.pose_freedom();
         values.extend(grad.translation.iter().filter(|_| free.translation));
         values.extend(free.scale.then_some(grad.scale));
@@ -68,8 +69,7 @@ pub(super) fn load_grad<T: Real>(scene: &Scene<T>, grad: &SceneGrad<T>, values: 
     }
 }
 
-/// Writes `values`, in the order of [`load`], to a scene of the same structure. `start` tells which confidences are
-/// opacities.
+/// Writes `values`, in the order of [`load`] for `start`, to a scene of the same structure.
 ///
 /// # Errors
 /// [`ShapeError`] if a shape refuses its numbers.
