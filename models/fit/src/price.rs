@@ -1,5 +1,6 @@
 //! Description length: what a scene costs to write down, and what it leaves unexplained, in bits.
 
+use dvp_core::shape::Shape as _;
 use dvp_core::{Object, Real, Scene};
 use num_traits::Float;
 
