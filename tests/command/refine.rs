@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use dvp::format::{BitDepth, Place, encode_png_rgba, read_picture_rgba, read_scene};
+use dvp::format::{BitDepth, Place, encode_png, encode_png_rgba, read_picture_rgba, read_scene};
 use dvp_core::image::RgbaImage;
 use dvp_core::shape::{AnyShape, Shape as _};
 use dvp_tests::draw_svg::draw_svg_rgba;
@@ -82,6 +82,35 @@ fn scenes_are_refined_and_written_as_scenes_and_pictures() {
 }
 
 #[test]
+fn a_picture_without_alpha_is_what_the_drawing_is_put_over() {
+    let folder = tempfile::tempdir().unwrap();
+    let [drawing, target, better] = ["drawing.svg", "picture.png", "better.svg"].map(|name| folder.path().join(name));
+    fs::write(&drawing, WRONG).unwrap();
+    let right = draw_svg_rgba(RIGHT, 96).unwrap();
+    let image = right.on([0.9, 0.95, 1.0]);
+    fs::write(&target, encode_png(image.view(), BitDepth::Eight).unwrap()).unwrap();
+    dvp_done(["refine", text(&drawing), text(&target), "-o", text(&better)]);
+    let found = fs::read_to_string(&better).unwrap();
+    let [right, wrong, better] = [RIGHT, WRONG, &found].map(|svg| draw_svg_rgba(svg, 4 * 48).unwrap());
+    let (before, after) = (error(&wrong, &right), error(&better, &right));
+    assert!(after < 0.1 * before, "{before} -> {after}: {found}");
+}
+
+#[test]
+fn what_a_scene_tells_of_its_numbers_stays_while_they_do() {
+    let folder = tempfile::tempdir().unwrap();
+    let [picture, out, again] = ["a.png", "out", "AGAIN.JSON"].map(|name| folder.path().join(name));
+    fs::write(&picture, encode_png(draw_svg_rgba(RIGHT, 96).unwrap().on([1.0; 3]).view(), BitDepth::Eight).unwrap())
+        .unwrap();
+    dvp_done(["fit", text(&picture), "--out", text(&out)]);
+    let first = out.join("a.json");
+    dvp_done(["render", text(&first), "-o", text(&again)]);
+    let [first, again] = [first, again].map(|path| read_scene(&path).unwrap());
+    assert!(first.known.is_some() && first.objects.iter().all(|object| object.known.is_some()), "{first:?}");
+    assert_eq!((&again.known, &again.objects), (&first.known, &first.objects));
+}
+
+#[test]
 fn what_cannot_be_refined_is_told() {
     let folder = tempfile::tempdir().unwrap();
     let [drawing, target, better] = ["drawing.svg", "picture.png", "better.svg"].map(|name| folder.path().join(name));
@@ -95,6 +124,7 @@ fn what_cannot_be_refined_is_told() {
     };
     refused(&["refine", text(&drawing), text(&target), "-o", text(&better)], "not in the ratio");
     refused(&["refine", text(&drawing), text(&target), "-o", "better.bmp"], "must end in .png, .svg or .json");
+    refused(&["refine", text(&drawing), text(&target), "-o", text(&target)], "choose another -o");
     let missing = folder.path().join("missing.png");
     refused(&["refine", text(&drawing), text(&missing), "-o", text(&better)], "missing.png");
 }

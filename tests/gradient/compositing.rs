@@ -6,10 +6,14 @@ use dvp_tests::finite_difference::{compare, dot};
 use dvp_tests::strategy;
 use proptest::prelude::*;
 
-/// Colors, coverages and confidences of a few objects; confident enough that the guard of the weights sleeps.
+/// Colors, coverages and confidences of a few objects: confident enough that the guard of the weights sleeps, or all so faint
+/// that it acts.
 fn layers() -> impl Strategy<Value = Vec<Layer<f64>>> {
-    let layer = (strategy::color(), 0.01..0.99, 0.01..1.0);
-    prop::collection::vec(layer.prop_map(|(color, p, f)| Layer::new(color, p, f)), 1..5)
+    let layers = |coverage, confidence| {
+        let layer = (strategy::color(), coverage, confidence);
+        prop::collection::vec(layer.prop_map(|(color, p, f)| Layer::new(color, p, f)), 1..5)
+    };
+    prop_oneof![4 => layers(0.01..0.99, 0.01..1.0), 1 => layers(1e-5..2e-4, 0.0..0.05)]
 }
 
 proptest! {

@@ -166,3 +166,27 @@ fn scenes_of_nothing_and_of_nonsense_are_answered() {
     nonsense.objects.push(object(Circle { radius: f64::NAN }, [0.5; 2], 0.0, [0.5; 3]));
     assert!(SceneRefine::default().fit(image, &nonsense).is_err());
 }
+
+#[test]
+fn opacities_may_end_at_their_bounds() {
+    let mut truth = drawing(EdgeProfile::area());
+    let mut start = shaken(&truth, &[0.4, -0.6, 0.3]);
+    // One is not there, one is opaque; both begin half there, and others come after them.
+    (truth.objects[0].confidence, truth.objects[1].confidence) = (0.0, 1.0);
+    (start.objects[0].confidence, start.objects[1].confidence) = (0.3, 0.7);
+    let pixels = paint::<3>(&truth);
+    let size = ImageSize::new(SIDE, SIDE).unwrap();
+    let refined = SceneRefine::default().fit(ImageView::<_, 3>::new(size, &pixels).unwrap(), &start).unwrap();
+    assert!(refined.loss < 1e-3 * refined.start_loss, "{} from {}", refined.loss, refined.start_loss);
+    let [absent, opaque] = [0, 1].map(|k| refined.scene.objects[k].confidence);
+    assert!(absent < 0.05 && opaque > 0.95, "{absent}, {opaque}");
+    assert_eq!(refined.scene.objects[2].shape.kind(), "polygon");
+}
+
+#[test]
+fn an_image_with_alpha_needs_a_transparent_scene() {
+    let size = ImageSize::new(8, 8).unwrap();
+    let pixels = vec![0.0; 4 * size.pixels()];
+    let image = ImageView::premultiplied(size, &pixels).unwrap();
+    assert!(SceneRefine::default().fit(image, &Scene::<f64>::empty([0.5; 3])).is_err());
+}

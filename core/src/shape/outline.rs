@@ -108,14 +108,14 @@ impl<'a, T> Rings<'a, T> {
     #[inline(always)]
     pub fn ranges(&self) -> impl Iterator<Item = Range<usize>> + Clone + use<'a, T> {
         let (breaks, first, len) = (self.breaks, self.first, self.vertices.len());
-        let start = move |ring: usize| if ring == 0 { 0 } else { breaks[ring - 1] - first };
-        let end = move |ring: usize| breaks.get(ring).map_or(len, |&end| end - first);
+        let start = move |ring: usize| if ring == 0 { 0 } else { breaks[ring - 1].saturating_sub(first).min(len) };
+        let end = move |ring: usize| breaks.get(ring).map_or(len, |&end| end.saturating_sub(first).min(len));
         (0..=breaks.len()).map(move |ring| start(ring)..end(ring))
     }
 
-    /// The rings, each as its vertices.
+    /// The rings, each as its vertices; none of them where breaks fall or pass the end.
     pub fn iter(&self) -> impl Iterator<Item = &'a [[T; 2]]> + Clone + use<'a, T> {
         let vertices = self.vertices;
-        self.ranges().map(move |range| &vertices[range])
+        self.ranges().map(move |range| vertices.get(range).unwrap_or_default())
     }
 }

@@ -131,3 +131,16 @@ fn normal_forms_of_tiny_and_huge_shapes() {
         assert!((normalized.scale / scale - 2.0).abs() < 1e-6, "{normalized:?}");
     }
 }
+
+#[test]
+fn breaks_that_fall_or_pass_the_end_give_no_rings() {
+    let vertices = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
+    for breaks in [&[2, 1][..], &[9], &[3, 0]] {
+        let rings = Rings { breaks, ..Rings::one(&vertices) };
+        assert!(rings.iter().all(|ring| ring.len() <= 3), "{breaks:?}");
+        assert!(rings.resolved(FillRule::EvenOdd).is_ok(), "{breaks:?}");
+        let pieces = vertices.map(|v| Piece::Line { from: v.into(), to: v.into() }).to_vec();
+        let boundary = Boundary { pieces, breaks: breaks.to_vec(), fill: FillRule::EvenOdd };
+        assert!(boundary.rings().count() <= 3, "{breaks:?}");
+    }
+}

@@ -111,11 +111,11 @@ impl<T: Real> Boundary<T> {
         }
     }
 
-    /// The rings, each as its pieces.
+    /// The rings, each as its pieces; none where breaks fall or pass the end.
     pub fn rings(&self) -> impl Iterator<Item = &[Piece<T>]> + Clone {
         let starts = core::iter::once(0).chain(self.breaks.iter().copied());
         let ends = self.breaks.iter().copied().chain(core::iter::once(self.pieces.len()));
-        starts.zip(ends).map(|(start, end)| &self.pieces[start..end]).filter(|ring| !ring.is_empty())
+        starts.zip(ends).filter_map(|(start, end)| self.pieces.get(start..end)).filter(|ring| !ring.is_empty())
     }
 
     /// Appends the closed polygon through `corners` as a ring.

@@ -7,7 +7,7 @@ use dvp_core::{ImageSize, Real, Scene};
 use dvp_fit::Bank;
 
 use super::Console;
-use super::options::{BankChoice, folder_of, square};
+use super::options::{BankChoice, folder_of, has_ending};
 use crate::format::{
     BitDepth, Place, SceneJson, bank_near, encode_png, encode_png_rgba, read_scene, read_scene_lines, read_text,
     write_atomic,
@@ -19,14 +19,17 @@ use crate::svg::{SvgDrawing, from_svg, to_svg};
 #[derive(Debug)]
 pub(super) struct Drawn<T> {
     pub(super) scene: Scene<T>,
-    pub(super) size: ImageSize,
+    /// None if the file tells none.
+    pub(super) size: Option<ImageSize>,
     /// The shapes that the scene's prototypes are from.
     pub(super) bank: Option<Bank<T>>,
+    /// What a file told besides, true as long as no number of the scene changes.
+    pub(super) told: Option<SceneJson>,
 }
 
 /// Whether a file is an SVG.
 pub(super) fn is_svg(path: &Path) -> bool {
-    path.extension().is_some_and(|ending| ending == "svg")
+    has_ending(path, "svg")
 }
 
 /// Reads an SVG; tells on the second stream what a scene cannot hold.
@@ -37,7 +40,7 @@ pub(super) fn read_svg(path: &Path, console: &mut Console<'_>) -> Result<Drawn<f
     if !losses.is_empty() {
         writeln!(console.err, "{}: {losses}", path.display())?;
     }
-    Ok(Drawn { scene, size, bank: None })
+    Ok(Drawn { scene, size: Some(size), bank: None, told: None })
 }
 
 /// Reads a scene: of a .jsonl file that which `index` names. Its shapes may be in `bank`, else beside it.
@@ -48,15 +51,11 @@ pub(super) fn read_json<T: Real>(path: &Path, index: Option<usize>, bank: Option
         None => Some(bank_near(folder_of(path))?),
     };
     let scene = json.to_scene(bank.as_ref(), &place)?;
-    let size = match json.size(&place)? {
-        Some(size) => size,
-        None => square(128)?,
-    };
-    Ok(Drawn { scene, size, bank })
+    Ok(Drawn { scene, size: json.size(&place)?, bank, told: Some(json) })
 }
 
 fn load(path: &Path, index: Option<usize>) -> Result<(SceneJson, Place)> {
-    let is_lines = path.extension().is_some_and(|ending| ending == "jsonl");
+    let is_lines = has_ending(path, "jsonl");
     match (is_lines, index) {
         (false, None) => Ok((read_scene(path)?, Place::file(path))),
         (false, Some(_)) => bail!("--index is for .jsonl files; {} holds one scene", path.display()),
@@ -83,29 +82,38 @@ pub(super) enum OutputFormat {
 impl OutputFormat {
     /// By the ending of a file's name.
     pub(super) fn of(path: &Path) -> Result<Self> {
-        match path.extension().and_then(|ending| ending.to_str()).unwrap_or("") {
-            "png" => Ok(Self::Png),
-            "svg" => Ok(Self::Svg),
-            "json" => Ok(Self::Json),
-            _ => bail!("{}: the output must end in .png, .svg or .json", path.display()),
-        }
+        let known = [("png", Self::Png), ("svg", Self::Svg), ("json", Self::Json)];
+        let found = known.into_iter().find(|(ending, _)| has_ending(path, ending));
+        let (_, format) =
+            found.with_context(|| format!("{}: the output must end in .png, .svg or .json", path.display()))?;
+        Ok(format)
     }
 }
 
 impl<T: Real> Drawn<T> {
-    /// Writes the drawing in the size that it has, in the format of the ending.
-    pub(super) fn write(&self, output: &Path, painter: Painter) -> Result<()> {
-        let Self { scene, size, bank } = self;
+    /// Writes the drawing in a size, in the format of the ending.
+    pub(super) fn write(&self, output: &Path, size: ImageSize, painter: Painter) -> Result<()> {
+        let Self { scene, bank, .. } = self;
         let bytes = match OutputFormat::of(output)? {
-            OutputFormat::Svg => to_svg(scene, *size, bank.as_ref())?.into_bytes(),
-            OutputFormat::Json => {
-                (SceneJson::from_scene(scene, *size)?.to_line(&Place::file(output))? + "\n").into_bytes()
-            }
+            OutputFormat::Svg => to_svg(scene, size, bank.as_ref())?.into_bytes(),
+            OutputFormat::Json => (self.to_json(size)?.to_line(&Place::file(output))? + "\n").into_bytes(),
             OutputFormat::Png if scene.transparent => {
-                encode_png_rgba(&painter.paint_rgba(scene, *size)?, BitDepth::Eight)?
+                encode_png_rgba(&painter.paint_rgba(scene, size)?, BitDepth::Eight)?
             }
-            OutputFormat::Png => encode_png(painter.paint(scene, *size)?.view(), BitDepth::Eight)?,
+            OutputFormat::Png => encode_png(painter.paint(scene, size)?.view(), BitDepth::Eight)?,
         };
         Ok(write_atomic(output, &bytes)?)
+    }
+
+    /// The scene, with what the file that it was read from told of it.
+    fn to_json(&self, size: ImageSize) -> Result<SceneJson> {
+        let mut json = SceneJson::from_scene(&self.scene, size)?;
+        if let Some(told) = &self.told {
+            (json.id, json.known) = (told.id, told.known.clone());
+            for (object, told) in json.objects.iter_mut().zip(&told.objects) {
+                object.known.clone_from(&told.known);
+            }
+        }
+        Ok(json)
     }
 }

@@ -1,12 +1,12 @@
 //! `dvp refine`: the numbers of a drawing, moved to where it explains a picture best.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use anyhow::{Result, bail};
 use clap::Args;
-use dvp_core::image::RgbaImage;
-use dvp_core::{ImageSize, Real};
+use dvp_core::image::{CHANNELS, RgbaImage};
+use dvp_core::{ImageSize, Real, Scene};
 use dvp_fit::StopReason;
 use dvp_fit::scene_refine::{RefinedScene, SceneRefine};
 use serde::Serialize;
@@ -20,7 +20,7 @@ use crate::paint::Painter;
 /// Refines a drawing that is near a picture: all its numbers and colors at once, through the renderer.
 ///
 /// The objects, their kinds and their order stay. The drawing should be within a pixel or two of the picture, which may have
-/// any size in the drawing's ratio. Transparent drawings are compared with pictures with alpha.
+/// any size in the drawing's ratio. A transparent drawing is compared with the alpha of the picture, if it has one.
 #[derive(Debug, Args)]
 #[command(before_help = "Example: dvp refine drawing.svg picture.png -o better.svg")]
 pub(super) struct Arguments {
@@ -68,10 +68,14 @@ pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Ou
     } else {
         read_json::<f64>(&arguments.drawing, None, arguments.bank.as_ref())?
     };
+    if is_same(&arguments.output, &arguments.picture) {
+        bail!("{} would be replaced by the drawing of it; choose another -o", arguments.picture.display());
+    }
     let picture = read_picture_rgba(&arguments.picture, arguments.max_pixels)?;
-    check_ratio(arguments, drawn.size, picture.size())?;
+    let own = drawn.size.unwrap_or(picture.size());
+    check_ratio(arguments, own, picture.size())?;
     let start = Instant::now();
-    let refined = refine(arguments.steps, &drawn, &picture)?;
+    let refined = refine(arguments.steps, &drawn.scene, &picture)?;
     let summary = Summary {
         drawing: arguments.drawing.display().to_string(),
         picture: arguments.picture.display().to_string(),
@@ -81,14 +85,14 @@ pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Ou
         numbers: refined.number_count,
         steps: refined.steps,
         stop: match refined.stop {
-            StopReason::Converged => "converged",
             StopReason::StepLimit => "step limit",
-            _ => "nothing moves",
+            _ => "converged",
         },
         seconds: start.elapsed().as_secs_f64(),
     };
-    let size = if format == OutputFormat::Png { picture.size() } else { drawn.size };
-    Drawn { scene: refined.scene, size, ..drawn }.write(&arguments.output, Painter::default())?;
+    let size = if format == OutputFormat::Png { picture.size() } else { own };
+    // What was known of the numbers is not known of the refined ones.
+    Drawn { scene: refined.scene, told: None, ..drawn }.write(&arguments.output, size, Painter::default())?;
     if arguments.json {
         writeln!(console.out, "{}", serde_json::to_string_pretty(&summary)?)?;
     } else {
@@ -102,15 +106,23 @@ pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Ou
     Ok(Outcome::Done)
 }
 
-/// A transparent drawing is held against the picture's alpha; any other against the picture put over its background.
-fn refine(max_steps: usize, drawn: &Drawn<f64>, picture: &RgbaImage<f64>) -> Result<RefinedScene<f64>> {
+/// A transparent drawing is held against the picture's alpha; where the picture has none, as any other drawing, against the
+/// picture, and what is behind it is found too.
+fn refine(max_steps: usize, scene: &Scene<f64>, picture: &RgbaImage<f64>) -> Result<RefinedScene<f64>> {
     let settings = SceneRefine { max_steps, ..SceneRefine::default() };
-    let scene = &drawn.scene;
-    Ok(if scene.transparent {
-        settings.fit(picture.view(), scene)?
-    } else {
-        settings.fit(picture.on(scene.background).view(), scene)?
-    })
+    let is_opaque = picture.view().channel(CHANNELS).iter().all(|&alpha| alpha >= 1.0);
+    if scene.transparent && !is_opaque {
+        return Ok(settings.fit(picture.view(), scene)?);
+    }
+    let opaque = Scene { transparent: false, ..scene.clone() };
+    let mut refined = settings.fit(picture.on(scene.background).view(), &opaque)?;
+    refined.scene.transparent = scene.transparent;
+    Ok(refined)
+}
+
+/// Whether two paths lead to one file.
+fn is_same(a: &Path, b: &Path) -> bool {
+    a.canonicalize().ok().zip(b.canonicalize().ok()).is_some_and(|(a, b)| a == b)
 }
 
 /// Refuses pictures whose shape is not that of the drawing, but for the rounding of a side to whole pixels.

@@ -7,7 +7,7 @@ use clap::Args;
 use dvp_core::{ImageSize, Real};
 
 use super::drawing::{Drawn, OutputFormat, is_svg, read_json, read_svg};
-use super::options::{BankChoice, PaintArguments};
+use super::options::{BankChoice, PaintArguments, square};
 use super::{Console, Outcome};
 use crate::format::DEFAULT_MAX_PIXELS;
 
@@ -51,18 +51,25 @@ pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Ou
             bail!("--index is for .jsonl files; {} holds one drawing", path.display());
         }
         write(arguments, read_svg(path, console)?)
-    } else {
+    } else if OutputFormat::of(&arguments.output)? == OutputFormat::Png {
+        // In the precision of the fit: the picture that the fit wrote comes back bit for bit.
         write(arguments, read_json::<f32>(path, arguments.index, arguments.bank.as_ref())?)
+    } else {
+        write(arguments, read_json::<f64>(path, arguments.index, arguments.bank.as_ref())?)
     }
 }
 
 fn write<T: Real>(arguments: &Arguments, drawn: Drawn<T>) -> Result<Outcome> {
-    let size = size_of(arguments, drawn.size)?;
+    let own = match drawn.size {
+        Some(size) => size,
+        None => square(128)?,
+    };
+    let size = size_of(arguments, own)?;
     let (width, height, limit) = (size.width(), size.height(), arguments.max_pixels);
     if OutputFormat::of(&arguments.output)? == OutputFormat::Png && size.pixels() > limit {
         bail!("a picture of {width} x {height} pixels, must be at most {limit}; give --width, or raise --max-pixels");
     }
-    Drawn { size, ..drawn }.write(&arguments.output, arguments.paint.painter())?;
+    drawn.write(&arguments.output, size, arguments.paint.painter())?;
     Ok(Outcome::Done)
 }
 

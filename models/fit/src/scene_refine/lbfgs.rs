@@ -170,3 +170,39 @@ fn dot<T: Real>(a: &[T], b: &[T]) -> T {
 fn add<T: Real>(to: &mut [T], factor: T, values: &[T]) {
     to.iter_mut().zip(values).for_each(|(to, &value)| *to += factor * value);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// (1 - x)^2 + 100 (y - x^2)^2, Rosenbrock's valley, and every value that was asked for.
+    struct Valley(Vec<f64>);
+
+    impl Objective<f64> for Valley {
+        fn evaluate(&mut self, point: &[f64], gradient: &mut [f64]) -> Option<f64> {
+            let [x, y] = [point[0], point[1]];
+            gradient.copy_from_slice(&[-2.0 * (1.0 - x) - 400.0 * x * (y - x * x), 200.0 * (y - x * x)]);
+            let value = (1.0 - x).powi(2) + 100.0 * (y - x * x).powi(2);
+            self.0.push(value);
+            Some(value)
+        }
+    }
+
+    #[test]
+    fn the_least_value_within_bounds_is_found_and_no_step_goes_uphill() {
+        let anything = [f64::NEG_INFINITY, f64::INFINITY];
+        for (bounds, expected) in [([anything; 2], [1.0, 1.0]), ([[-2.0, 0.5], anything], [0.5, 0.25])] {
+            for steps in 0..200 {
+                let mut point = alloc::vec![-1.2, 1.0];
+                let mut valley = Valley(Vec::new());
+                let settings = Lbfgs { max_steps: steps, least_gain: 0.0 };
+                let ended = settings.descend(&mut valley, &bounds, &mut point).unwrap();
+                assert!(ended.value <= valley.0[0]);
+                if steps == 199 {
+                    let off = point.iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+                    assert!(off < 1e-4, "{point:?} in place of {expected:?}");
+                }
+            }
+        }
+    }
+}

@@ -15,6 +15,8 @@ mod numbers;
 use alloc::vec;
 use alloc::vec::Vec;
 
+use dvp_core::geometry::Px;
+use dvp_core::image::{CHANNELS, RGBA_CHANNELS};
 use dvp_core::render::{ContourRenderer, PixelLoss, Renderer};
 use dvp_core::shape::{Flattening, OutlineBasis, REFERENCE_VERTICES};
 use dvp_core::{Drawing, DrawingGrad, ImageSize, ImageView, Real, Scene, SceneGrad};
@@ -25,8 +27,8 @@ use crate::{FitError, StopReason};
 
 /// Probes of the Gauss-Newton diagonal: each number's share is known to about 40 % then, which is enough for a scale.
 const PROBES: usize = 12;
-/// How closely the polygons of curves follow them while numbers move, pixels.
-const TOLERANCE_PX: f64 = 0.01;
+/// How closely the polygons of curves follow them while numbers move.
+const TOLERANCE: Px<f64> = Px(0.01);
 /// A descent that lowers the squared error by a smaller share of it is the last one.
 const LEAST_ROUND: f64 = 0.02;
 /// A number that moves less than this share of what the number that moves most does stays where it is.
@@ -76,14 +78,17 @@ impl SceneRefine {
     /// background, which moves too unless the scene is transparent.
     ///
     /// # Errors
-    /// [`FitError`] if the scene holds a number that is not finite or describes no shape.
+    /// [`FitError`] if the scene holds a number that is not finite or describes no shape, [`FitError::Setting`] for an RGBA
+    /// image and a scene with a background: put the image over that first.
     pub fn fit<T: Real, const N: usize>(
         &self,
         image: ImageView<'_, T, N>,
         start: &Scene<T>,
     ) -> Result<RefinedScene<T>, FitError> {
-        let harmonics = start.objects.iter().map(|object| object.efd_rows().len()).max().unwrap_or(0);
-        let basis = OutlineBasis::new(REFERENCE_VERTICES, harmonics.max(1))?;
+        if N == RGBA_CHANNELS && !start.transparent {
+            return Err(FitError::Setting { what: "image", must: "RGB for a scene with a background" });
+        }
+        let basis = OutlineBasis::new(REFERENCE_VERTICES, start.harmonic_count().max(1))?;
         let mut drawn = Drawn::new(image, start, basis);
         let start_loss = drawn.loss_and_grad()?;
         let mut refined = RefinedScene {
@@ -97,7 +102,7 @@ impl SceneRefine {
         while refined.steps < self.max_steps {
             let before = refined.loss;
             let Some(round) = self.descend(&mut drawn, &mut refined)? else {
-                refined.stop = StopReason::Stalled;
+                refined.stop = StopReason::Converged;
                 break;
             };
             if round.converged && before - refined.loss <= T::of(LEAST_ROUND) * before {
@@ -108,7 +113,7 @@ impl SceneRefine {
         Ok(refined)
     }
 
-    /// One descent from the scene of `refined`, with scales that hold there; none if nothing can move.
+    /// One descent from the scene of `refined`, with scales that hold there; none if no number changes the image.
     fn descend<T: Real, const N: usize>(
         &self,
         drawn: &mut Drawn<'_, T, N>,
@@ -116,12 +121,15 @@ impl SceneRefine {
     ) -> Result<Option<Descended<T>>, FitError> {
         drawn.scene.clone_from(&refined.scene);
         let mut values = Vec::new();
-        numbers::load(&drawn.scene, &mut values);
+        numbers::load(drawn.start, &drawn.scene, &mut values);
         let scales = drawn.scales(values.len())?;
         // Numbers that nothing seen depends on keep their value: they are not part of the point.
         let movable: Vec<usize> = (0..values.len()).filter(|&i| scales[i] > T::zero()).collect();
+        if movable.is_empty() {
+            return Ok(None);
+        }
         let mut bounds = Vec::new();
-        numbers::bounds(&drawn.scene, &mut bounds);
+        numbers::bounds(drawn.start, &mut bounds);
         let bounds: Vec<[T; 2]> = movable.iter().map(|&i| bounds[i].map(|bound| bound / scales[i])).collect();
         let mut point: Vec<T> = movable.iter().map(|&i| values[i] / scales[i]).collect();
         // Half the sum of squares has the Gauss-Newton matrix as its Hessian: ones on the diagonal, so scaled.
@@ -169,7 +177,7 @@ impl<'a, T: Real, const N: usize> Drawn<'a, T, N> {
     }
 
     fn how(&self) -> Flattening<'_, T> {
-        let tolerance = T::of(TOLERANCE_PX) / T::of_usize(self.image.size().unit_px());
+        let tolerance = T::of(TOLERANCE.to_scene_length(self.image.size()));
         Flattening::new(&self.basis, tolerance)
     }
 
@@ -214,13 +222,13 @@ impl<'a, T: Real, const N: usize> Drawn<'a, T, N> {
             let probe: Vec<T> = (0..self.image.data().len()).map(|_| signs.sign()).collect();
             let Self { renderer, drawing, scratch, drawing_grad, .. } = self;
             let size: ImageSize = self.image.size();
-            if N == dvp_core::image::CHANNELS {
+            if N == CHANNELS {
                 renderer.render_vjp(drawing, size, scratch, &probe, drawing_grad)?;
             } else {
                 renderer.render_rgba_vjp(drawing, size, scratch, &probe, drawing_grad)?;
             }
             self.pull_back()?;
-            numbers::load_grad(&self.scene, &self.grad, &mut values);
+            numbers::load_grad(self.start, &self.grad, &mut values);
             sums.iter_mut().zip(&values).for_each(|(sum, &value)| *sum += value * value);
         }
         let most = sums.iter().copied().fold(T::zero(), T::max);
@@ -261,7 +269,7 @@ impl<T: Real, const N: usize> Objective<T> for Scaled<'_, '_, T, N> {
     fn evaluate(&mut self, point: &[T], gradient: &mut [T]) -> Option<T> {
         self.place(point)?;
         let loss = self.drawn.loss_and_grad().ok()?;
-        numbers::load_grad(&self.drawn.scene, &self.drawn.grad, &mut self.grad);
+        numbers::load_grad(self.drawn.start, &self.drawn.grad, &mut self.grad);
         for (gradient, &i) in gradient.iter_mut().zip(self.movable) {
             *gradient = self.grad[i] * self.scales[i] * self.weight;
         }

@@ -8,13 +8,14 @@ use dvp_core::{Object, Real, Scene, SceneGrad};
 /// Writes the numbers of `scene` that may move to `values`.
 ///
 /// Background unless there is none; per object what of its pose its shape does not say itself, the numbers of its shape
-/// unless they are given from outside, its color, and its confidence where it is an opacity: neither 0 nor 1.
-pub(super) fn load<T: Real>(scene: &Scene<T>, values: &mut Vec<T>) {
+/// unless they are given from outside, its color, and its confidence where it is an opacity in `start`: neither 0 nor 1. One
+/// that has come to 0 or 1 on the way may leave it again.
+pub(super) fn load<T: Real>(start: &Scene<T>, scene: &Scene<T>, values: &mut Vec<T>) {
     values.clear();
     if !scene.transparent {
         values.extend(scene.background);
     }
-    for object in &scene.objects {
+    for (object, before) in scene.objects.iter().zip(&start.objects) {
         let (pose, free) = (object.pose, object.shape.pose_freedom());
         values.extend(pose.translation.iter().filter(|_| free.translation));
         values.extend(free.scale.then_some(pose.scale));
@@ -23,20 +24,20 @@ pub(super) fn load<T: Real>(scene: &Scene<T>, values: &mut Vec<T>) {
             object.shape.numbers(values);
         }
         values.extend(object.color());
-        values.extend(is_opacity(object).then_some(object.confidence));
+        values.extend(is_opacity(before).then_some(object.confidence));
     }
 }
 
 /// Writes the range of each number to `bounds`, in the order of [`load`]: colors and opacities lie in \[0, 1\], scales are
 /// not negative.
-pub(super) fn bounds<T: Real>(scene: &Scene<T>, bounds: &mut Vec<[T; 2]>) {
+pub(super) fn bounds<T: Real>(start: &Scene<T>, bounds: &mut Vec<[T; 2]>) {
     let (zero, one) = (T::zero(), T::one());
     let (anything, unit) = ([T::neg_infinity(), T::infinity()], [zero, one]);
     bounds.clear();
-    if !scene.transparent {
+    if !start.transparent {
         bounds.extend([unit; 3]);
     }
-    for object in &scene.objects {
+    for object in &start.objects {
         let free = object.shape.pose_freedom();
         bounds.extend([anything; 2].into_iter().filter(|_| free.translation));
         bounds.extend(free.scale.then_some([zero, T::infinity()]));
@@ -49,8 +50,7 @@ pub(super) fn bounds<T: Real>(scene: &Scene<T>, bounds: &mut Vec<[T; 2]>) {
     }
 }
 
-/// Writes the gradient of each number to `values`, in the order of [`load`] for `start`: an opacity that has come to 0 or 1 on
-/// the way remains one.
+/// Writes the gradient of each number to `values`, in the order of [`load`].
 pub(super) fn load_grad<T: Real>(start: &Scene<T>, grad: &SceneGrad<T>, values: &mut Vec<T>) {
     values.clear();
     if !start.transparent {
@@ -69,7 +69,7 @@ pub(super) fn load_grad<T: Real>(start: &Scene<T>, grad: &SceneGrad<T>, values: 
     }
 }
 
-/// Writes `values`, in the order of [`load`] for `start`, to a scene of the same structure.
+/// Writes `values`, in the order of [`load`], to a scene of the same structure.
 ///
 /// # Errors
 /// [`ShapeError`] if a shape refuses its numbers.
