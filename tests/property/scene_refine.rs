@@ -178,8 +178,9 @@ fn opacities_may_end_at_their_bounds() {
     let size = ImageSize::new(SIDE, SIDE).unwrap();
     let refined = SceneRefine::default().fit(ImageView::<_, 3>::new(size, &pixels).unwrap(), &start).unwrap();
     assert!(refined.loss < 1e-3 * refined.start_loss, "{} from {}", refined.loss, refined.start_loss);
-    let [absent, opaque] = [0, 1].map(|k| refined.scene.objects[k].confidence);
-    assert!(absent < 0.05 && opaque > 0.95, "{absent}, {opaque}");
+    // What is half opaque looks like what is opaque in a paler color: there is no one answer for the second.
+    let absent = refined.scene.objects[0].confidence;
+    assert!((0.0..0.05).contains(&absent), "{absent}");
     assert_eq!(refined.scene.objects[2].shape.kind(), "polygon");
 }
 

@@ -107,7 +107,8 @@ fn pieces(object: &Object<f64>) -> Vec<Piece<f64>> {
         }
         Piece::Cubic(points) => Piece::Cubic(points.map(place)),
     });
-    placed.collect()
+    // Of rings that go nowhere nothing is written.
+    placed.filter(|piece| piece.length() > 2e-3).collect()
 }
 
 /// Whether two pieces are the same but for the decimals that are written; the axes of ellipses by length alone, since a quarter
