@@ -7,6 +7,7 @@ mod edge;
 mod efd;
 mod exact;
 mod fit;
+mod geometry;
 mod hard;
 mod loss;
 mod matching;
