@@ -1,5 +1,7 @@
 //! Invariants of the plane: nearest points, maps, hulls, boxes, disjoint sets and the components that they label.
 
+#![expect(clippy::float_cmp, reason = "the sides of a box are coordinates of its points, bit for bit")]
+
 use dvp_core::ImageSize;
 use dvp_core::contour::{Connectivity, label_by};
 use dvp_core::geometry::{Bounds, DisjointSets, LineSegment, Similarity, Vec2, convex_hull};
