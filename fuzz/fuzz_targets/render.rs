@@ -1,10 +1,10 @@
 //! Every renderer on wild drawings: an error, or finite images, losses and gradients inside the range of their colors.
 #![no_main]
 
+use dvp_core::image::RgbaView;
 use dvp_core::render::{
     Compositing, ContourDistance, CoverageModel, ExactArea, HardMask, PixelLoss, Renderer, SoftTriangles, TileRenderer,
 };
-use dvp_core::image::RgbaView;
 use dvp_core::{DrawingGrad, ImageView};
 use dvp_fuzz::Painting;
 use libfuzzer_sys::fuzz_target;

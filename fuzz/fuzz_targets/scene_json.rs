@@ -1,10 +1,13 @@
-//! Any bytes as a scene: an error, or a scene that is written and read back as it was, with all that is known of it.
+//! Any bytes as a scene: an error, or a scene that renderers paint or refuse, and that is written and read back as it was,
+//! with all that is known of it; as SVG it is written or refused.
 #![no_main]
 
 use std::path::Path;
 
 use dvp::format::{Place, SceneJson};
+use dvp::svg::to_svg;
 use dvp_core::{ImageSize, Real};
+use dvp_fuzz::paint;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|text: &[u8]| {
@@ -26,4 +29,6 @@ fn round_trip<T: Real>(json: &SceneJson, place: &Place) {
     let again = read(&written.to_line(place).expect("numbers that were checked are written"), place);
     assert_eq!(again, written);
     assert!(again.to_scene::<T>(None, place).expect("and is a scene") == scene);
+    paint(&scene);
+    let _ = to_svg(&scene, ImageSize::new(24, 16).expect("24 x 16 is a size"), None);
 }

@@ -1,9 +1,10 @@
-//! Inputs of the fuzz targets. Their `Debug` prints Rust, so that a crash pastes into a test.
+//! Inputs of the fuzz targets, and what becomes of scenes. The `Debug` of inputs prints Rust, so that a crash pastes into a test.
 
 use std::fmt;
 
 use arbitrary::{Arbitrary, Result, Unstructured};
-use dvp_core::{Drawing, ImageSize};
+use dvp::paint::{Painter, RendererName};
+use dvp_core::{Drawing, ImageSize, Real, Scene};
 
 /// A number anywhere: mostly near the image, sometimes huge, tiny, or none.
 pub fn number(u: &mut Unstructured<'_>) -> Result<f32> {
@@ -138,5 +139,19 @@ impl fmt::Debug for Painting {
             writeln!(f, "drawing.push(&{outline:?}, {}, {:?});", Code(&drawing.colors[k]), drawing.confidences[k])?;
         }
         writeln!(f, "drawing.breaks = vec!{:?};", drawing.breaks)
+    }
+}
+
+/// Paints a scene with every renderer: an error, or finite pixels.
+///
+/// # Panics
+/// If a pixel is not finite.
+pub fn paint<T: Real>(scene: &Scene<T>) {
+    let size = ImageSize::new(24, 16).expect("24 x 16 is a size");
+    for renderer in [RendererName::Contour, RendererName::Triangles, RendererName::Exact, RendererName::Hard] {
+        let painter = Painter { renderer, ..Painter::default() };
+        if let Ok(image) = painter.paint_rgba(scene, size) {
+            assert!(image.data().iter().all(|v| v.is_finite()), "{renderer:?}");
+        }
     }
 }
