@@ -143,8 +143,8 @@ fn more_objects_than_a_byte_can_number_are_scored() {
 
 /// The topmost object of each pixel, from 1, of a scene of hard-edged objects.
 fn label_map(scene: &Scene<f32>, side: usize) -> Vec<u32> {
-    let drawing = Painter::default().draw(scene).unwrap();
     let size = ImageSize::new(side, side).unwrap();
+    let drawing = Painter::default().draw(scene, size).unwrap();
     let mut coverage = vec![0.0; drawing.object_count() * size.pixels()];
     let renderer = TileRenderer { coverage: HardMask, compositing: Compositing::Over };
     renderer.object_coverage(&drawing, size, &mut Default::default(), &mut coverage).unwrap();

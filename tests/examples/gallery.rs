@@ -108,7 +108,7 @@ fn enlarged(image: &Image<f64>, zoom: usize) -> Result<Image<f64>, Failure> {
 fn with_outlines(picture: &Image<f64>, scene: &Scene<f64>, zoom: usize) -> Result<Image<f64>, Failure> {
     let (width, height) = (picture.size().width(), picture.size().height());
     let unit = f64::of_usize(picture.size().unit_px());
-    let drawing = Painter::default().draw(scene)?;
+    let drawing = Painter::default().draw(scene, picture.size())?;
     let mut text = format!("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\">");
     for k in 0..drawing.object_count() {
         let mut points = String::new();

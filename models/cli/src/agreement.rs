@@ -87,7 +87,7 @@ struct Seen {
 
 impl Seen {
     fn of(scene: &Scene<f32>, size: ImageSize) -> Result<Self, PaintError> {
-        let drawing = Painter::default().draw(scene)?;
+        let drawing = Painter::default().draw(scene, size)?;
         let renderer = ContourRenderer::new(scene.edge, scene.compositing);
         let profile = scene.edge.in_pixels(f32::of_usize(size.unit_px()));
         // Px in which coverage falls by 1, at its slope between 3/4 and 1/4.

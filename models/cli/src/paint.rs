@@ -65,19 +65,16 @@ pub struct PaintScratch<T: Real> {
 }
 
 impl Painter {
-    /// The scene's outlines.
+    /// The scene's outlines for a picture of `size`: polygons at most 1/128 px from curves that are no descriptors.
     ///
     /// # Errors
     /// [`PaintError::Shape`] for fewer than 4 vertices.
-    pub fn draw<T: Real>(&self, scene: &Scene<T>) -> Result<Drawing<T>, PaintError> {
-        self.draw_within(scene, T::of(OUTLINE_TOLERANCE))
-    }
-
-    /// The outlines, polygons at most `tolerance` scene units from curves that are no descriptors.
-    fn draw_within<T: Real>(&self, scene: &Scene<T>, tolerance: T) -> Result<Drawing<T>, PaintError> {
+    pub fn draw<T: Real>(&self, scene: &Scene<T>, size: ImageSize) -> Result<Drawing<T>, PaintError> {
+        // No coarser in large pictures.
+        let tolerance = OUTLINE_TOLERANCE.min(TOLERANCE_PX / f64::of_usize(size.unit_px()));
         let mut drawing = Drawing::default();
         let basis = OutlineBasis::new(self.vertices, scene.harmonic_count().max(1))?;
-        scene.draw(Flattening::new(&basis, tolerance), &mut drawing)?;
+        scene.draw(Flattening::new(&basis, T::of(tolerance)), &mut drawing)?;
         Ok(drawing)
     }
 
@@ -123,9 +120,7 @@ impl Painter {
         image: &mut Image<T, N>,
         scratch: &mut PaintScratch<T>,
     ) -> Result<(), PaintError> {
-        // No coarser in large pictures.
-        let tolerance = OUTLINE_TOLERANCE.min(TOLERANCE_PX / f64::of_usize(image.size().unit_px()));
-        let drawing = self.draw_within(scene, T::of(tolerance))?;
+        let drawing = self.draw(scene, image.size())?;
         let compositing = scene.compositing;
         match self.renderer {
             RendererName::Contour => {

@@ -89,7 +89,7 @@ fn score_masks(
     let mut own = |scene: &Scene<f32>, rule, owned: &mut Ownership| -> Result<()> {
         // The visible edge, whatever renderer painted it.
         let renderer = ContourRenderer::new(scene.edge, scene.compositing);
-        Ok(owned.fill_drawing(rule, &renderer, &painter.draw(scene)?, size, render)?)
+        Ok(owned.fill_drawing(rule, &renderer, &painter.draw(scene, size)?, size, render)?)
     };
     let seen = OwnershipRule::Seen(found.compositing);
     let rule = match *truth {

@@ -20,7 +20,7 @@ use super::{MeasuredObject, MeasuredPicture, Region};
 ///
 /// # Errors
 /// [`ShapeError::TooFewPoints`] if nothing is enclosed, [`ShapeError::Degenerate`] if the first harmonic vanishes.
-pub fn normal_form(region: &Region, harmonics: usize) -> Result<Efd<f64>, ShapeError> {
+pub(super) fn normal_form(region: &Region, harmonics: usize) -> Result<Efd<f64>, ShapeError> {
     let ring = region.largest_ring().unwrap_or(&[]);
     let (efd, _) = Efd::from_contour(ring, harmonics)?;
     let normal = efd.normalize()?.efd;

@@ -1,9 +1,11 @@
 //! Why something was not exported.
 
+use dvp_core::dims::SizeError;
 use dvp_core::metric::MetricError;
 use dvp_core::render::RenderError;
 use dvp_core::shape::ShapeError;
 
+use crate::format::FormatError;
 use crate::paint::PaintError;
 
 /// Why something was not exported.
@@ -54,8 +56,11 @@ pub enum ExportError {
     #[error("the table cannot be encoded: {0}")]
     Table(String),
     /// The pixels could not be encoded.
-    #[error("the image cannot be encoded as PNG: {0}")]
-    Png(#[from] image::ImageError),
+    #[error(transparent)]
+    Png(#[from] FormatError),
+    /// The picture has no pixels, or more than there are numbers.
+    #[error(transparent)]
+    Size(#[from] SizeError),
     /// The archive could not be encoded.
     #[error("the archive cannot be encoded: {0}")]
     Zip(#[from] std::io::Error),

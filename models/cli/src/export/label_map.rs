@@ -5,7 +5,7 @@ use dvp_core::render::{Compositing, ContourRenderer};
 use dvp_core::{ImageSize, Scene};
 
 use super::error::ExportError;
-use super::png::gray;
+use crate::format::{encode_gray8, encode_gray16};
 use crate::paint::Painter;
 
 /// The object that is seen in each pixel, row by row: 0 for the background, else its number in `numbers`, which has one per object.
@@ -17,7 +17,7 @@ use crate::paint::Painter;
 /// # Errors
 /// [`ExportError::Paint`] and [`ExportError::Owners`] if the scene cannot be drawn.
 pub fn label_map(scene: &Scene<f32>, numbers: &[u32], size: ImageSize) -> Result<Vec<u32>, ExportError> {
-    let drawing = Painter::default().draw(scene)?;
+    let drawing = Painter::default().draw(scene, size)?;
     let renderer = ContourRenderer::new(scene.edge, scene.compositing);
     let mut owners = Ownership::default();
     let rule = OwnershipRule::Seen(Compositing::Over);
@@ -29,13 +29,12 @@ pub fn label_map(scene: &Scene<f32>, numbers: &[u32], size: ImageSize) -> Result
 /// A label map as a gray PNG: of 8 bits if no number is above 255, else of 16.
 ///
 /// # Errors
-/// [`ExportError::Number`] if one is above 65535, [`ExportError::Png`].
+/// [`ExportError::Number`] if one is above 65535, [`ExportError::Png`] if there are not as many labels as pixels.
 pub fn label_map_png(labels: &[u32], size: ImageSize) -> Result<Vec<u8>, ExportError> {
-    let sides = [size.width(), size.height()].map(|side| u32::try_from(side).unwrap_or(u32::MAX));
-    if let Ok(labels) = labels.iter().map(|&label| u8::try_from(label)).collect() {
-        gray(sides[0], sides[1], labels)
-    } else if let Ok(labels) = labels.iter().map(|&label| u16::try_from(label)).collect() {
-        gray(sides[0], sides[1], labels)
+    if let Ok(labels) = labels.iter().map(|&label| u8::try_from(label)).collect::<Result<Vec<_>, _>>() {
+        Ok(encode_gray8(&labels, size)?)
+    } else if let Ok(labels) = labels.iter().map(|&label| u16::try_from(label)).collect::<Result<Vec<_>, _>>() {
+        Ok(encode_gray16(&labels, size)?)
     } else {
         Err(ExportError::Number { number: labels.iter().copied().max().unwrap_or(0) })
     }

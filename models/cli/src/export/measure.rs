@@ -10,6 +10,7 @@ use dvp_fit::Bank;
 
 use super::error::ExportError;
 use super::region::Region;
+use crate::format::to_byte;
 use crate::method::cast_scene;
 use crate::paint::Painter;
 
@@ -137,7 +138,7 @@ fn measured(object: &Object<f64>, region: Region, moments: Option<Moments<f64>>)
         angle: axes.filter(|_| has_direction(&region)).map(|axes| axes.angle.to_degrees()),
         perimeter: region.perimeter(),
         bounds: region.bounds(),
-        color: object.color().map(byte),
+        color: object.color().map(to_byte),
         confidence: object.confidence.clamp(0.0, 1.0),
         visible: 0.0,
         deviations: None,
@@ -176,7 +177,7 @@ fn has_direction(region: &Region) -> bool {
 
 /// The area (px^2) that is in the picture and not hidden, per object. Under `blend` objects show through one another.
 fn seen_areas(scene: &Scene<f32>, size: ImageSize) -> Result<Vec<f64>, ExportError> {
-    let drawing = Painter::default().draw(scene)?;
+    let drawing = Painter::default().draw(scene, size)?;
     // From the last object, which nothing hides, to the first.
     let mut reversed = Drawing::default();
     for k in (0..drawing.object_count()).rev() {
@@ -200,9 +201,4 @@ fn seen_areas(scene: &Scene<f32>, size: ImageSize) -> Result<Vec<f64>, ExportErr
 fn prototype_name(bank: Option<&Bank<f32>>, index: usize) -> String {
     let named = bank.and_then(|bank| bank.prototypes.get(index)).map(|(name, _)| name.clone());
     named.unwrap_or_else(|| format!("prototype {index}"))
-}
-
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to [0, 255] before")]
-fn byte(value: f64) -> u8 {
-    (value.clamp(0.0, 1.0) * 255.0).round() as u8
 }

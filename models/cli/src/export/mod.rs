@@ -30,7 +30,6 @@ mod error;
 mod geojson;
 mod label_map;
 mod measure;
-mod png;
 mod region;
 mod roi;
 mod scale;
@@ -40,7 +39,7 @@ mod tests;
 mod whole;
 
 pub use coco::coco;
-pub use efd::{efd_csv, efd_nef, normal_form};
+pub use efd::{efd_csv, efd_nef};
 pub use error::ExportError;
 pub use geojson::geojson;
 pub use label_map::{label_map, label_map_png};

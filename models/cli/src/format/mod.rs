@@ -33,7 +33,8 @@ pub use error::{FormatError, Place};
 pub use labels::{labels_beside, read_labels};
 pub use npy::read_npy;
 pub use picture::{DEFAULT_MAX_PIXELS, Picture, read_picture, read_picture_rgba};
-pub use png::{BitDepth, encode_png, encode_png_rgba, from_rgb8, to_rgb8};
+pub(crate) use png::to_byte;
+pub use png::{BitDepth, encode_gray8, encode_gray16, encode_png, encode_png_rgba, from_rgb8, to_rgb8};
 pub(crate) use scene_json::read_text;
 pub use scene_json::{
     CapJson, CompletionJson, CompositingJson, DeviationsJson, DoubtJson, EdgeJson, EdgeLawJson, FillJson, INVISIBLE,

@@ -4,7 +4,7 @@ use dvp_core::dims::SizeError;
 use dvp_core::image::RgbaImage;
 use dvp_core::{Image, ImageSize, ImageView, Real, simd};
 use image::codecs::png::PngEncoder;
-use image::error::{LimitError, LimitErrorKind};
+use image::error::{LimitError, LimitErrorKind, ParameterError, ParameterErrorKind};
 use image::{ExtendedColorType, ImageEncoder, ImageError, RgbImage};
 
 use super::error::FormatError;
@@ -38,9 +38,7 @@ pub fn encode_png<T: Real>(image: ImageView<'_, T>, bits: BitDepth) -> Result<Ve
 pub fn encode_png_rgba<T: Real>(image: &RgbaImage<T>, bits: BitDepth) -> Result<Vec<u8>, FormatError> {
     let straight = image.to_straight();
     let (bytes, color): (Vec<u8>, _) = match bits {
-        BitDepth::Eight => {
-            (straight.iter().map(|&value| step(value, 255.0).to_le_bytes()[0]).collect(), ExtendedColorType::Rgba8)
-        }
+        BitDepth::Eight => (straight.iter().map(|&value| to_byte(value)).collect(), ExtendedColorType::Rgba8),
         BitDepth::Sixteen => {
             (straight.iter().flat_map(|&value| native(step(value, 65535.0))).collect(), ExtendedColorType::Rgba16)
         }
@@ -48,12 +46,39 @@ pub fn encode_png_rgba<T: Real>(image: &RgbaImage<T>, bits: BitDepth) -> Result<
     png(&bytes, image.size(), color)
 }
 
+/// The bytes of a gray PNG of 8 bits: one value per pixel, row by row.
+///
+/// # Errors
+/// [`FormatError::Encode`] if there are not as many values as pixels, or if a side is above 2^32.
+pub fn encode_gray8(pixels: &[u8], size: ImageSize) -> Result<Vec<u8>, FormatError> {
+    png(pixels, size, ExtendedColorType::L8)
+}
+
+/// The bytes of a gray PNG of 16 bits: one value per pixel, row by row.
+///
+/// # Errors
+/// As [`encode_gray8`].
+pub fn encode_gray16(pixels: &[u16], size: ImageSize) -> Result<Vec<u8>, FormatError> {
+    let bytes: Vec<u8> = pixels.iter().flat_map(|pixel| pixel.to_ne_bytes()).collect();
+    png(&bytes, size, ExtendedColorType::L16)
+}
+
 fn png(bytes: &[u8], size: ImageSize, color: ExtendedColorType) -> Result<Vec<u8>, FormatError> {
     let [width, height] = sides(size)?;
+    // The encoder panics at any other length.
+    if Some(bytes.len()) != size.pixels().checked_mul(usize::from(color.bits_per_pixel() / 8)) {
+        let source = ImageError::Parameter(ParameterError::from_kind(ParameterErrorKind::DimensionMismatch));
+        return Err(FormatError::Encode { source });
+    }
     let mut png = Vec::new();
     let written = PngEncoder::new(&mut png).write_image(bytes, width, height, color);
     written.map_err(|source| FormatError::Encode { source })?;
     Ok(png)
+}
+
+/// The nearest of the steps of 1/255 of a value, which is clamped to [0, 1].
+pub(crate) fn to_byte<T: Real>(value: T) -> u8 {
+    step(value, 255.0).to_le_bytes()[0]
 }
 
 /// The nearest of the steps 0 to `most` of a value from 0 to 1.

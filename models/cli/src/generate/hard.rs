@@ -1,12 +1,13 @@
 //! Scenes of hard geometry on a square picture: twins of one color and objects that leave the picture.
 
 use dvp_core::contour::{contains, signed_area};
-use dvp_core::{Object, Pose, Real, Scene};
+use dvp_core::shape::{OutlineBasis, REFERENCE_VERTICES};
+use dvp_core::{Drawing, Object, Pose, Real, Scene};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use crate::format::mdshr_bank;
-use crate::paint::{PaintError, Painter};
+use crate::paint::PaintError;
 
 /// Points per side at which it is asked how much of an object shows.
 const SIDE: usize = 128;
@@ -80,7 +81,8 @@ pub fn contrasting(rng: &mut ChaCha8Rng, other: [f32; 3]) -> [f32; 3] {
 
 /// Share of the first object's area that lies in the picture.
 fn visible_share(scene: &Scene<f32>) -> Result<f32, PaintError> {
-    let drawing = Painter::default().draw(scene)?;
+    let mut drawing = Drawing::default();
+    scene.draw(&OutlineBasis::new(REFERENCE_VERTICES, scene.harmonic_count())?, &mut drawing)?;
     let outline = drawing.outline(0);
     let center = |i: usize| (f32::of_usize(i) + 0.5) / f32::of_usize(SIDE);
     let seen = (0..SIDE * SIDE).filter(|&i| contains(outline, [center(i % SIDE), center(i / SIDE)])).count();

@@ -266,7 +266,7 @@ pub fn timed<R>(work: impl FnOnce() -> Result<R>) -> Result<(R, Duration)> {
 /// A descent of latents, or a network alone, as a fit that doubts what it leaves unexplained; with the time it took.
 fn fit_of(image: ImageView<'_, f32>, (found, cpu): (Optimum<f32>, Duration)) -> Result<(Fit<f32>, Duration)> {
     let painter = Painter::default();
-    let (drawing, painted) = (painter.draw(&found.scene)?, painter.paint(&found.scene, image.size())?);
+    let (drawing, painted) = (painter.draw(&found.scene, image.size())?, painter.paint(&found.scene, image.size())?);
     let fit = Fit {
         loss: f32::of(found.loss),
         steps: found.losses.len().saturating_sub(1),

@@ -41,7 +41,7 @@ impl<B: Backend> Dense<B> {
 impl<B: Backend> Paints for Dense<B> {
     fn paint(&mut self, picture: &Picture) -> Result<Sample> {
         let (truth, size) = (&picture.truth, picture.image.size());
-        let drawing = Painter::default().draw(truth)?;
+        let drawing = Painter::default().draw(truth, size)?;
         let (objects, vertices) = (drawing.object_count(), drawing.vertices.len() / drawing.object_count().max(1));
         let tensors = TensorDrawing {
             outlines: self.tensor(drawing.vertices.as_flattened(), &[1, objects, vertices, 2])?,

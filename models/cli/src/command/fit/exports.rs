@@ -37,7 +37,7 @@ pub(super) struct ExportArguments {
     /// Write STEM.labels.png: 0 the background, k the pixels where object k is seen
     #[arg(long)]
     labels: bool,
-    /// Write STEM.whole.png: the coverage of every object, hidden parts included, side by side
+    /// Write STEM.whole.png: the coverage of every object, hidden parts included, side by side; 2^28 pixels at most
     #[arg(long)]
     whole: bool,
     /// Write STEM.rois.zip: the outlines for the ROI Manager of ImageJ

@@ -115,7 +115,7 @@ fn fit(arguments: &Arguments, masks: &MaskInput) -> Result<MaskFit> {
         edge: EdgeProfile::area(),
         compositing: Compositing::Over,
     };
-    let (drawing, painted) = (Painter::default().draw(&scene)?, Painter::default().paint(&scene, size)?);
+    let (drawing, painted) = (Painter::default().draw(&scene, size)?, Painter::default().paint(&scene, size)?);
     let image = &picture.image;
     let mae = PixelLoss::Mae.value(ImagePair::new(painted.view(), image.view())?, &mut ())?;
     let fit = Fit::of_painted(scene, &drawing, &image.view(), painted.data());

@@ -3,7 +3,7 @@
 use core::f64::consts::TAU;
 
 use anyhow::Result;
-use dvp_core::{Object, Real, Scene};
+use dvp_core::{ImageSize, Object, Real, Scene};
 use dvp_fit::Ambiguity;
 use serde::Serialize;
 
@@ -53,14 +53,14 @@ pub(super) struct Stated(pub(super) [Within; 4]);
 impl Stated {
     /// Compares the poses of objects that are the same. Where shapes are free, so that a pose stands for nothing by itself,
     /// the center of the area and the root of the area stand for it, and rotations are left out.
-    pub(super) fn of(truth: &Scene<f32>, found: &Found, agreement: &Agreement) -> Result<Self> {
+    pub(super) fn of(truth: &Scene<f32>, found: &Found, agreement: &Agreement, size: ImageSize) -> Result<Self> {
         let fit = &found.fit;
         let mut stated = Self::default();
         if fit.covariance.is_empty() || fit.scene.objects.len() != found.there.objects.len() {
             return Ok(stated);
         }
         let painter = Painter::default();
-        let [truly, drawn] = [painter.draw(truth)?, painter.draw(&found.there)?];
+        let [truly, drawn] = [painter.draw(truth, size)?, painter.draw(&found.there, size)?];
         for (k, pair) in agreement.matches.iter().enumerate() {
             let Some(pair) = pair.filter(|pair| pair.iou >= SAME) else { continue };
             let Some(covariance) = fit.covariance.get(pair.found) else { continue };

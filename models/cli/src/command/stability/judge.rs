@@ -131,7 +131,7 @@ impl Verdict {
             cpu_ms,
             unexplained: found.fit.unexplained,
             stop: Some(found.fit.stop),
-            stated: Stated::of(&case.truth, found, &agreement)?,
+            stated: Stated::of(&case.truth, found, &agreement, size)?,
         })
     }
 }
@@ -157,7 +157,7 @@ fn errors(truth: &Scene<f32>, found: &Found, size: ImageSize) -> Result<(f64, f6
         let renderer = ContourRenderer::new(scene.edge, scene.compositing);
         let mut owned = Ownership::default();
         let rule = OwnershipRule::Seen(scene.compositing);
-        owned.fill_drawing(rule, &renderer, &painter.draw(scene)?, size, &mut Default::default())?;
+        owned.fill_drawing(rule, &renderer, &painter.draw(scene, size)?, size, &mut Default::default())?;
         Ok(owned)
     };
     let (truly, owned) = (owned(truth)?, owned(&found.there)?);

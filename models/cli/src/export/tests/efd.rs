@@ -1,4 +1,5 @@
 use super::*;
+use crate::export::efd::normal_form;
 
 /// An egg-like ring: harmonics 1 and 2, moved, turned, scaled.
 fn egg(angle: f64, scale: f64, start: usize) -> Region {

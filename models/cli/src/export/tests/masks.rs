@@ -1,4 +1,5 @@
 use super::*;
+use crate::paint::Painter;
 
 fn decoded(png: &[u8]) -> image::DynamicImage {
     image::load_from_memory(png).unwrap()
@@ -42,7 +43,27 @@ fn whole_objects_stand_side_by_side() {
 
 #[test]
 fn an_image_of_whole_objects_has_a_limit() {
-    let size = ImageSize::new(1 << 14, 1 << 14).unwrap();
+    let size = ImageSize::new(1 << 13, 1 << 13).unwrap();
     let error = whole_png(&scene(vec![frame(); 5]), size).unwrap_err().to_string();
     assert!(error.contains("5") && error.contains("4 of them"), "{error}");
+}
+
+#[test]
+fn pixels_that_are_missing_are_an_error() {
+    let size = ImageSize::new(3, 1).unwrap();
+    for labels in [&[0, 1][..], &[0, 256, 1, 2]] {
+        let error = label_map_png(labels, size).unwrap_err().to_string();
+        assert!(error.contains("PNG"), "{error}");
+    }
+}
+
+#[test]
+fn outlines_of_large_pictures_stray_by_no_more_than_those_of_small_ones() {
+    let size = ImageSize::new(4096, 4096).unwrap();
+    let drawing = Painter::default().draw(&scene(vec![disk([5.0, 5.0], 4.5)]), size).unwrap();
+    let outline = drawing.outline(0);
+    let middle = |(a, b): (&[f32; 2], &[f32; 2])| [0, 1].map(|i| (f64::from(a[i]) + f64::from(b[i])) / 2.0 - 0.5);
+    let off = outline.iter().zip(&outline[1..]).map(middle).map(|[x, y]| (x.hypot(y) - 0.45).abs() * 4096.0);
+    let farthest = off.fold(0.0, f64::max);
+    assert!(farthest > 0.0 && farthest < 1.05 / 128.0, "{farthest} px");
 }

@@ -8,6 +8,7 @@ use rand::RngExt;
 
 use super::Case;
 use super::base::{REACH, SIDE, case, narrow, random};
+use crate::command::options::square;
 use crate::format::mdshr_bank;
 use crate::generate::{self, contrasting};
 use crate::paint::Painter;
@@ -70,7 +71,7 @@ fn place(scene: &mut Scene<f32>, distance: f32, direction: f32) {
 
 /// Share of the first object behind the second one.
 fn hidden(scene: &Scene<f32>) -> Result<f64> {
-    let drawing = Painter::default().draw(scene)?;
+    let drawing = Painter::default().draw(scene, square(SIDE)?)?;
     let (mut area, mut behind) = (0_usize, 0_usize);
     let fine = 2 * SIDE;
     for at in 0..fine * fine {

@@ -37,11 +37,10 @@ fn every_level_makes_a_picture_of_its_own() {
 #[test]
 fn objects_that_are_apart_do_not_touch() {
     let (mut reach, painter) = (0.0_f32, Painter::default());
-    for count in [3, 50] {
-        let (scale, gap) = if count == 3 { (0.1, GAP) } else { (0.028, CROWD_GAP) };
+    for (count, scale, gap, side) in [(3, 0.1, GAP, 128), (50, 0.028, CROWD_GAP, 256)] {
         let scene = apart(&mut random(8), count, Range::new(scale, scale), gap);
         assert_eq!(scene.objects.len(), count);
-        let drawing = painter.draw(&scene).unwrap();
+        let drawing = painter.draw(&scene, ImageSize::new(side, side).unwrap()).unwrap();
         for (k, object) in scene.objects.iter().enumerate() {
             let [x, y] = object.pose.translation;
             for vertex in drawing.outline(k) {
@@ -64,7 +63,7 @@ fn so_much_is_hidden_as_the_level_says() {
             let seen = |scene: &Scene<f32>| {
                 let agreement = Agreement::of(scene, scene, size).unwrap();
                 assert_eq!(agreement.expected(), 2);
-                let drawing = Painter::default().draw(scene).unwrap();
+                let drawing = Painter::default().draw(scene, size).unwrap();
                 let fine = 1.0 / 256.0;
                 let points = (0..65536).map(|i| [(i % 256) as f32 * fine, (i / 256) as f32 * fine]);
                 let rear = points.filter(|&p| contains(drawing.outline(0), p) && !contains(drawing.outline(1), p));
