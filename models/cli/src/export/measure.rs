@@ -54,13 +54,18 @@ pub struct MeasuredObject {
 }
 
 /// Standard deviations of measures, from the covariance of the pose: what the noise of the picture does to position, size
-/// and angle of a shape that is as it was found.
+/// and angle of a shape that is as it was found. Every length changes with the size in the same ratio; bounds, which change with the
+/// angle in ways of their own, and colors have none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Deviations {
     /// Of the coordinates of the centroid, px.
     pub centroid: [f64; 2],
     /// Of the area, px^2.
     pub area: f64,
+    /// Of the perimeter, px.
+    pub perimeter: f64,
+    /// Of the lengths of the longer and the shorter axis, px.
+    pub axes: [f64; 2],
     /// Of the angle, degrees.
     pub angle: f64,
 }
@@ -111,16 +116,16 @@ pub fn measure(
         let region = Region::new(&outline).map_err(refused)?;
         let prototype = object.prototype().map(|index| prototype_name(bank, index));
         let moments = region.moments().map_err(refused)?;
+        let measured = measured(object, region, moments);
         let pose_covariance = covariance.get(k).map(|covariance| covariance.map(f64::from));
-        let deviations = pose_covariance
-            .zip(moments)
-            .map(|(covariance, moments)| Deviations::of(&covariance, &object.pose, &moments, unit));
+        let deviations =
+            pose_covariance.and_then(|covariance| Deviations::of(&covariance, &object.pose, &measured, unit));
         objects.push(MeasuredObject {
             number,
             prototype,
             deviations: deviations.filter(Deviations::are_finite),
             visible: moments.map_or(0.0, |moments| (seen / moments.area).clamp(0.0, 1.0)),
-            ..measured(object, region, moments)
+            ..measured
         });
     }
     Ok(objects)
@@ -147,8 +152,9 @@ fn measured(object: &Object<f64>, region: Region, moments: Option<Moments<f64>>)
 }
 
 impl Deviations {
-    /// From the covariance of (x, y, log scale, rotation), row by row, positions in scene units.
-    fn of(covariance: &[f64; 16], pose: &Pose<f64>, moments: &Moments<f64>, unit: f64) -> Self {
+    /// From the covariance of (x, y, log scale, rotation), row by row, positions in scene units; none for what encloses nothing.
+    fn of(covariance: &[f64; 16], pose: &Pose<f64>, object: &MeasuredObject, unit: f64) -> Option<Self> {
+        let (moments, axes) = (object.moments?, object.axes?);
         let [dx, dy] = [0, 1].map(|axis| moments.centroid[axis] / unit - pose.translation[axis]);
         // How a coordinate of the centroid moves with each number of the pose.
         let moves = [[1.0, 0.0, dx, -dy], [0.0, 1.0, dy, dx]];
@@ -158,11 +164,21 @@ impl Deviations {
         };
         let [scale, rotation] = [[0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]].map(|by| variance(by).sqrt());
         let centroid = moves.map(|by| variance(by).sqrt() * unit);
-        Self { centroid, area: 2.0 * moments.area * scale, angle: rotation.to_degrees() }
+        Some(Self {
+            centroid,
+            area: 2.0 * moments.area * scale,
+            perimeter: object.perimeter * scale,
+            axes: [axes.major, axes.minor].map(|length| length * scale),
+            angle: rotation.to_degrees(),
+        })
     }
 
     fn are_finite(&self) -> bool {
-        self.centroid.iter().chain([&self.area, &self.angle]).all(|value| value.is_finite())
+        self.centroid
+            .iter()
+            .chain(&self.axes)
+            .chain([&self.area, &self.perimeter, &self.angle])
+            .all(|value| value.is_finite())
     }
 }
 

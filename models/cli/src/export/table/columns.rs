@@ -71,7 +71,7 @@ impl Unit {
 type Field = (&'static str, Kind, Unit, fn(&Row<'_>) -> Cell);
 
 /// What is told of every object; what has a length or an area is told once more in mm if the scale is known.
-const FIELDS: [Field; 27] = [
+const FIELDS: [Field; 30] = [
     ("picture", Kind::Text, Unit::None, |row| Cell::Text(row.picture.picture.clone())),
     ("stem", Kind::Text, Unit::None, |row| Cell::Text(row.picture.stem.clone())),
     ("object", Kind::Count, Unit::None, |row| row.of(|object| Some(Cell::Count(object.number.into())))),
@@ -100,6 +100,9 @@ const FIELDS: [Field; 27] = [
     ("centroid_x_sd", Kind::Number, Unit::Length, |row| row.number(|object| Some(object.deviations?.centroid[0]))),
     ("centroid_y_sd", Kind::Number, Unit::Length, |row| row.number(|object| Some(object.deviations?.centroid[1]))),
     ("area_sd", Kind::Number, Unit::Area, |row| row.number(|object| Some(object.deviations?.area))),
+    ("perimeter_sd", Kind::Number, Unit::Length, |row| row.number(|object| Some(object.deviations?.perimeter))),
+    ("major_axis_sd", Kind::Number, Unit::Length, |row| row.number(|object| Some(object.deviations?.axes[0]))),
+    ("minor_axis_sd", Kind::Number, Unit::Length, |row| row.number(|object| Some(object.deviations?.axes[1]))),
     ("angle_sd_deg", Kind::Number, Unit::None, |row| {
         row.number(|object| object.angle.and(object.deviations).map(|deviations| deviations.angle))
     }),

@@ -98,6 +98,10 @@ fn standard_deviations_follow_the_pose() {
     let y = 10.0 * (0.002_f64.powi(2) + (0.1_f64 * 0.01).powi(2) + (0.2_f64 * 0.1).powi(2)).sqrt();
     assert!(close(deviations.centroid[0], x, 5) && close(deviations.centroid[1], y, 5), "{deviations:?}");
     assert!(close(deviations.area, 2.0 * 8.0 * 0.01, 5) && close(deviations.angle, 0.1_f64.to_degrees(), 4));
+    // The axes of a rectangle are its sides times 2 / sqrt 3; lengths change as the scale does, by 1 %.
+    let [major, minor] = [4.0, 2.0].map(|side| side * 2.0 / 3.0_f64.sqrt() * 0.01);
+    assert!(close(deviations.axes[0], major, 5) && close(deviations.axes[1], minor, 5), "{deviations:?}");
+    assert!(close(deviations.perimeter, 12.0 * 0.01, 5), "{deviations:?}");
 }
 
 #[test]

@@ -8,13 +8,14 @@ fn a_row_per_object_and_one_per_failure() {
     assert_eq!(lines.len(), 4, "{text}");
     let head = "picture,stem,object,kind,prototype,centroid_x_px,centroid_y_px,area_px2,perimeter_px,circularity,\
         major_axis_px,minor_axis_px,angle_deg,bounds_x_px,bounds_y_px,bounds_width_px,bounds_height_px,red,green,blue,color,\
-        confidence,visible,centroid_x_sd_px,centroid_y_sd_px,area_sd_px2,angle_sd_deg,error";
+        confidence,visible,centroid_x_sd_px,centroid_y_sd_px,area_sd_px2,perimeter_sd_px,\
+        major_axis_sd_px,minor_axis_sd_px,angle_sd_deg,error";
     assert_eq!(lines[0], head);
     assert!(lines[1].starts_with("a b.png,a b,1,polygon,,"), "{}", lines[1]);
     assert!(lines[1].contains(",255,0,51,#ff0033,1,"), "{}", lines[1]);
-    assert!(lines[1].ends_with(",,,,,"), "no fit, no deviations, no error: {}", lines[1]);
+    assert!(lines[1].ends_with(",,,,,,,,"), "no fit, no deviations, no error: {}", lines[1]);
     assert!(lines[2].starts_with("a b.png,a b,2,circle,,5,5,"), "{}", lines[2]);
-    assert_eq!(lines[3], format!("x.png,x{},\"x.png: no \"\"image\"\"\"", ",".repeat(25)));
+    assert_eq!(lines[3], format!("x.png,x{},\"x.png: no \"\"image\"\"\"", ",".repeat(28)));
     assert_eq!(lines[3].matches(',').count(), head.matches(',').count());
 }
 
