@@ -13,8 +13,8 @@ scikit-image, roifile, pycocotools, shapely, pyarrow, pandas and pyefd:
 
     python tests/interop/check_exports.py [--dvp target/release/dvp]
 
-The program must be built with `--features parquet`. What a missing package would check is skipped, loudly, and the exit code is 2;
-1 means that a check failed.
+The program must be built with `--features parquet`. All packages are needed: where one is missing nothing is checked, which is
+said, and the exit code is 2; 1 means that a check failed.
 """
 
 import argparse
