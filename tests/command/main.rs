@@ -7,6 +7,7 @@ mod bad_input;
 mod chart;
 mod edges;
 mod evaluate;
+mod exports;
 mod fit;
 mod generate;
 mod gradients;

@@ -2,11 +2,12 @@
 //!
 //! The map of `STEM.png` is `STEM.labels.png` beside it, a PNG of the same size. Gray of up to 16 bits: 0 is the
 //! background, k the pixels where object k is seen. Colors of 8 bits (a palette mostly): black is the background, pixels of
-//! one color are one object. Names of labels mean nothing beyond that. Any other lossless file under that name is read
-//! as well.
+//! one color are one object, numbered from 1 in the order in which they come. Numbers of labels mean nothing beyond that.
+//! Any other lossless file under that name is read as well.
 //!
 //! Other programs write theirs as TIFF, with whole numbers or floats of up to 64 bits: the first page of those is read too.
 
+use alloc::collections::BTreeMap;
 use std::fs::File;
 use std::io::{BufReader, Read as _, Seek as _};
 use std::path::{Path, PathBuf};
@@ -35,7 +36,8 @@ pub(super) fn is_label_map(path: &Path) -> bool {
     path.file_name().and_then(|name| name.to_str()).is_some_and(|name| name.ends_with(&format!(".{ENDING}")))
 }
 
-/// Reads a label map of at most `max_pixels` pixels: one label per pixel, row by row, 0 for the background.
+/// Reads a label map of at most `max_pixels` pixels: one label per pixel, row by row, 0 for the background. Colors other than black
+/// are numbered from 1 in the order in which they come.
 ///
 /// # Errors
 /// As [`read_picture`](super::read_picture), [`FormatError::Labels`] for pixels that are neither gray nor plain colors, or
@@ -49,7 +51,14 @@ pub fn read_labels(path: &Path, max_pixels: usize) -> Result<(ImageSize, Vec<u32
         DynamicImage::ImageLuma8(gray) => gray.into_raw().into_iter().map(u32::from).collect(),
         DynamicImage::ImageLuma16(gray) => gray.into_raw().into_iter().map(u32::from).collect(),
         DynamicImage::ImageRgb8(colors) => {
-            colors.pixels().map(|&image::Rgb([r, g, b])| u32::from_be_bytes([0, r, g, b])).collect()
+            let (mut numbers, mut last) = (BTreeMap::from([([0; 3], 0)]), 0);
+            let mut number = |color| {
+                *numbers.entry(color).or_insert_with(|| {
+                    last += 1;
+                    last
+                })
+            };
+            colors.pixels().map(|pixel| number(pixel.0)).collect()
         }
         other => return Err(FormatError::Labels { path: path.to_path_buf(), found: other.color() }),
     };

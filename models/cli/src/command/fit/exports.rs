@@ -20,6 +20,9 @@ use crate::format::write_atomic;
 #[command(next_help_heading = "Measurements and files for other programs")]
 pub(super) struct ExportArguments {
     /// Table of all objects, a row each, of all pictures: .csv or .parquet
+    ///
+    /// Columns that end in _sd tell standard deviations, from what the noise of the picture does to position, size and angle
+    /// of the shape as it was found. Bounds and colors have none.
     #[arg(long, value_name = "FILE")]
     table: Option<PathBuf>,
     /// Size of a pixel, 0.12mm/px or 8.5px/mm: the table tells lengths and areas in mm as well
@@ -47,6 +50,9 @@ pub(super) struct ExportArguments {
     #[arg(long)]
     geojson: bool,
 }
+
+/// A file of a picture: what its name ends with, and its bytes.
+pub(super) type PictureFile = (&'static str, Vec<u8>);
 
 /// A scene, and what is known of it.
 #[derive(Debug)]
@@ -108,13 +114,12 @@ impl ExportArguments {
         files.into_iter().filter_map(|(is_asked, ending)| is_asked.then_some(ending))
     }
 
-    /// Writes the files of a picture, which `target` names by their ending; returns what the files of all pictures are to tell
-    /// of it.
-    pub(super) fn write_picture(
+    /// Adds the files of a picture; returns what the files of all pictures are to tell of it.
+    pub(super) fn of_picture(
         &self,
         of: &Measurable<'_>,
         [picture, stem]: [&str; 2],
-        target: impl Fn(&str) -> PathBuf,
+        files: &mut Vec<PictureFile>,
     ) -> Result<Option<MeasuredPicture>> {
         let Measurable { fit: Fit { scene, covariance, .. }, bank, size, .. } = *of;
         let numbers = of.numbers();
@@ -131,7 +136,7 @@ impl ExportArguments {
                 ("geojson", Some(measured)) => geojson(measured, self.scale)?,
                 _ => continue,
             };
-            write_atomic(&target(ending), &bytes)?;
+            files.push((ending, bytes));
         }
         Ok(measured)
     }
@@ -156,19 +161,19 @@ impl ExportArguments {
     }
 }
 
-/// Refuses to write over a picture that is read, and to write two files of the run under one name.
+/// Refuses to write over what is kept, and to write two files of the run under one name.
 pub(super) fn refuse_overwriting(
-    pictures: impl Iterator<Item = impl AsRef<Path>>,
+    kept: impl Iterator<Item = impl AsRef<Path>>,
     of_pictures: impl Iterator<Item = PathBuf>,
     of_run: impl Iterator<Item = impl AsRef<Path>>,
 ) -> Result<()> {
-    let pictures: BTreeSet<PathBuf> = pictures.filter_map(|path| path.as_ref().canonicalize().ok()).collect();
+    let kept: BTreeSet<PathBuf> = kept.filter_map(|path| path.as_ref().canonicalize().ok()).collect();
     let mut written = BTreeSet::new();
     let targets = of_pictures.chain(of_run.map(|path| path.as_ref().to_path_buf()));
     for target in targets {
-        if target.canonicalize().is_ok_and(|target| pictures.contains(&target)) {
+        if target.canonicalize().is_ok_and(|target| kept.contains(&target)) {
             bail!(
-                "{} would be replaced by what is made of it; choose another --out, or leave this file away (the reconstruction: --no-png)",
+                "{} is a picture or a label map of the input and would be replaced; choose another --out, or leave this file away (the reconstruction: --no-png)",
                 target.display()
             );
         }
@@ -184,7 +189,7 @@ pub(super) fn measured(reports: &mut [Report]) -> Vec<MeasuredPicture> {
     let of = |report: &mut Report| {
         let found = report.found.as_mut().and_then(|found| found.measured.take());
         found.unwrap_or_else(|| MeasuredPicture {
-            picture: report.path.clone(),
+            picture: report.picture.clone(),
             stem: report.stem.clone(),
             found: Err(report.error.clone().unwrap_or_default()),
         })

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail};
+use dvp_core::image::RgbaImage;
 use dvp_core::loss::{ImagePair, Loss as _};
 use dvp_core::render::{Compositing, EdgeProfile, PixelLoss};
 use dvp_core::{Image, Object, Real as _, Scene};
@@ -13,7 +14,7 @@ use super::exports::Measurable;
 use super::inputs::{self, Input};
 use super::report::{FoundScene, Report};
 use super::{Arguments, finish, refuse_overwriting, report_of};
-use crate::format::{BitDepth, Picture, read_labels, read_picture};
+use crate::format::{BitDepth, Picture, read_labels, read_picture, read_picture_rgba};
 use crate::method::timed;
 use crate::paint::{PaintScratch, Painter};
 
@@ -24,6 +25,13 @@ struct MaskInput {
     picture: Option<PathBuf>,
 }
 
+impl MaskInput {
+    /// The picture that the objects are on; without one the label map stands for it.
+    fn picture_name(&self) -> String {
+        self.picture.as_ref().map_or_else(|| self.input.name(), |picture| picture.display().to_string())
+    }
+}
+
 /// What came of every label map, and of what led to none.
 pub(super) fn fit_all(arguments: &Arguments, masks: &Path) -> Result<(Vec<Report>, Vec<String>)> {
     let (found, failures) = find(masks, &arguments.pictures)?;
@@ -31,7 +39,7 @@ pub(super) fn fit_all(arguments: &Arguments, masks: &Path) -> Result<(Vec<Report
     refuse_overwriting(arguments, found.iter().map(|masks| &masks.input), pictures)?;
     let name = |masks: &MaskInput| masks.input.name();
     let one = |scratch: &mut PaintScratch<f32>, _: usize, masks: &MaskInput| {
-        report_of(&masks.input, try_fit(arguments, masks, scratch))
+        report_of(&masks.input, masks.picture_name(), try_fit(arguments, masks, scratch))
     };
     Ok((arguments.batch.each(&found, name, one)?, failures))
 }
@@ -39,11 +47,11 @@ pub(super) fn fit_all(arguments: &Arguments, masks: &Path) -> Result<(Vec<Report
 fn try_fit(arguments: &Arguments, masks: &MaskInput, scratch: &mut PaintScratch<f32>) -> Result<FoundScene> {
     let (MaskFit { fit, picture, labels }, time) = timed(|| fit(arguments, masks))?;
     let scene = Measurable::of_labels(&fit, picture.image.size(), &labels);
-    finish(arguments, &masks.input, &picture, &scene, time, scratch)
+    finish(arguments, [&*masks.picture_name(), &masks.input.stem], &picture, &scene, time, scratch)
 }
 
 /// The label maps that `masks` names, with their pictures among `pictures`: with the only one if there is one label map, else
-/// with that whose stem begins the stem of the label map.
+/// with the longest stem that begins the stem of the label map.
 fn find(masks: &Path, pictures: &[PathBuf]) -> Result<(Vec<MaskInput>, Vec<String>)> {
     if masks.is_dir() {
         bail!("{}: --masks takes a file or a pattern, such as '{0}/*.tif'", masks.display());
@@ -55,8 +63,8 @@ fn find(masks: &Path, pictures: &[PathBuf]) -> Result<(Vec<MaskInput>, Vec<Strin
     let mut found = Vec::new();
     for input in named {
         let stem = lossy_stem(&input.path);
-        let begins = pictures.paths.iter().filter(|path| alone || stem.starts_with(&lossy_stem(path)));
-        let picture = begins.max_by_key(|path| lossy_stem(path).len()).cloned();
+        let candidates = pictures.paths.iter().filter(|path| alone || begins(&stem, &lossy_stem(path)));
+        let picture = candidates.max_by_key(|path| lossy_stem(path).len()).cloned();
         if picture.is_none() && !pictures.paths.is_empty() {
             failures
                 .push(format!("{}: none of the pictures has a name that this one begins with", input.path.display()));
@@ -65,6 +73,12 @@ fn find(masks: &Path, pictures: &[PathBuf]) -> Result<(Vec<MaskInput>, Vec<Strin
         }
     }
     Ok((found, failures))
+}
+
+/// Whether the stem of a label map begins with that of a picture, and with no other word: `cell10_mask` with `cell10`, not with
+/// `cell1`.
+fn begins(stem: &str, picture: &str) -> bool {
+    stem.strip_prefix(picture).is_some_and(|rest| !rest.starts_with(char::is_alphanumeric))
 }
 
 fn lossy_stem(path: &Path) -> String {
@@ -94,7 +108,8 @@ fn fit(arguments: &Arguments, masks: &MaskInput) -> Result<MaskFit> {
                     [read.image.size(), size].map(|size| format!("{} x {}", size.width(), size.height()));
                 bail!("{}: has {wanted} pixels, its picture {} has {found}", path.display(), picture.display());
             }
-            let colors = means(&read.image, &labels, owner, known.len());
+            let alpha = read_picture_rgba(picture, arguments.batch.max_pixels)?;
+            let colors = means(&read, &alpha, &labels, owner, known.len());
             (read, colors)
         }
         None => {
@@ -110,7 +125,7 @@ fn fit(arguments: &Arguments, masks: &MaskInput) -> Result<MaskFit> {
         .map(|(LabelOutline { shape, pose, .. }, &color)| Object { shape, pose, paint: color.into(), confidence: 1.0 });
     let scene = Scene {
         background: colors[0],
-        transparent: false,
+        transparent: picture.transparent,
         objects: objects.collect(),
         edge: EdgeProfile::area(),
         compositing: Compositing::Over,
@@ -122,13 +137,32 @@ fn fit(arguments: &Arguments, masks: &MaskInput) -> Result<MaskFit> {
     Ok(MaskFit { fit: Fit { loss: mae, stop: StopReason::Converged, ..fit }, picture, labels: known[1..].to_vec() })
 }
 
-/// The mean color of the pixels of each owner; white for none.
-fn means(image: &Image<f32>, labels: &[u32], owner: impl Fn(&u32) -> usize, owners: usize) -> Vec<[f32; 3]> {
+/// The mean color of the pixels of each owner, by their alpha; white for none. The background of a transparent picture is the color
+/// that the picture was put over.
+fn means(
+    picture: &Picture<f32>,
+    alpha: &RgbaImage<f32>,
+    labels: &[u32],
+    owner: impl Fn(&u32) -> usize,
+    owners: usize,
+) -> Vec<[f32; 3]> {
     let mut sums = vec![([0.0_f64; 3], 0.0_f64); owners];
+    let mut add = |owner: usize, values: [f32; 3], weight: f32| {
+        let (sum, total) = &mut sums[owner];
+        *total += f64::from(weight);
+        sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += f64::from(value));
+    };
     for (pixel, label) in labels.iter().enumerate() {
-        let (sum, count) = &mut sums[owner(label)];
-        *count += 1.0;
-        sum.iter_mut().zip(image.view().pixel(pixel)).for_each(|(sum, value)| *sum += f64::from(value));
+        // Colors come times their alpha.
+        let [red, green, blue, alpha] = [0, 1, 2, 3].map(|c| alpha.data()[c * labels.len() + pixel]);
+        let (seen, owner) = ([red, green, blue], owner(label));
+        if owner > 0 || !picture.transparent {
+            add(owner, seen, alpha);
+        }
+        if picture.transparent {
+            let mixed = picture.image.view().pixel(pixel);
+            add(0, [0, 1, 2].map(|c| mixed[c] - seen[c]), 1.0 - alpha);
+        }
     }
     #[expect(clippy::cast_possible_truncation, reason = "colors in [0, 1]")]
     let mean = |(sum, count): ([f64; 3], f64)| sum.map(|sum| if count > 0.0 { (sum / count) as f32 } else { 1.0 });

@@ -14,13 +14,15 @@ use clap::Args;
 use dvp_core::render::Compositing;
 use dvp_fit::FitOptions;
 
-use self::exports::{ExportArguments, Measurable};
+use self::exports::{ExportArguments, Measurable, PictureFile};
 use self::inputs::Input;
 use self::report::{FoundScene, Report};
 use self::solver::{Method, Scratch, Solver, Start};
 use super::options::{BankChoice, BatchArguments, CompositingName};
 use super::{Console, Outcome, in_words};
-use crate::format::{Picture, Place, SceneJson, encode_png, encode_png_rgba, read_npy, read_picture, write_atomic};
+use crate::format::{
+    Picture, Place, SceneJson, encode_png, encode_png_rgba, labels_beside, read_npy, read_picture, write_atomic,
+};
 use crate::method::load_network;
 use crate::paint::{PaintScratch, Painter};
 use crate::svg::to_svg;
@@ -40,9 +42,15 @@ pub(super) struct Arguments {
     /// Pictures, folders of pictures, patterns, NumPy files (.npy) of float pixels
     #[arg(required_unless_present = "masks", value_name = "PICTURES")]
     pictures: Vec<PathBuf>,
-    /// Outlines of another program's masks instead: a label map (gray PNG or TIFF, 0 the background), or a pattern; PICTURES, if any,
-    /// give the colors
-    #[arg(long, value_name = "LABELS", conflicts_with_all = ["bank", "method", "max_objects", "start", "model", "compositing"])]
+    /// Outlines of another program's masks instead: a label map, or a pattern; PICTURES, if any, give the colors
+    ///
+    /// A label map is a gray PNG or TIFF, 0 the background. Colors of 8 bits (a palette mostly) are labels as well: black is the
+    /// background, the others are numbered from 1 in the order in which they come, row by row.
+    ///
+    /// One label map goes with one picture. Of several, each goes with the picture whose name its own begins with:
+    /// cell1_mask.tif with cell1.png, and cell10_mask.tif with cell10.png.
+    #[arg(long, value_name = "LABELS")]
+    #[arg(conflicts_with_all = ["bank", "method", "max_objects", "objects", "start", "model", "seed", "compositing"])]
     masks: Option<PathBuf>,
     /// Folder to write to
     #[arg(long, short, value_name = "DIR")]
@@ -113,8 +121,8 @@ impl Arguments {
         scenes.chain(self.exports.endings())
     }
 
-    fn target(&self, input: &Input, ending: &str) -> PathBuf {
-        self.out.join(format!("{}.{ending}", input.stem))
+    fn target(&self, stem: &str, ending: &str) -> PathBuf {
+        self.out.join(format!("{stem}.{ending}"))
     }
 }
 
@@ -184,23 +192,25 @@ fn fit_all(arguments: &Arguments) -> Result<(Vec<Report>, Vec<String>)> {
     Ok((arguments.batch.each(&inputs, Input::name, fit)?, failures))
 }
 
-/// What is written must not replace what is read.
+/// What is written must not replace what is read, nor the label maps beside it, which are the truth of these pictures.
 fn refuse_overwriting<'a>(
     arguments: &Arguments,
     inputs: impl Iterator<Item = &'a Input> + Clone,
-    also_read: impl Iterator<Item = &'a PathBuf>,
+    also_read: impl Iterator<Item = &'a PathBuf> + Clone,
 ) -> Result<()> {
     let exports = &arguments.exports;
-    let files = |input| arguments.endings().map(move |ending| arguments.target(input, ending));
+    let files = |input: &'a Input| arguments.endings().map(move |ending| arguments.target(&input.stem, ending));
     let read = inputs.clone().map(|input| &input.path).chain(also_read);
-    exports::refuse_overwriting(read, inputs.flat_map(files), exports.run_files())
+    let kept = read.clone().cloned().chain(read.filter_map(|path| labels_beside(path)));
+    exports::refuse_overwriting(kept, inputs.flat_map(files), exports.run_files())
 }
 
 fn fit_one(arguments: &Arguments, solver: &Solver, stacks: &[Stack], input: &Input, scratch: &mut Scratch) -> Report {
-    report_of(input, try_fit(arguments, solver, stacks, input, scratch))
+    report_of(input, input.name(), try_fit(arguments, solver, stacks, input, scratch))
 }
 
-fn report_of(input: &Input, result: Result<FoundScene>) -> Report {
+/// What came of an input; `picture` is what tables and data sets call the picture that its objects are on.
+fn report_of(input: &Input, picture: String, result: Result<FoundScene>) -> Report {
     let path = input.name();
     let (found, error) = match result {
         Ok(found) => (Some(found), None),
@@ -209,7 +219,7 @@ fn report_of(input: &Input, result: Result<FoundScene>) -> Report {
             (None, Some(if text.starts_with(&path) { text } else { format!("{path}: {text}") }))
         }
     };
-    Report { path, stem: input.stem.clone(), error, found }
+    Report { path, picture, stem: input.stem.clone(), error, found }
 }
 
 fn try_fit(
@@ -231,22 +241,26 @@ fn try_fit(
     // A transparent picture has no background; the one that was fitted is the color that the picture was put over.
     fit.scene.transparent = picture.transparent;
     let scene = Measurable::new(&fit, solver.bank(), picture.image.size());
-    finish(arguments, input, picture, &scene, time, &mut scratch.paint)
+    finish(arguments, [&*input.name(), &input.stem], picture, &scene, time, &mut scratch.paint)
 }
 
-/// Writes what is asked for of a scene, and says what it is.
+/// Writes what is asked for of a scene, and says what it is. It has two names: that of its picture and the stem of its files.
 fn finish(
     arguments: &Arguments,
-    input: &Input,
+    names: [&str; 2],
     picture: &Picture<f32>,
     scene: &Measurable<'_>,
     time: Duration,
     scratch: &mut PaintScratch<f32>,
 ) -> Result<FoundScene> {
-    write_results(arguments, scene, picture, input, scratch)?;
-    let target = |ending: &str| arguments.target(input, ending);
+    let target = |ending: &str| arguments.target(names[1], ending);
     let mut found = FoundScene::new(scene.fit, picture, time.as_secs_f64() * 1e3);
-    found.measured = arguments.exports.write_picture(scene, [&*input.name(), &input.stem], target)?;
+    // Nothing is written unless all can be.
+    let mut files = encode_results(arguments, scene, picture, &target("json"), scratch)?;
+    found.measured = arguments.exports.of_picture(scene, names, &mut files)?;
+    for (ending, bytes) in files {
+        write_atomic(&target(ending), &bytes)?;
+    }
     Ok(found)
 }
 
@@ -254,18 +268,18 @@ fn stack_picture<'a>(stacks: &'a [Stack], path: &Path, frame: usize) -> Option<&
     stacks.iter().find(|(stack, _)| stack == path).and_then(|(_, pictures)| pictures.get(frame))
 }
 
-fn write_results(
+/// The scene file, which is to be called `json`, the SVG and the reconstruction.
+fn encode_results(
     arguments: &Arguments,
     &Measurable { fit, bank, size, .. }: &Measurable<'_>,
     picture: &Picture<f32>,
-    input: &Input,
+    json: &Path,
     scratch: &mut PaintScratch<f32>,
-) -> Result<()> {
-    let target = arguments.target(input, "json");
-    let json = SceneJson::from_fit(fit, picture)?;
-    write_atomic(&target, (json.to_line(&Place::file(&target))? + "\n").as_bytes())?;
+) -> Result<Vec<PictureFile>> {
+    let line = SceneJson::from_fit(fit, picture)?.to_line(&Place::file(json))? + "\n";
+    let mut files = vec![("json", line.into_bytes())];
     if !arguments.no_svg {
-        write_atomic(&arguments.target(input, "svg"), to_svg(&fit.scene, size, bank)?.as_bytes())?;
+        files.push(("svg", to_svg(&fit.scene, size, bank)?.into_bytes()));
     }
     if !arguments.no_png {
         let painter = Painter::default();
@@ -274,7 +288,7 @@ fn write_results(
         } else {
             encode_png(painter.paint_in(&fit.scene, size, scratch)?.view(), picture.bits)?
         };
-        write_atomic(&arguments.target(input, "png"), &bytes)?;
+        files.push(("png", bytes));
     }
-    Ok(())
+    Ok(files)
 }

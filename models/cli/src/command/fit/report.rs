@@ -17,6 +17,9 @@ const MOST_ROWS: usize = 25;
 #[derive(Debug, Serialize)]
 pub(super) struct Report {
     pub(super) path: String,
+    /// What tables and data sets call the picture that its objects are on.
+    #[serde(skip)]
+    pub(super) picture: String,
     pub(super) stem: String,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) error: Option<String>,
