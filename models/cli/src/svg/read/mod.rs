@@ -10,6 +10,7 @@
 //! | `references` | document | whether it is small enough with all its uses |
 //! | `numbers` | element | whether its numbers are small enough |
 //! | `walk` | usvg's tree | objects |
+//! | `forms` | document | elements of the paths that usvg hands on without an id |
 //! | `figure` | element | what it draws, in its own numbers |
 //! | `path_data` | path data | rings of lines, arcs and cubics |
 //! | `place` | figure, transform | shape and pose |
@@ -22,6 +23,7 @@
 mod clip;
 mod error;
 mod figure;
+mod forms;
 mod losses;
 mod numbers;
 mod paint;
@@ -78,7 +80,7 @@ pub fn from_svg(text: &str) -> Result<SvgDrawing, SvgError> {
     let (width, height) = (tree.size().width(), tree.size().height());
     let size = whole(width, height).map_err(|_| SvgError::Size { width, height, limit: LONGEST_PX })?;
     let unit = f64::of_usize(size.unit_px());
-    let mut walk = Walk::new(source::by_id(&document), 1.0 / unit);
+    let mut walk = Walk::new(&document, 1.0 / unit);
     walk.group(tree.root(), &Inherited::default())?;
     let Walk { mut objects, mut losses, .. } = walk;
     unseen(&document, &mut losses);

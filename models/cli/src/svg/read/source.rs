@@ -70,17 +70,18 @@ pub(super) fn parse(text: &str) -> Result<Document<'_>, SvgError> {
     Ok(Document::parse_with_options(text, options)?)
 }
 
-/// The elements that draw, by their ids; ids that several elements have are left out.
+/// The elements that draw, by their ids; empty ones, and those that several elements have, are left out.
 pub(super) fn by_id<'a, 'input>(document: &'a Document<'input>) -> HashMap<&'a str, Node<'a, 'input>> {
     let mut found: HashMap<&str, Option<Node<'_, '_>>> = HashMap::new();
     for node in document.descendants().filter(Node::is_element) {
-        if let Some(id) = node.attribute("id") {
+        if let Some(id) = node.attribute("id").filter(|id| !id.is_empty()) {
             found.entry(id).and_modify(|node| *node = None).or_insert(Some(node));
         }
     }
     found.into_iter().filter_map(|(id, node)| Some((id, node.filter(|node| is_shape(*node))?))).collect()
 }
 
-fn is_shape(node: Node<'_, '_>) -> bool {
+/// Whether an element draws.
+pub(super) fn is_shape(node: Node<'_, '_>) -> bool {
     node.is_element() && SHAPES.contains(&node.tag_name().name())
 }

@@ -159,12 +159,47 @@ fn styles_uses_and_groups_are_resolved() {
     let copies =
         objects("<defs><rect id='r' width='5' height='5'/></defs><use href='#r' x='10'/><use href='#r' y='20'/>");
     assert_eq!(copies.len(), 2, "{copies:?}");
+    assert!(copies.iter().all(|copy| copy.shape.kind() == "rectangle"), "{copies:?}");
     assert!(
         read("<circle r='5' visibility='hidden'/><circle r='5' display='none'/>").unwrap().scene.objects.is_empty()
     );
     assert_eq!(objects("<g opacity='.5'><circle r='5'/><circle cx='50' r='5'/></g>")[1].confidence, 0.5);
     let overlap = read("<g opacity='.5'><circle r='5'/><circle r='5'/></g>").unwrap();
     assert!(overlap.losses.to_string().starts_with("opacity of a group"), "{}", overlap.losses);
+}
+
+#[test]
+fn what_is_used_keeps_its_kind() {
+    let shapes = "<circle cx='5%' r='5.1'/><ellipse rx='5' ry='4'/><rect width='5' height='4' rx='1'/>\
+         <polygon points='0,0 7 0 0 7'/><path d='M0 0a5 5 0 0 1 10 0z'/><path d='M0 0l9 0' stroke='red'/>";
+    let kinds = |body: &str| objects(body).iter().map(|object| object.shape.kind()).collect::<Vec<_>>();
+    let expected = ["circle", "ellipse", "rectangle", "polygon", "path", "stroke"];
+    for how in [
+        format!("<defs><g id='a'>{shapes}</g></defs><use href='#a' x='20'/>"),
+        format!("<symbol id='a' overflow='visible'>{shapes}</symbol><use href='#a'/>"),
+        format!("<defs><g id='a'>{shapes}</g><use id='b' href='#a'/></defs><g fill='red'><use href='#b'/></g>"),
+        format!("<marker id='a' overflow='visible' markerUnits='userSpaceOnUse' viewBox='0 0 3 3'>{shapes}</marker>\
+             <path d='M0 0h1' fill='none' marker-end='url(#a)'/>"),
+    ] {
+        assert_eq!(kinds(&how), expected, "{how}");
+    }
+    let used = one("<defs><circle id='a' r='5'/></defs><use href='#a' transform='scale(1 2)' x='5.1'/>");
+    assert_eq!(used.shape, AnyShape::Ellipse(Ellipse { radii: [0.05, 0.1] }));
+    let object = one("<defs><path id='a' d='M0 0a5 5 0 0 1 10 0z'/></defs><use href='#a'/>");
+    let AnyShape::Path(path) = &object.shape else { panic!("{object:?}") };
+    assert!(matches!(path.rings[0].segments[0], Segment::Arc { .. }), "{path:?}");
+    // An empty id names nothing.
+    assert_eq!(kinds("<defs><g id='a'><circle r='5'/></g></defs><rect id='' width='5' height='5'/><use href='#a'/>"), [
+        "rectangle", "circle"
+    ]);
+}
+
+#[test]
+fn used_shapes_that_are_not_known_again_are_named() {
+    // Percent of the symbol's own viewport, which the element alone does not have.
+    let drawing = read("<symbol id='a' viewBox='0 0 20 20' overflow='visible'><circle r='10%'/></symbol><use href='#a' width='30' height='30'/>").unwrap();
+    assert_eq!(drawing.scene.objects[0].shape.kind(), "path");
+    assert!(drawing.losses.to_string().contains("use or marker: shape became a path"), "{}", drawing.losses);
 }
 
 #[test]

@@ -6,15 +6,17 @@ use std::collections::HashMap;
 use dvp_core::shape::FillRule;
 use dvp_core::{Object, Paint};
 use kurbo::Affine;
-use usvg::roxmltree::Node as Element;
+use usvg::roxmltree::{Document, Node as Element};
 use usvg::{BlendMode, Group, Node, PaintOrder, Rect, Transform};
 
 use super::error::SvgError;
 use super::figure::Figure;
+use super::forms::Forms;
 use super::losses::Losses;
 use super::paint::{FlatPaint, flat};
 use super::place::{Frame, Placed};
 use super::region::{Region, cut};
+use super::source::by_id;
 
 /// Most lines and curves.
 const MOST_SEGMENTS: usize = 1 << 18;
@@ -30,8 +32,11 @@ const MOST_TESTED: usize = 64;
 
 /// Objects as they are found.
 pub(super) struct Walk<'a> {
+    document: &'a Document<'a>,
     /// What drew, by the ids that usvg hands on.
-    pub(super) elements: HashMap<&'a str, Element<'a, 'a>>,
+    elements: HashMap<&'a str, Element<'a, 'a>>,
+    /// What drew, where usvg hands on no id; none until it is asked for.
+    forms: Option<Forms<'a>>,
     /// Scene units per pixel.
     pub(super) px: f64,
     pub(super) objects: Vec<Object<f64>>,
@@ -60,12 +65,25 @@ pub(super) struct Sketch {
     pub(super) frame: Frame,
     /// For what cannot be kept, in the figure's units.
     pub(super) tolerance: f64,
+    /// Whether an element says what it is.
+    is_known: bool,
 }
 
 impl<'a> Walk<'a> {
-    pub(super) fn new(elements: HashMap<&'a str, Element<'a, 'a>>, px: f64) -> Self {
+    pub(super) fn new(document: &'a Document<'a>, px: f64) -> Self {
         let (objects, boxes, losses) = (Vec::new(), Vec::new(), Losses::default());
-        Self { elements, px, objects, boxes, losses, segments: 0 }
+        Self { document, elements: by_id(document), forms: None, px, objects, boxes, losses, segments: 0 }
+    }
+
+    /// The element that drew a path, or one that draws the same.
+    fn element(&mut self, path: &usvg::Path) -> Result<Option<Element<'a, 'a>>, SvgError> {
+        if let Some(&element) = self.elements.get(path.id()) {
+            return Ok(Some(element));
+        }
+        if self.forms.is_none() {
+            self.forms = Some(Forms::new(self.document)?);
+        }
+        Ok(self.forms.as_ref().and_then(|forms| forms.get(path)))
     }
 
     /// Appends the objects of a group.
@@ -99,13 +117,13 @@ impl<'a> Walk<'a> {
         let affine = before * affine_of(path.abs_transform());
         let frame = Frame::new(Affine::scale(self.px) * affine, self.px);
         let tolerance = TOLERANCE_PX * self.px / frame.scale().max(f64::MIN_POSITIVE);
-        let element = self.elements.get(path.id()).copied();
+        let element = self.element(path)?;
         let figure = Figure::of(path, element, tolerance, &mut self.losses);
         self.segments += figure.segment_count();
         if self.segments > MOST_SEGMENTS {
             return Err(SvgError::TooManySegments { limit: MOST_SEGMENTS });
         }
-        Ok(Sketch { figure, frame, tolerance })
+        Ok(Sketch { figure, frame, tolerance, is_known: element.is_some() })
     }
 
     fn path(&mut self, path: &usvg::Path, inherited: &Inherited) -> Result<(), SvgError> {
@@ -119,6 +137,9 @@ impl<'a> Walk<'a> {
             return Err(SvgError::TooFar { distance: farthest, limit: FARTHEST_PX });
         }
         let sketch = self.sketch(path, Affine::IDENTITY)?;
+        if !sketch.is_known {
+            self.losses.add("use or marker: shape became a path");
+        }
         let mut paint = [true, false];
         if path.paint_order() == PaintOrder::StrokeAndFill {
             paint.reverse();
