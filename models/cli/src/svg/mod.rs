@@ -1,7 +1,7 @@
 //! Scenes as SVG, and SVG as scenes: circles, ellipses, rectangles, polygons, paths and strokes that people can edit.
 //!
 //! # Out
-//! In: a scene and an image size. Out: one element per object, in pixels, with the pose in its numbers; a `transform` only
+//! In: a scene and an image size. Out: one element per object, named `object-1` and so on, in pixels, with the pose in its numbers; a `transform` only
 //! where an ellipse or a rectangle is turned.
 //!
 //! Renderers fatten an outline by the edge profile's offset (1.43 px at 128 px for the reference profile), so each element then has
@@ -10,7 +10,8 @@
 //! the viewer's anti-aliasing.
 //!
 //! Approximations: the outermost pixel of the common part of objects under `blend`; translucent objects that overlap under `blend` on
-//! transparent ground are drawn one over the other; outlines of descriptors pass the 64 vertices that renderers paint within 0.15 px, but as
+//! transparent ground are drawn one over the other, and so are common parts of more than 16 objects or beyond the first 4,096, which a
+//! comment in the file says; outlines of descriptors pass the 64 vertices that renderers paint within 0.15 px, but as
 //! smooth curves; offsets below 0 are not drawn.
 //!
 //! `tests/command/svg.rs` compares with pixels drawn by another program (resvg).
@@ -19,4 +20,4 @@ mod read;
 mod write;
 
 pub use read::{Losses, SvgDrawing, SvgError, from_svg};
-pub use write::to_svg;
+pub use write::{to_svg, to_svg_numbered};

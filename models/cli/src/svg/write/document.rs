@@ -1,12 +1,14 @@
 //! The text of an SVG file.
 
+use alloc::collections::BTreeSet;
+
 use dvp_core::render::{Compositing, EdgeLaw, EdgeProfile};
 use dvp_core::shape::ShapeError;
 use dvp_core::{ImageSize, Real, Scene};
 use dvp_fit::Bank;
 
 use super::drawn::{Drawn, drawn};
-use super::mixture::{Mixture, mixtures};
+use super::mixture::{Mixture, Mixtures, mixtures};
 use super::number::{KNOWN, hex, short};
 
 /// Standard deviation of the Gaussian nearest to a logistic, over its sigma.
@@ -17,18 +19,39 @@ const AREA_VARIANCE: f64 = 1.0 / 12.0;
 const LEAST_BLUR_PX: f64 = 0.3;
 
 /// The SVG text of a scene, its user units pixels: one element per object, and a background unless the scene is
-/// transparent. Prototypes are titled with their names in `bank`.
+/// transparent. Prototypes are titled with their names in `bank`. The ids of the objects are `object-1`, `object-2` and so on,
+/// those that are not seen counted too, as tables and label maps number them.
 ///
 /// # Errors
 /// [`ShapeError`] if the numbers of an object describe no shape.
 pub fn to_svg<T: Real>(scene: &Scene<T>, size: ImageSize, bank: Option<&Bank<T>>) -> Result<String, ShapeError> {
+    let numbers: Vec<u32> = (1..).take(scene.objects.len()).collect();
+    to_svg_numbered(scene, size, bank, &numbers)
+}
+
+/// As [`to_svg`], with the numbers that objects go by elsewhere, such as the labels of a mask: one for each object of the scene,
+/// all different. An object with the number 7 has the id `object-7`.
+///
+/// # Errors
+/// [`ShapeError::Length`] unless there are as many numbers as objects; any [`ShapeError`] if the numbers of an object describe no
+/// shape.
+pub fn to_svg_numbered<T: Real>(
+    scene: &Scene<T>,
+    size: ImageSize,
+    bank: Option<&Bank<T>>,
+    numbers: &[u32],
+) -> Result<String, ShapeError> {
+    let (expected, len) = (scene.objects.len(), numbers.len());
+    if expected != len {
+        return Err(ShapeError::Length { what: "numbers of objects", expected, len });
+    }
     let unit = f64::of_usize(size.unit_px());
     let extent = [size.width(), size.height()].map(f64::of_usize);
     let [width, height] = extent;
-    let drawn = drawn(scene, unit, bank)?;
+    let drawn = drawn(scene, unit, bank, numbers)?;
     let mixtures = match scene.compositing {
         Compositing::Blend => mixtures(scene, &drawn, extent),
-        Compositing::Over => Vec::new(),
+        Compositing::Over => Mixtures::default(),
     };
     let mut text = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\">\n"
@@ -41,11 +64,14 @@ pub fn to_svg<T: Real>(scene: &Scene<T>, size: ImageSize, bank: Option<&Bank<T>>
     if let Some(deviation) = deviation {
         text.push_str(&blurring(deviation, extent, background.as_deref()));
     }
-    for (k, object) in drawn.iter().enumerate() {
-        let is_mixed = mixtures.iter().any(|mixture| mixture.objects.contains(&k));
-        if is_mixed { object.write_group(&mut text) } else { object.write(&mut text) }
+    if let Some(remark) = &mixtures.remark {
+        text.extend(["<!-- ", remark, " -->\n"]);
     }
-    mix(&drawn, &mixtures, extent, &mut text);
+    let mixed: BTreeSet<usize> = mixtures.parts.iter().flat_map(|mixture| &mixture.objects).copied().collect();
+    for (k, object) in drawn.iter().enumerate() {
+        if mixed.contains(&k) { object.write_group(&mut text) } else { object.write(&mut text) }
+    }
+    mix(&drawn, &mixtures.parts, extent, &mut text);
     if deviation.is_some() {
         text.push_str("</g>\n");
     }

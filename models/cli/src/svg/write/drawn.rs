@@ -24,16 +24,21 @@ pub(super) struct Drawn {
     pub(super) confidence: f64,
 }
 
-/// The objects of a scene that are seen; `unit` is pixels per scene unit.
+/// The objects of a scene that are seen; `unit` is pixels per scene unit, `numbers` are those in the objects' ids.
 ///
 /// # Errors
 /// [`ShapeError`] if the numbers of an object describe no shape.
-pub(super) fn drawn<T: Real>(scene: &Scene<T>, unit: f64, bank: Option<&Bank<T>>) -> Result<Vec<Drawn>, ShapeError> {
+pub(super) fn drawn<T: Real>(
+    scene: &Scene<T>,
+    unit: f64,
+    bank: Option<&Bank<T>>,
+    numbers: &[u32],
+) -> Result<Vec<Drawn>, ShapeError> {
     let reach = scene.edge.half_coverage().as_f64().max(0.0) * unit;
     let harmonics = scene.objects.iter().map(|object| object.efd_rows().len()).max().unwrap_or(0);
     let basis = OutlineBasis::new(REFERENCE_VERTICES, harmonics.max(1))?;
     let mut drawn = Vec::new();
-    for (k, object) in scene.objects.iter().enumerate() {
+    for (object, number) in scene.objects.iter().zip(numbers) {
         let confidence = rounded(object.confidence.as_f64(), OPACITY);
         if confidence <= 0.0 || object.pose.scale == T::zero() {
             continue;
@@ -44,7 +49,7 @@ pub(super) fn drawn<T: Real>(scene: &Scene<T>, unit: f64, bank: Option<&Bank<T>>
         let needs_rings = scene.compositing == Compositing::Blend || needs_rings(&object.shape, reach);
         let rings = if needs_rings { polygons(&object, &basis)? } else { Vec::new() };
         drawn.push(Drawn {
-            id: format!("object-{k}"),
+            id: format!("object-{number}"),
             title: format!("{} {}", name.replace('_', " "), hex(object.color())),
             element: element_of(&object, &rings, reach)?,
             color: object.color(),

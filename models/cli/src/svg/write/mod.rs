@@ -2,7 +2,7 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `document` | the text of the file, [`to_svg`] |
+//! | `document` | the text of the file, [`to_svg`] and [`to_svg_numbered`] |
 //! | `drawn` | objects with their colors, opacities and names |
 //! | `element` | an object as `<circle>`, `<ellipse>`, `<rect>`, `<polygon>` or `<path>` |
 //! | `path_data` | lines, arcs and cubics as path data |
@@ -22,4 +22,4 @@ mod path_data;
 #[cfg(test)]
 mod tests;
 
-pub use document::to_svg;
+pub use document::{to_svg, to_svg_numbered};

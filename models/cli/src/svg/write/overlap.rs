@@ -11,6 +11,11 @@ const MOST_ROWS: f64 = 2048.0;
 /// Overlaps narrower than this, pixels, are not worth a color of their own.
 const NARROWEST_PX: f64 = 0.05;
 
+/// Most sets that are found, and most objects of one: each set becomes an element with a mask for all of its objects but one, and
+/// many objects in one place have more sets than memory holds.
+pub(super) const MOST_SETS: usize = 4096;
+pub(super) const MOST_IN_SET: usize = 16;
+
 /// What an object covers, pixels: closed polygons under the even-odd rule, fattened by `reach`.
 pub(super) struct Body {
     pub(super) rings: Vec<Vec<Vec2<f64>>>,
@@ -80,8 +85,17 @@ fn near(from: Vec2<f64>, to: Vec2<f64>, y: f64, reach: f64) -> Option<Span> {
     (span[0] <= span[1]).then_some(span)
 }
 
-/// Every set of two or more bodies that some point of a `width` x `height` image lies in, smaller sets first.
-pub(super) fn shared_regions(bodies: &[&Body], width: f64, height: f64) -> Vec<Vec<usize>> {
+/// Sets of bodies that share pixels.
+#[derive(Debug, PartialEq)]
+pub(super) struct Shared {
+    /// Smaller ones first.
+    pub(super) sets: Vec<Vec<usize>>,
+    /// Whether there are no others.
+    pub(super) is_complete: bool,
+}
+
+/// The sets of two to [`MOST_IN_SET`] bodies that some point of a `width` x `height` image lies in, the upper [`MOST_SETS`] of them.
+pub(super) fn shared_regions(bodies: &[&Body], width: f64, height: f64) -> Shared {
     let bounds: Vec<Option<Bounds<f64>>> = bodies.iter().map(|body| body.bounds()).collect();
     let meets_other = |k: usize| {
         let others = bounds.iter().enumerate().filter(|&(other, _)| other != k);
@@ -89,9 +103,9 @@ pub(super) fn shared_regions(bodies: &[&Body], width: f64, height: f64) -> Vec<V
     };
     let candidates: Vec<(usize, Bounds<f64>)> =
         (0..bodies.len()).filter(|&k| meets_other(k)).filter_map(|k| Some((k, bounds[k]?))).collect();
-    let mut sets = BTreeSet::new();
+    let (mut sets, mut is_complete) = (BTreeSet::new(), true);
     let step = (1.0 / ROWS_PER_PX).max(height / MOST_ROWS);
-    let (mut crossings, mut spans, mut events, mut inside) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let (mut crossings, mut spans, mut events) = (Vec::new(), Vec::new(), Vec::new());
     let mut y = 0.5 * step;
     while y < height && candidates.len() > 1 {
         events.clear();
@@ -103,21 +117,30 @@ pub(super) fn shared_regions(bodies: &[&Body], width: f64, height: f64) -> Vec<V
         }
         y += step;
         events.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-        inside.clear();
+        let mut inside = BTreeSet::new();
         for (here, next) in events.iter().zip(events.iter().skip(1)) {
-            match inside.binary_search(&here.1) {
-                Ok(place) => drop(inside.remove(place)),
-                Err(place) => inside.insert(place, here.1),
+            if !inside.remove(&here.1) {
+                inside.insert(here.1);
             }
             let seen = next.0.min(width) - here.0.max(0.0);
-            if inside.len() > 1 && seen > NARROWEST_PX && !sets.contains(&inside) {
-                sets.insert(inside.clone());
+            if inside.len() < 2 || seen <= NARROWEST_PX {
+                continue;
+            }
+            if inside.len() > MOST_IN_SET {
+                is_complete = false;
+                continue;
+            }
+            let set: Vec<usize> = inside.iter().copied().collect();
+            if sets.len() < MOST_SETS {
+                sets.insert(set);
+            } else if !sets.contains(&set) {
+                is_complete = false;
             }
         }
     }
     let mut sets: Vec<Vec<usize>> = sets.into_iter().collect();
     sets.sort_by_key(Vec::len);
-    sets
+    Shared { sets, is_complete }
 }
 
 fn meet(a: &Bounds<f64>, b: &Bounds<f64>) -> bool {

@@ -9,9 +9,9 @@ use dvp_fit::Bank;
 
 use super::curves::smooth;
 use super::number::short;
-use super::overlap::{Body, shared_regions};
+use super::overlap::{Body, MOST_IN_SET, MOST_SETS, Shared, shared_regions};
 use super::path_data::PathData;
-use super::to_svg;
+use super::{to_svg, to_svg_numbered};
 use crate::svg::from_svg;
 
 fn square(x: f64, y: f64, half: f64) -> Body {
@@ -100,9 +100,14 @@ fn overlaps_are_found() {
     // Three squares of side 8: the first two share a strip, all three a corner of it.
     let bodies = [square(10.0, 10.0, 4.0), square(15.0, 10.0, 4.0), square(12.0, 16.0, 4.0)];
     let all: Vec<&Body> = bodies.iter().collect();
-    assert_eq!(shared_regions(&all, 32.0, 32.0), [vec![0, 1], vec![0, 2], vec![1, 2], vec![0, 1, 2]]);
-    assert!(shared_regions(&all[..1], 32.0, 32.0).is_empty());
-    assert_eq!(shared_regions(&all, 9.0, 32.0), [vec![0, 2]], "what is seen of the image");
+    let found = |bodies: &[&Body], width| {
+        let Shared { sets, is_complete } = shared_regions(bodies, width, 32.0);
+        assert!(is_complete);
+        sets
+    };
+    assert_eq!(found(&all, 32.0), [vec![0, 1], vec![0, 2], vec![1, 2], vec![0, 1, 2]]);
+    assert!(found(&all[..1], 32.0).is_empty());
+    assert_eq!(found(&all, 9.0), [vec![0, 2]], "what is seen of the image");
 }
 
 #[test]
@@ -111,8 +116,39 @@ fn a_hole_is_no_overlap() {
     ring.rings.extend(square(16.0, 16.0, 6.0).rings);
     // 5.4 + 0.5 is inside of 6 - 0.5 by neither edge; 4 is, by a wide margin.
     for (half, sets) in [(4.0, 0), (6.5, 1)] {
-        assert_eq!(shared_regions(&[&ring, &square(16.0, 16.0, half)], 32.0, 32.0).len(), sets, "{half}");
+        assert_eq!(shared_regions(&[&ring, &square(16.0, 16.0, half)], 32.0, 32.0).sets.len(), sets, "{half}");
     }
+}
+
+#[test]
+fn more_overlaps_than_can_be_drawn_are_left_out_and_said() {
+    let text = |objects: Vec<Object<f32>>| {
+        let scene = Scene { objects, compositing: Compositing::Blend, ..Scene::empty([1.0; 3]) };
+        to_svg(&scene, ImageSize::new(256, 256).unwrap(), None).unwrap()
+    };
+    let circle = |x: f32, y: f32, radius: f32| Object {
+        pose: Pose { translation: [x, y], scale: radius, rotation: 0.0 },
+        ..disk(0.0, [1.0, 0.0, 0.0])
+    };
+    // Each lies in the one before it: as many sets as disks, but one.
+    let nested = |count: u8| text((0..count).map(|k| circle(0.5, 0.5, 0.45 - 0.02 * f32::from(k))).collect());
+    let whole = nested(16);
+    assert!(!whole.contains("<!--") && whole.matches("<use").count() == 30, "15 masks, 15 mixtures: {whole}");
+    let limited = nested(17);
+    assert!(limited.contains("<!-- Common parts of more than 16 objects"), "{limited}");
+    assert_eq!(limited.matches("<use").count(), 30, "{limited}");
+    // In a ring of a thousand disks hundreds lie over each other, and every one of them begins somewhere else.
+    let ring = |count: u16, radius: f32| {
+        let place = |k: u16| f32::from(k) / f32::from(count) * core::f32::consts::TAU;
+        text((0..count).map(|k| circle(0.5 + 0.3 * place(k).cos(), 0.5 + 0.3 * place(k).sin(), radius)).collect())
+    };
+    let crowd = ring(1000, 0.01);
+    assert!(crowd.contains("<!-- "), "{}", crowd.len());
+    assert!(crowd.matches("<g mask").count() <= MOST_SETS * (MOST_IN_SET - 1));
+    assert!(crowd.len() < 1 << 22, "{}", crowd.len());
+    let heap = ring(1000, 0.2);
+    assert!(heap.contains("<!-- ") && heap.len() < 1 << 22, "{}", heap.len());
+    assert!(usvg::roxmltree::Document::parse(&heap).is_ok());
 }
 
 #[test]
@@ -124,7 +160,7 @@ fn blended_objects_get_their_mean_color() {
     };
     let size = ImageSize::new(128, 128).unwrap();
     let text = to_svg(&scene, size, None).unwrap();
-    assert!(text.contains("<g mask=\"url(#in-object-0)\"><use href=\"#object-1\" fill=\"#800080\""), "{text}");
+    assert!(text.contains("<g mask=\"url(#in-object-1)\"><use href=\"#object-2\" fill=\"#800080\""), "{text}");
     // 2 x 1.431 px
     assert!(text.contains("stroke-width=\"2.862\""), "{text}");
     scene.compositing = Compositing::Over;
@@ -166,7 +202,7 @@ fn simple_shapes_are_simple_elements() {
     let title = "<title>circle #ff0000</title></circle>";
     assert_eq!(
         element(circle, 0.7),
-        format!("<circle id=\"object-0\" cx=\"50\" cy=\"25\" r=\"10\" fill=\"#ff0000\">{title}")
+        format!("<circle id=\"object-1\" cx=\"50\" cy=\"25\" r=\"10\" fill=\"#ff0000\">{title}")
     );
     let ellipse = Ellipse { radii: [0.2, 0.1] };
     assert!(element(ellipse, 0.0).contains("cx=\"50\" cy=\"25\" rx=\"20\" ry=\"10\" fill"));
@@ -177,7 +213,7 @@ fn simple_shapes_are_simple_elements() {
     let rectangle = Rectangle { size: [0.2, 0.1], corner_radius: 0.02 };
     assert!(
         element(rectangle, 0.0)
-            .contains("<rect id=\"object-0\" x=\"40\" y=\"20\" width=\"20\" height=\"10\" rx=\"2\" fill")
+            .contains("<rect id=\"object-1\" x=\"40\" y=\"20\" width=\"20\" height=\"10\" rx=\"2\" fill")
     );
     let square = RegularPolygon { sides: 4, radius: 0.1 };
     assert!(element(square, 0.0).contains("class=\"regular_polygon\" points=\"60,25 50,35 40,25 50,15\""));
@@ -190,7 +226,7 @@ fn simple_shapes_are_simple_elements() {
 fn holes_are_subpaths() {
     let rings = vec![vec![[0.0, 0.0], [0.3, 0.0], [0.0, 0.3]], vec![[0.05, 0.05], [0.1, 0.05], [0.05, 0.1]]];
     let one = element(Polygon { rings: rings[..1].to_vec() }, 0.0);
-    assert!(one.contains("<polygon id=\"object-0\" fill-rule=\"evenodd\" points=\"50,25 80,25 50,55\""), "{one}");
+    assert!(one.contains("<polygon id=\"object-1\" fill-rule=\"evenodd\" points=\"50,25 80,25 50,55\""), "{one}");
     let two = element(Polygon { rings }, 0.0);
     assert!(
         two.contains("fill-rule=\"evenodd\" d=\"M50,25L80,25L50,55ZM55,30L60,30L55,35Z\" class=\"polygon\""),
@@ -259,6 +295,22 @@ fn fattened_strokes_are_wider_or_outlined() {
         sharp.contains("fill=\"#000000\" stroke=\"#000000\"") && sharp.contains("stroke-width=\"2.862\""),
         "{sharp}"
     );
+}
+
+#[test]
+fn objects_are_numbered_from_one_or_as_they_are_told() {
+    let mut objects = [0.2, 0.5, 0.8].map(|x| disk(x, [0.0; 3])).to_vec();
+    objects[1].confidence = 0.0;
+    let scene = Scene { objects, ..Scene::empty([1.0; 3]) };
+    let size = ImageSize::new(64, 64).unwrap();
+    let ids = |text: &str| {
+        let parts = text.split("id=\"object-").skip(1);
+        parts.map(|part| part.split('"').next().unwrap().to_owned()).collect::<Vec<_>>()
+    };
+    assert_eq!(ids(&to_svg(&scene, size, None).unwrap()), ["1", "3"], "the second is not seen");
+    assert_eq!(ids(&to_svg_numbered(&scene, size, None, &[7, 2, 90]).unwrap()), ["7", "90"]);
+    let refused = to_svg_numbered(&scene, size, None, &[7, 2]).unwrap_err().to_string();
+    assert!(refused.contains("numbers of objects"), "{refused}");
 }
 
 #[test]
