@@ -33,10 +33,15 @@ impl ShapeJson {
         }
     }
 
-    /// How many curves its paths have.
+    /// How many curves its paths have, with one for every point where a stroke has a round join or cap.
     pub(super) fn curve_count(&self) -> usize {
         match self {
-            Self::Path { rings, .. } | Self::Stroke { rings, .. } => rings.iter().map(RingJson::curve_count).sum(),
+            Self::Path { rings, .. } => rings.iter().map(RingJson::curve_count).sum(),
+            Self::Stroke { rings, cap, join, .. } => {
+                let is_round = matches!(cap, CapJson::Round) || matches!(join, JoinJson::Round);
+                let round = |ring: &RingJson| if is_round { ring.points.len() } else { 0 };
+                rings.iter().map(|ring| ring.curve_count() + round(ring)).sum()
+            }
             _ => 0,
         }
     }

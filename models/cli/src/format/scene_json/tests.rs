@@ -158,14 +158,22 @@ fn scenes_that_would_fill_the_memory_are_refused() {
     let arcs = vec![r#"{"kind":"arc","bulge":1}"#; 1000].join(",");
     let points = vec!["[0,0]"; 1000].join(",");
     let path = format!(r#""kind":"path","rings":[{{"points":[{points}],"segments":[{arcs}]}}]"#);
+    let lines = vec![r#"{"kind":"line"}"#; 999].join(",");
+    let stroke = |cap: &str, join: &str| {
+        let ring = format!(r#"{{"points":[{points}],"segments":[{lines}]}}"#);
+        format!(r#""kind":"stroke","rings":[{ring}],"width":1,"cap":"{cap}","join":"{join}""#)
+    };
     for (text, part) in [
         (objects(r#""kind":"circle","radius":1"#, 10_001), "has 10001 objects, at most 10000"),
         // 2 x 4096 corners each.
         (objects(star, 123), "has 1007616 points, at most 1000000"),
         (objects(&path, 101), "has 101000 curves, at most 100000"),
+        (objects(&stroke("round", "bevel"), 101), "has 101000 curves, at most 100000"),
+        (objects(&stroke("butt", "round"), 101), "has 101000 curves, at most 100000"),
     ] {
         let error = read(&text).unwrap_err().to_string();
         assert!(error.contains(part), "'{error}' lacks '{part}'");
     }
     assert_eq!(read(&objects(star, 122)).unwrap().objects.len(), 122);
+    assert_eq!(read(&objects(&stroke("square", "bevel"), 101)).unwrap().objects.len(), 101);
 }
