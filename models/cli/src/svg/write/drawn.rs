@@ -121,7 +121,8 @@ impl Drawn {
     }
 }
 
-/// Text as XML has it.
+/// Text as XML has it, which allows hardly any control characters.
 fn escaped(text: &str) -> String {
+    let text: String = text.chars().filter(|c| !c.is_control() && !matches!(c, '\u{fffe}' | '\u{ffff}')).collect();
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }

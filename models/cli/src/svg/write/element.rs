@@ -84,16 +84,16 @@ pub(super) fn element_of(object: &Object<f64>, rings: &[Vec<Vec2<f64>>], reach: 
     let scale = pose.scale.abs();
     match &object.shape {
         AnyShape::Circle(circle) => {
-            let numbers = [("cx", center.x), ("cy", center.y), ("r", circle.radius * scale)];
+            let numbers = [("cx", center.x), ("cy", center.y), ("r", (circle.radius * scale).abs())];
             Ok(Element::new("circle").numbers(&numbers))
         }
         AnyShape::Ellipse(ellipse) => {
-            let (radii, degrees) = upright(ellipse.radii.map(|radius| radius * scale), pose.rotation);
+            let (radii, degrees) = upright(ellipse.radii.map(|radius| (radius * scale).abs()), pose.rotation);
             let numbers = [("cx", center.x), ("cy", center.y), ("rx", radii[0]), ("ry", radii[1])];
             Ok(Element::new("ellipse").numbers(&numbers).turned(degrees, center, radii[0].max(radii[1])))
         }
         AnyShape::Rectangle(rectangle) => {
-            let (size, degrees) = upright(rectangle.size.map(|side| side * scale), pose.rotation);
+            let (size, degrees) = upright(rectangle.size.map(|side| (side * scale).abs()), pose.rotation);
             let corner = center - Vec2::from(size) * 0.5;
             let numbers = [("x", corner.x), ("y", corner.y), ("width", size[0]), ("height", size[1])];
             let radius = rectangle.held_radius() * scale;
@@ -115,7 +115,7 @@ pub(super) fn element_of(object: &Object<f64>, rings: &[Vec<Vec2<f64>>], reach: 
             Ok(closed_path(&boundary, KNOWN).text("class", object.shape.kind()))
         }
         AnyShape::Path(shape) => {
-            let data = lines(&placed(object.shape.boundary()?, pose), &shape.rings);
+            let data = lines(&placed(object.shape.boundary()?, pose), &shape.rings, reach > 0.0);
             let rule = if shape.fill == FillRule::NonZero { "nonzero" } else { "evenodd" };
             Ok(Element::new("path").text("fill-rule", rule).text("d", &data))
         }
@@ -129,14 +129,15 @@ pub(super) fn element_of(object: &Object<f64>, rings: &[Vec<Vec2<f64>>], reach: 
     }
 }
 
-/// Path data of the rings of a path.
-fn lines(boundary: &Boundary<f64>, rings: &[PathRing<f64>]) -> String {
+/// Path data of the rings of a path; open ones with the line that closes them if a pen has to follow it.
+fn lines(boundary: &Boundary<f64>, rings: &[PathRing<f64>], closes_all: bool) -> String {
     let mut data = PathData::new(KNOWN);
     let rings = rings.iter().filter(|ring| !ring.points.is_empty());
     for (pieces, ring) in boundary.rings().zip(rings) {
         // The boundary has one line more where a ring is open: the one that closes it. A dot has only that.
-        let own = if ring.segments.is_empty() { pieces } else { &pieces[..ring.segments.len()] };
-        data.ring(own, ring.is_closed());
+        let is_whole = closes_all || ring.segments.is_empty();
+        let own = if is_whole { pieces } else { &pieces[..ring.segments.len()] };
+        data.ring(own, closes_all || ring.is_closed());
     }
     data.into_text()
 }
@@ -159,8 +160,8 @@ fn stroke(stroke: &Stroke<f64>, pose: &Pose<f64>, reach: f64) -> Result<Element,
         Join::Round => (Some("round"), None),
         Join::Bevel => (Some("bevel"), None),
     };
-    let data =
-        lines(&placed(Path { rings: stroke.rings.clone(), fill: FillRule::EvenOdd }.boundary()?, pose), &stroke.rings);
+    let boundary = placed(Path { rings: stroke.rings.clone(), fill: FillRule::EvenOdd }.boundary()?, pose);
+    let data = lines(&boundary, &stroke.rings, false);
     let mut element = Element::new("path").text("fill", "none").numbers(&[("stroke-width", width)]);
     for (name, value) in [("stroke-linecap", cap), ("stroke-linejoin", join)] {
         if let Some(value) = value {

@@ -223,6 +223,28 @@ fn simple_shapes_are_simple_elements() {
 }
 
 #[test]
+fn negative_lengths_are_drawn_as_positive_ones() {
+    let circle = |radius| element(Circle { radius }, 0.3);
+    assert_eq!(circle(-0.1), circle(0.1));
+    let ellipse = |radii| element(Ellipse { radii }, 0.3);
+    assert_eq!(ellipse([-0.2, 0.1]), ellipse([0.2, 0.1]));
+    assert_eq!(ellipse([0.2, -0.1]), ellipse([0.2, 0.1]));
+    let rectangle = |size| element(Rectangle { size, corner_radius: 0.02 }, 0.3);
+    assert_eq!(rectangle([-0.2, -0.1]), rectangle([0.2, 0.1]));
+}
+
+#[test]
+fn a_pen_that_fattens_follows_the_side_that_closes_a_path() {
+    let ring = PathRing::polyline(vec![[0.2, 0.2], [0.8, 0.2], [0.8, 0.8]]);
+    let shape = AnyShape::from(Path { rings: vec![ring.clone()], fill: FillRule::EvenOdd });
+    assert!(element(shape.clone(), 0.0).contains(" d=\"M70,45L130,45L130,105\""), "{}", element(shape.clone(), 0.0));
+    let object = Object { shape, pose: Pose::identity(), paint: Paint::Flat([0.0; 3]), confidence: 1.0 };
+    let scene = Scene { objects: vec![object], ..Scene::empty([1.0_f64; 3]) };
+    let text = to_svg(&scene, ImageSize::new(100, 100).unwrap(), None).unwrap();
+    assert!(text.contains(" d=\"M20,20L80,20L80,80Z\"") && text.contains(" stroke=\"#000000\""), "{text}");
+}
+
+#[test]
 fn holes_are_subpaths() {
     let rings = vec![vec![[0.0, 0.0], [0.3, 0.0], [0.0, 0.3]], vec![[0.05, 0.05], [0.1, 0.05], [0.05, 0.1]]];
     let one = element(Polygon { rings: rings[..1].to_vec() }, 0.0);
@@ -316,10 +338,11 @@ fn objects_are_numbered_from_one_or_as_they_are_told() {
 #[test]
 fn prototypes_are_titled_with_their_names() {
     let efd = Efd::new(vec![[1.0, 0.0, 0.0, -1.0]]);
-    let bank = Bank { prototypes: vec![("a & b".to_owned(), efd.clone())] };
+    let bank = Bank { prototypes: vec![("a & \u{1}\u{ffff}b".to_owned(), efd.clone())] };
     let object = |prototype| Object { shape: AnyShape::of_efd(efd.clone(), Some(prototype)), ..disk(0.5, [0.0; 3]) };
     let scene = Scene { objects: vec![object(0), object(7)], ..Scene::empty([1.0; 3]) };
     let text = to_svg(&scene, ImageSize::new(64, 64).unwrap(), Some(&bank)).unwrap();
     assert!(text.contains("<title>a &amp; b #000000</title>"), "{text}");
     assert!(text.contains("<title>prototype #000000</title>"), "{text}");
+    assert!(from_svg(&text).is_ok(), "control characters are no XML");
 }
