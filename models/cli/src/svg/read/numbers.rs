@@ -4,6 +4,7 @@ use svgtypes::{Length, LengthUnit, PathParser, PathSegment};
 use usvg::roxmltree::Node;
 
 use super::error::SvgError;
+use super::source::is_shape;
 
 /// Largest number, in whatever unit: well above all that pictures are made of, and good to a thousandth in 32 bits and less.
 const LARGEST: f64 = 1e7;
@@ -27,8 +28,9 @@ pub(super) fn check(node: Node<'_, '_>) -> Result<(), SvgError> {
         if is_too_large(length.number) {
             return too_large(length.number);
         }
-        let is_root = node.parent_element().is_none();
-        if !is_root && matches!(length.unit, LengthUnit::Em | LengthUnit::Ex) {
+        // Elements that draw nothing here, such as text, are no reason to refuse the others.
+        let is_drawn = is_shape(node) || node.tag_name().name() == "svg" && node.parent_element().is_some();
+        if is_drawn && matches!(length.unit, LengthUnit::Em | LengthUnit::Ex) {
             let (tag, line) = place();
             return Err(SvgError::FontUnits { tag, line });
         }

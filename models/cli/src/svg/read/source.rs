@@ -46,12 +46,13 @@ pub(super) fn labeled(text: &str) -> Result<String, SvgError> {
         prefix.push('-');
     }
     let mut labeled = String::with_capacity(text.len() + 64);
+    // What comes from an entity stands where the entity was declared, before the root, and perhaps more than once.
+    let root = document.root_element().range().start;
     let mut done = 0;
     for (k, node) in document.descendants().filter(|node| is_shape(*node) && !node.has_attribute("id")).enumerate() {
-        // What comes from an entity stands where the entity was declared, and perhaps more than once.
         let tag = node.range().start + 1;
         let name = text.get(tag..).and_then(|rest| rest.find([' ', '\t', '\r', '\n', '/', '>']));
-        if let (Some(length), true) = (name, tag > done && text[..tag].ends_with('<')) {
+        if let (Some(length), true) = (name, tag > done.max(root) && text[..tag].ends_with('<')) {
             labeled.push_str(&text[done..tag + length]);
             labeled.push_str(&format!(" id=\"{prefix}{k}\""));
             done = tag + length;
