@@ -9,6 +9,10 @@ use super::place::array;
 /// Radii that differ less than this share of them are equal.
 const EQUAL: f64 = 1e-9;
 
+/// A ring is closed where it comes back this near to its start, as a share of the start's distance from the origin or of 1 if that is
+/// less: relative coordinates do not add up to zero exactly. A last line so short would have any direction.
+const BACK: f64 = 1e-9;
+
 /// The rings of path data up to its first error, and whether there is one. Cubics for elliptical arcs stray at most `tolerance`
 /// from them, in the units of the data.
 pub(super) fn rings(data: &str, tolerance: f64) -> (Vec<PathRing<f64>>, bool) {
@@ -118,8 +122,9 @@ impl Pen {
         if self.ring.points.is_empty() {
             self.ring.points.push(array(self.here));
         }
-        let is_back = self.ring.points.len() > 1 && self.here == self.start;
-        if is_back {
+        let is_back = (self.here - self.start).hypot() <= BACK * self.start.to_vec2().hypot().max(1.0);
+        if is_back && self.ring.points.len() > 1 {
+            // The last segment leads to the very first point.
             self.ring.points.pop();
         } else {
             self.ring.segments.push(Segment::Line);
