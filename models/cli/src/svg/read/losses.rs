@@ -27,11 +27,10 @@ impl Losses {
 impl fmt::Display for Losses {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (k, (loss, count)) in self.iter().enumerate() {
-            let (start, times) = (if k == 0 { "" } else { "; " }, if count == 1 { "" } else { " times" });
-            if count == 1 {
-                write!(f, "{start}{loss}")?;
-            } else {
-                write!(f, "{start}{loss} ({count}{times})")?;
+            let start = if k == 0 { "" } else { "; " };
+            match count {
+                1 => write!(f, "{start}{loss}")?,
+                _ => write!(f, "{start}{loss} ({count} times)")?,
             }
         }
         Ok(())

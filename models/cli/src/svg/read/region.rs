@@ -5,9 +5,9 @@
 
 use alloc::rc::Rc;
 
-use dvp_core::Pose;
 use dvp_core::geometry::{Bounds, Vec2};
 use dvp_core::shape::{AnyShape, FillRule, Flattening, Outline, OutlineBasis, Polygon, Shape as _, ShapeError};
+use dvp_core::{Pose, contour};
 
 use super::place::Placed;
 
@@ -44,15 +44,11 @@ impl Region {
 
     /// Whether the whole box is inside, its border included.
     pub(super) fn contains(&self, bounds: Bounds<f64>) -> bool {
-        let edges =
-            || self.outline.rings().iter().flat_map(|ring| ring.iter().zip(ring.iter().skip(1).chain(ring.first())));
-        let center = bounds.center();
-        let is_inside = edges().fold(false, |inside, (&[ax, ay], &[bx, by])| {
-            let crosses =
-                (ay > center.y) != (by > center.y) && center.x < ax + (bx - ax) * ((center.y - ay) / (by - ay));
-            inside != crosses
-        });
-        is_inside && !edges().any(|(&a, &b)| enters(a, b, bounds))
+        let rings = self.outline.rings();
+        let center = bounds.center().to_array();
+        let is_inside = rings.iter().filter(|ring| contour::contains(ring, center)).count() % 2 == 1;
+        let mut edges = rings.iter().flat_map(|ring| ring.iter().zip(ring.iter().skip(1).chain(ring.first())));
+        is_inside && !edges.any(|(&a, &b)| enters(a, b, bounds))
     }
 }
 
@@ -105,7 +101,7 @@ pub(super) fn cut(
     let left = own.intersection(region)?;
     let rings = left.outline.rings().iter().map(<[[f64; 2]]>::to_vec);
     let least = LEAST_AREA_PX * px * px;
-    let rings: Vec<_> = rings.filter(|ring| dvp_core::contour::signed_area(ring).abs() > least).collect();
+    let rings: Vec<_> = rings.filter(|ring| contour::signed_area(ring).abs() > least).collect();
     if rings.is_empty() {
         return Ok(None);
     }
