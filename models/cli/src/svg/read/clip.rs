@@ -8,10 +8,9 @@ use kurbo::{Affine, Point};
 use usvg::{ClipPath, Group, Mask, MaskType, Node};
 
 use super::error::SvgError;
-use super::paint::FlatPaint;
 use super::place::{Placed, array};
 use super::region::Region;
-use super::walk::{Walk, affine_of};
+use super::walk::{Layer, Walk, affine_of};
 
 /// Masks of less than this share hide, those of more than its complement show.
 const CLEAR: f64 = 2e-3;
@@ -120,7 +119,7 @@ impl Walk<'_> {
                 }
                 Node::Path(path) if path.is_visible() => {
                     let sketch = self.sketch(path, affine)?;
-                    let layers = [self.fill_of(path, &sketch), self.stroke_of(path, &sketch)];
+                    let layers = [self.fill_of(path, &sketch), self.stroke_of(path, &sketch)?];
                     for layer in layers.into_iter().flatten() {
                         if !paint(&layer, kind, self.tolerance(), region)? {
                             return Ok(false);
@@ -136,12 +135,7 @@ impl Walk<'_> {
 }
 
 /// Adds what shows, takes out what hides; false if it does something between.
-fn paint(
-    (placed, flat): &(Placed, FlatPaint),
-    kind: MaskType,
-    tolerance: f64,
-    region: &mut Region,
-) -> Result<bool, SvgError> {
+fn paint((placed, flat): &Layer, kind: MaskType, tolerance: f64, region: &mut Region) -> Result<bool, SvgError> {
     let luminance: f64 = flat.color.iter().zip(LUMINANCE).map(|(value, share)| value * share).sum();
     let is_opaque = flat.opacity > 1.0 - CLEAR;
     let own = Region::of(placed, tolerance)?;

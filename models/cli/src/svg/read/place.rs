@@ -2,7 +2,7 @@
 
 use dvp_core::geometry::Vec2;
 use dvp_core::shape::{
-    AnyShape, Circle, Ellipse, FillRule, Path, PathRing, Polygon, Rectangle, RegularPolygon, Segment, Star,
+    AnyShape, Circle, Ellipse, FillRule, Path, PathRing, Polygon, Rectangle, RegularPolygon, Segment, ShapeError, Star,
 };
 use dvp_core::{Pose, Real};
 use kurbo::{Affine, Arc, Point, SvgArc};
@@ -51,6 +51,12 @@ impl Frame {
         (self.keeps_axes() && (x - y).abs() <= EQUAL * x).then_some(x)
     }
 
+    /// Whether it takes everything to a line or a point, and nothing is seen.
+    pub(super) fn is_flat(&self) -> bool {
+        let [x, y] = self.scales();
+        self.affine.determinant().abs() <= f64::from(f32::EPSILON) * x * y
+    }
+
     /// About the factor of lengths.
     pub(super) fn scale(&self) -> f64 {
         self.affine.determinant().abs().sqrt()
@@ -66,7 +72,10 @@ impl Frame {
 
     /// A figure that is filled by a rule, as the shape that it is; `tolerance` for curves that have to become cubics, in the figure's
     /// units. None for figures without any area.
-    pub(super) fn fill(&self, figure: &Figure, rule: FillRule, tolerance: f64) -> Option<Placed> {
+    ///
+    /// # Errors
+    /// [`ShapeError`] if the numbers of the figure describe no shape.
+    pub(super) fn fill(&self, figure: &Figure, rule: FillRule, tolerance: f64) -> Result<Option<Placed>, ShapeError> {
         let placed = match figure {
             Figure::Ellipse { center, radii, is_circle } => Some(self.ellipse(*center, *radii, *is_circle)),
             Figure::Rectangle { corner, size, radii } => self.rectangle(*corner, *size, *radii),
@@ -74,13 +83,17 @@ impl Frame {
             Figure::Path { rings, class } if class.as_deref() == Some("polygon") => self.polygons(rings),
             Figure::Path { .. } => None,
         };
-        placed.or_else(|| {
-            let mut rings = self.rings(&figure.rings(tolerance), tolerance);
-            // One straight line encloses nothing.
-            rings.retain(|ring| ring.points.len() > 2 || ring.segments.iter().any(|s| *s != Segment::Line));
-            let path = Path { fill: rule, ..Path::new(rings).ok()? };
-            (!path.rings.is_empty()).then(|| (path.into(), Pose::identity()))
-        })
+        if placed.is_some() {
+            return Ok(placed);
+        }
+        let mut rings = self.rings(&figure.rings(tolerance), tolerance);
+        // One straight line encloses nothing.
+        rings.retain(|ring| ring.points.len() > 2 || ring.segments.iter().any(|s| *s != Segment::Line));
+        if rings.is_empty() {
+            return Ok(None);
+        }
+        let path = Path { fill: rule, ..Path::new(rings)? };
+        Ok(Some((path.into(), Pose::identity())))
     }
 
     fn ellipse(&self, center: [f64; 2], [rx, ry]: [f64; 2], is_circle: bool) -> Placed {

@@ -15,44 +15,72 @@ use super::place::{Frame, Placed, arc_of, point_of};
 /// Most dashes of one stroke.
 const MOST_DASHES: f64 = 1e5;
 
+/// The line of a pen along a figure, in the figure's units, its curves within `tolerance`. None for figures without any line.
+///
+/// # Errors
+/// [`ShapeError`] if the numbers of the figure describe no line.
+pub(super) fn line(
+    figure: &Figure,
+    style: &usvg::Stroke,
+    tolerance: f64,
+    losses: &mut Losses,
+) -> Result<Option<Stroke<f64>>, ShapeError> {
+    let mut rings = figure.rings(tolerance);
+    if let Some(dashes) = style.dasharray() {
+        rings = dashed(&rings, dashes, style.dashoffset(), tolerance, losses);
+    }
+    if rings.is_empty() {
+        return Ok(None);
+    }
+    let cap = match style.linecap() {
+        LineCap::Butt => Cap::Butt,
+        LineCap::Round => Cap::Round,
+        LineCap::Square => Cap::Square,
+    };
+    let limit = f64::from(style.miterlimit().get());
+    let join = match style.linejoin() {
+        LineJoin::Miter => Join::Miter { limit },
+        LineJoin::MiterClip => {
+            losses.add("stroke-linejoin miter-clip: drawn as miter");
+            Join::Miter { limit }
+        }
+        LineJoin::Round => Join::Round,
+        LineJoin::Bevel => Join::Bevel,
+    };
+    Stroke::new(rings, f64::from(style.width().get()), cap, join).map(Some)
+}
+
+/// How many lines and curves a stroke has: what is round at its joins and caps is a curve, too.
+pub(super) fn segment_count(stroke: &Stroke<f64>) -> usize {
+    let is_round = stroke.join == Join::Round || stroke.cap == Cap::Round;
+    let round = |ring: &PathRing<f64>| if is_round { ring.points.len() } else { 0 };
+    stroke.rings.iter().map(|ring| ring.segments.len() + round(ring)).sum()
+}
+
 impl Frame {
-    /// A figure that is stroked, as a stroke, or where the pen is no disk any more as what the stroke covers; `tolerance` in the
-    /// figure's units. None for figures without any line.
+    /// A stroke where it stands, or where its pen is no disk any more what it covers; `tolerance` in the units of the stroke. None for
+    /// what covers nothing.
+    ///
+    /// # Errors
+    /// [`ShapeError`] if its numbers describe no shape.
     pub(super) fn stroke(
         &self,
-        figure: &Figure,
-        style: &usvg::Stroke,
+        stroke: Stroke<f64>,
         tolerance: f64,
         losses: &mut Losses,
-    ) -> Option<Placed> {
-        let mut rings = figure.rings(tolerance);
-        if let Some(dashes) = style.dasharray() {
-            rings = dashed(&rings, dashes, style.dashoffset(), tolerance, losses);
-        }
-        let cap = match style.linecap() {
-            LineCap::Butt => Cap::Butt,
-            LineCap::Round => Cap::Round,
-            LineCap::Square => Cap::Square,
-        };
-        let limit = f64::from(style.miterlimit().get());
-        let join = match style.linejoin() {
-            LineJoin::Miter => Join::Miter { limit },
-            LineJoin::MiterClip => {
-                losses.add("stroke-linejoin miter-clip: drawn as miter");
-                Join::Miter { limit }
-            }
-            LineJoin::Round => Join::Round,
-            LineJoin::Bevel => Join::Bevel,
-        };
-        let width = f64::from(style.width().get());
+    ) -> Result<Option<Placed>, ShapeError> {
         if let Some(scale) = self.similarity() {
-            let stroke = Stroke::new(self.rings(&rings, tolerance), width * scale, cap, join).ok()?;
-            return (!stroke.rings.is_empty()).then(|| (stroke.into(), Pose::identity()));
+            let rings = self.rings(&stroke.rings, tolerance);
+            let placed = Stroke::new(rings, stroke.width * scale, stroke.cap, stroke.join)?;
+            return Ok(Some((placed.into(), Pose::identity())));
+        }
+        let covered = flattened(&stroke, tolerance)?;
+        if covered.vertices.is_empty() {
+            return Ok(None);
         }
         losses.add("stroke under a transform that is not the same in all directions: drawn as polygons");
-        let covered = Stroke::new(rings, width, cap, join).and_then(|stroke| flattened(&stroke, tolerance)).ok()?;
         let corners = covered.rings().iter().map(|ring| ring.iter().map(|&point| self.point(point)).collect());
-        Some((Polygon::new(corners.collect()).ok()?.into(), Pose::identity()))
+        Ok(Some((Polygon::new(corners.collect())?.into(), Pose::identity())))
     }
 }
 

@@ -3,7 +3,7 @@
 use alloc::rc::Rc;
 use std::collections::HashMap;
 
-use dvp_core::shape::FillRule;
+use dvp_core::shape::{FillRule, ShapeError};
 use dvp_core::{Object, Paint};
 use kurbo::Affine;
 use usvg::roxmltree::{Document, Node as Element};
@@ -17,6 +17,7 @@ use super::paint::{FlatPaint, flat};
 use super::place::{Frame, Placed};
 use super::region::{Region, cut};
 use super::source::by_id;
+use super::stroke;
 
 /// Most lines and curves.
 const MOST_SEGMENTS: usize = 1 << 18;
@@ -45,6 +46,9 @@ pub(super) struct Walk<'a> {
     pub(super) losses: Losses,
     segments: usize,
 }
+
+/// What is painted, and with what.
+pub(super) type Layer = (Placed, FlatPaint);
 
 /// What groups do to everything in them.
 #[derive(Clone)]
@@ -119,10 +123,7 @@ impl<'a> Walk<'a> {
         let tolerance = TOLERANCE_PX * self.px / frame.scale().max(f64::MIN_POSITIVE);
         let element = self.element(path)?;
         let figure = Figure::of(path, element, tolerance, &mut self.losses);
-        self.segments += figure.segment_count();
-        if self.segments > MOST_SEGMENTS {
-            return Err(SvgError::TooManySegments { limit: MOST_SEGMENTS });
-        }
+        self.count(figure.segment_count())?;
         Ok(Sketch { figure, frame, tolerance, is_known: element.is_some() })
     }
 
@@ -137,6 +138,9 @@ impl<'a> Walk<'a> {
             return Err(SvgError::TooFar { distance: farthest, limit: FARTHEST_PX });
         }
         let sketch = self.sketch(path, Affine::IDENTITY)?;
+        if sketch.frame.is_flat() {
+            return Ok(());
+        }
         if !sketch.is_known {
             self.losses.add("use or marker: shape became a path");
         }
@@ -145,7 +149,7 @@ impl<'a> Walk<'a> {
             paint.reverse();
         }
         for is_fill in paint {
-            let layer = if is_fill { self.fill_of(path, &sketch) } else { self.stroke_of(path, &sketch) };
+            let layer = if is_fill { self.fill_of(path, &sketch) } else { self.stroke_of(path, &sketch)? };
             if let Some((placed, flat)) = layer {
                 self.push(placed, flat, seen, inherited)?;
             }
@@ -154,21 +158,46 @@ impl<'a> Walk<'a> {
     }
 
     /// What a path fills, and with what.
-    pub(super) fn fill_of(&mut self, path: &usvg::Path, sketch: &Sketch) -> Option<(Placed, FlatPaint)> {
+    pub(super) fn fill_of(&mut self, path: &usvg::Path, sketch: &Sketch) -> Option<Layer> {
         let fill = path.fill()?;
         let flat = flat(fill.paint(), fill.opacity(), &mut self.losses)?;
         let rule = match fill.rule() {
             usvg::FillRule::NonZero => FillRule::NonZero,
             usvg::FillRule::EvenOdd => FillRule::EvenOdd,
         };
-        Some((sketch.frame.fill(&sketch.figure, rule, sketch.tolerance)?, flat))
+        let placed = sketch.frame.fill(&sketch.figure, rule, sketch.tolerance);
+        Some((self.drawable(placed)??, flat))
     }
 
     /// What a path strokes, and with what.
-    pub(super) fn stroke_of(&mut self, path: &usvg::Path, sketch: &Sketch) -> Option<(Placed, FlatPaint)> {
-        let stroke = path.stroke()?;
-        let flat = flat(stroke.paint(), stroke.opacity(), &mut self.losses)?;
-        Some((sketch.frame.stroke(&sketch.figure, stroke, sketch.tolerance, &mut self.losses)?, flat))
+    ///
+    /// # Errors
+    /// [`SvgError::TooManySegments`] if dashes make too many.
+    pub(super) fn stroke_of(&mut self, path: &usvg::Path, sketch: &Sketch) -> Result<Option<Layer>, SvgError> {
+        let Some(stroke) = path.stroke() else { return Ok(None) };
+        let Some(flat) = flat(stroke.paint(), stroke.opacity(), &mut self.losses) else { return Ok(None) };
+        let line = stroke::line(&sketch.figure, stroke, sketch.tolerance, &mut self.losses);
+        let Some(line) = self.drawable(line).flatten() else { return Ok(None) };
+        // Those of the figure are counted already.
+        self.count(stroke::segment_count(&line).saturating_sub(sketch.figure.segment_count()))?;
+        let placed = sketch.frame.stroke(line, sketch.tolerance, &mut self.losses);
+        Ok(self.drawable(placed).flatten().map(|placed| (placed, flat)))
+    }
+
+    /// What the scene accepts; the rest is lost.
+    fn drawable<V>(&mut self, shape: Result<V, ShapeError>) -> Option<V> {
+        if shape.is_err() {
+            self.losses.add("shape without a boundary: not drawn");
+        }
+        shape.ok()
+    }
+
+    fn count(&mut self, segments: usize) -> Result<(), SvgError> {
+        self.segments = self.segments.saturating_add(segments);
+        if self.segments > MOST_SEGMENTS {
+            return Err(SvgError::TooManySegments { limit: MOST_SEGMENTS });
+        }
+        Ok(())
     }
 
     fn push(&mut self, placed: Placed, flat: FlatPaint, seen: Rect, inherited: &Inherited) -> Result<(), SvgError> {
