@@ -8,7 +8,7 @@ use dvp_core::shape::{
 use dvp_core::{Object, Pose};
 
 use super::curves::smooth;
-use super::number::{FITTED, KNOWN, push, short};
+use super::number::{FITTED, KNOWN, push, rounded, short};
 use super::path_data::PathData;
 
 /// How far a path may stray from what is painted of an outline of descriptors, pixels, rounding included.
@@ -96,7 +96,7 @@ pub(super) fn element_of(object: &Object<f64>, rings: &[Vec<Vec2<f64>>], reach: 
             let (size, degrees) = upright(rectangle.size.map(|side| (side * scale).abs()), pose.rotation);
             let corner = center - Vec2::from(size) * 0.5;
             let numbers = [("x", corner.x), ("y", corner.y), ("width", size[0]), ("height", size[1])];
-            let radius = rectangle.held_radius() * scale;
+            let radius = written_radius(rectangle.held_radius() * scale, size);
             let rounded = [("rx", radius)];
             let rounded = if radius > 0.0 { &rounded[..] } else { &[] };
             let element = Element::new("rect").numbers(&numbers).numbers(rounded);
@@ -127,6 +127,13 @@ pub(super) fn element_of(object: &Object<f64>, rings: &[Vec<Vec2<f64>>], reach: 
         }
         _ => Ok(closed_path(&smoothed(rings), FITTED)),
     }
+}
+
+/// The radius of a rectangle's corners, rounded down where rounding up makes it more than half of a side as it is written: readers hold
+/// rx and ry to half their own sides, and different ones make no circle.
+fn written_radius(radius: f64, size: [f64; 2]) -> f64 {
+    let half = 0.5 * size.map(|side| rounded(side, KNOWN)).into_iter().fold(f64::INFINITY, f64::min);
+    if rounded(radius, KNOWN) > half { radius - 0.5 * 0.1_f64.powi(3) } else { radius }
 }
 
 /// Path data of the rings of a path; open ones with the line that closes them if a pen has to follow it.

@@ -1,9 +1,9 @@
-use dvp_core::shape::{FillRule, PathRing};
+use dvp_core::shape::{FillRule, PathRing, Shape as _};
 use kurbo::Affine;
 
 use super::super::figure::Figure;
-use super::super::from_svg;
 use super::super::place::Frame;
+use super::super::{SvgDrawing, from_svg};
 use super::{objects, read};
 use crate::svg::to_svg;
 
@@ -60,6 +60,26 @@ fn hostile_texts_are_refused_with_a_reason() {
     ] {
         let error = read(&body).unwrap_err().to_string();
         assert!(error.contains(reason), "{reason}: {error}");
+    }
+}
+
+#[test]
+fn shapes_of_entities_are_read() {
+    let text = "<!DOCTYPE svg [<!ENTITY x \"<circle r='5'/>\">]>\
+         <svg xmlns='http://www.w3.org/2000/svg' width='100' height='100'>&x;<rect width='5' height='4'/>&x;</svg>";
+    let SvgDrawing { scene, losses, .. } = from_svg(text).unwrap();
+    let kinds: Vec<_> = scene.objects.iter().map(|object| object.shape.kind()).collect();
+    assert_eq!(kinds, ["circle", "rectangle", "circle"]);
+    assert!(losses.is_empty(), "{losses}");
+}
+
+#[test]
+fn units_of_fonts_matter_where_something_is_drawn() {
+    let drawing = read("<text x='1em' y='1em'>a</text><circle r='5'/>").unwrap();
+    assert_eq!((drawing.scene.objects.len(), drawing.losses.to_string().as_str()), (1, "text: not drawn"));
+    for body in ["<circle r='5em'/>", "<rect width='5ex' height='5'/>", "<svg width='5em'><circle r='5'/></svg>"] {
+        let error = read(body).unwrap_err().to_string();
+        assert!(error.contains("em or ex"), "{body}: {error}");
     }
 }
 

@@ -135,26 +135,6 @@ fn relative_coordinates_come_back_to_their_start() {
 }
 
 #[test]
-fn shapes_of_entities_are_read() {
-    let text = "<!DOCTYPE svg [<!ENTITY x \"<circle r='5'/>\">]>\
-         <svg xmlns='http://www.w3.org/2000/svg' width='100' height='100'>&x;<rect width='5' height='4'/>&x;</svg>";
-    let SvgDrawing { scene, losses, .. } = from_svg(text).unwrap();
-    let kinds: Vec<_> = scene.objects.iter().map(|object| object.shape.kind()).collect();
-    assert_eq!(kinds, ["circle", "rectangle", "circle"]);
-    assert!(losses.is_empty(), "{losses}");
-}
-
-#[test]
-fn units_of_fonts_matter_where_something_is_drawn() {
-    let drawing = read("<text x='1em' y='1em'>a</text><circle r='5'/>").unwrap();
-    assert_eq!((drawing.scene.objects.len(), drawing.losses.to_string().as_str()), (1, "text: not drawn"));
-    for body in ["<circle r='5em'/>", "<rect width='5ex' height='5'/>", "<svg width='5em'><circle r='5'/></svg>"] {
-        let error = read(body).unwrap_err().to_string();
-        assert!(error.contains("em or ex"), "{body}: {error}");
-    }
-}
-
-#[test]
 fn broken_path_data_is_read_up_to_the_error_and_said() {
     let drawing = read("<path d='M0 0L10 0L0 10 L'/>").unwrap();
     assert_eq!(drawing.losses.to_string(), "path data: read up to its first error");
