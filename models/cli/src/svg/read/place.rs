@@ -86,10 +86,11 @@ impl Frame {
         if placed.is_some() {
             return Ok(placed);
         }
-        let mut rings = self.rings(&figure.rings(tolerance), tolerance);
-        // One straight line encloses nothing.
-        rings.retain(|ring| ring.points.len() > 2 || ring.segments.iter().any(|s| *s != Segment::Line));
-        if rings.is_empty() {
+        let rings = self.rings(&figure.rings(tolerance), tolerance);
+        // One straight line encloses nothing; beside others it stays, so that a path comes back as it was written.
+        let encloses =
+            |ring: &PathRing<f64>| ring.points.len() > 2 || ring.segments.iter().any(|s| *s != Segment::Line);
+        if !rings.iter().any(encloses) {
             return Ok(None);
         }
         let path = Path { fill: rule, ..Path::new(rings)? };

@@ -1,10 +1,10 @@
-use dvp_core::shape::{FillRule, PathRing, Shape as _};
+use dvp_core::shape::{AnyShape, FillRule, PathRing, Shape as _};
 use kurbo::Affine;
 
 use super::super::figure::Figure;
 use super::super::place::Frame;
 use super::super::{SvgDrawing, from_svg};
-use super::{objects, read};
+use super::{objects, one, read};
 use crate::svg::to_svg;
 
 #[test]
@@ -131,4 +131,6 @@ fn what_has_no_boundary_is_an_error_and_not_nothing() {
     assert!(frame.fill(&with(1.0), FillRule::NonZero, 0.1).unwrap().is_some());
     let flat = Figure::Path { rings: vec![PathRing::polyline(vec![[0.0, 0.0], [1.0, 0.0]])], class: None };
     assert!(frame.fill(&flat, FillRule::NonZero, 0.1).unwrap().is_none(), "a line encloses nothing");
+    let AnyShape::Path(path) = one("<path d='M0 0H9V9ZM5 5H7'/>").shape else { panic!("no path") };
+    assert_eq!(path.rings.len(), 2, "beside others it stays");
 }
