@@ -119,3 +119,38 @@ fn reconstructions_have_the_bits_of_their_pictures() {
         assert!(worst < 0.03, "{name}: {worst}");
     }
 }
+
+#[test]
+fn what_shows_nothing_is_cut_out() {
+    let folder = tempfile::tempdir().unwrap();
+    // A ring, and three stripes as large as the picture whose corners are clear: the middle one may be taken for the background.
+    let ring = RgbaImage::from_fn(SIDE, SIDE, |x, y| {
+        let [x, y] = [x, y].map(|v| f64::from(v) + 0.5 - f64::from(SIDE) / 2.0);
+        let radius = x.hypot(y);
+        Rgba([20, 30, 40, (255.0 * ((24.5 - radius).clamp(0.0, 1.0) - (12.5 - radius).clamp(0.0, 1.0))).round() as u8])
+    });
+    let flag = RgbaImage::from_fn(SIDE, SIDE, |x, y| {
+        let [dx, dy] = [x, y].map(|v| f64::from(v) + 0.5 - f64::from(SIDE) / 2.0);
+        let color = if (16..48).contains(&y) { [0, 60, 180] } else { [220, 20, 40] };
+        Rgba([color[0], color[1], color[2], (255.0 * (32.5 - dx.hypot(dy)).clamp(0.0, 1.0)).round() as u8])
+    });
+    for (name, picture) in [("ring.png", ring), ("flag.png", flag)] {
+        let said = fitted(folder.path(), name, &picture.clone().into());
+        assert_eq!(said["transparent"], Value::from(true), "{said}");
+        let found = image::open(folder.path().join("out").join(name)).unwrap().into_rgba8();
+        let apart: f64 = picture
+            .pixels()
+            .zip(found.pixels())
+            .map(|(a, b)| {
+                // Premultiplied: what is clear has no color.
+                let of = |pixel: &Rgba<u8>| {
+                    let [r, g, b, alpha] = pixel.0.map(|value| f64::from(value) / 255.0);
+                    [r * alpha, g * alpha, b * alpha, alpha]
+                };
+                of(a).iter().zip(of(b)).map(|(a, b)| (a - b).abs()).sum::<f64>()
+            })
+            .sum();
+        let mean = apart / f64::from(4 * SIDE * SIDE);
+        assert!(mean < 0.005, "{name}: {mean}");
+    }
+}

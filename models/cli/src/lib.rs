@@ -29,4 +29,5 @@ pub mod format;
 pub mod generate;
 pub mod method;
 pub mod paint;
+mod region;
 pub mod svg;

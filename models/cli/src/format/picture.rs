@@ -28,16 +28,18 @@ pub struct Picture<T> {
     pub image: Image<T>,
     /// Whether some pixel lets through what is behind: the background of its scene is no color of the picture then.
     pub transparent: bool,
+    /// That one color; white for opaque pictures.
+    pub matte: [T; 3],
     /// Whether any pixel shows something; if not, the image is white.
     pub visible: bool,
     /// Bits of a channel in the file.
     pub bits: BitDepth,
 }
 
-impl<T> From<Image<T>> for Picture<T> {
+impl<T: Real> From<Image<T>> for Picture<T> {
     /// An opaque picture of float pixels.
     fn from(image: Image<T>) -> Self {
-        Self { image, transparent: false, visible: true, bits: BitDepth::Sixteen }
+        Self { image, transparent: false, matte: [T::one(); 3], visible: true, bits: BitDepth::Sixteen }
     }
 }
 
@@ -122,7 +124,8 @@ fn translucent<T: Real, V: Copy>(
     let pixels = values.as_chunks().0.iter().map(|pixel: &[V; 4]| pixel.map(real));
     let ground = Ground::of(pixels.clone());
     let image = planar(size, pixels.map(|pixel| ground.under(pixel)))?;
-    Ok(Picture { image, transparent: ground != Ground::Opaque, visible: ground != Ground::Invisible, bits })
+    let matte = ground.under([0.0; 4]).map(T::of);
+    Ok(Picture { image, transparent: ground != Ground::Opaque, matte, visible: ground != Ground::Invisible, bits })
 }
 
 fn planar<T: Real>(size: ImageSize, pixels: impl Iterator<Item = [f64; 3]>) -> Result<Image<T>, ImageError> {

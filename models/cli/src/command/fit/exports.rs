@@ -74,7 +74,7 @@ impl<'a> Measurable<'a> {
         Self { fit, bank: None, size, numbers: Some(labels) }
     }
 
-    fn numbers(&self) -> Vec<u32> {
+    pub(super) fn numbers(&self) -> Vec<u32> {
         let objects = self.fit.scene.objects.len();
         self.numbers.map_or_else(|| (1..).take(objects).collect(), <[u32]>::to_vec)
     }

@@ -3,6 +3,7 @@
 mod exports;
 mod inputs;
 mod masks;
+mod openings;
 mod report;
 mod solver;
 
@@ -25,7 +26,7 @@ use crate::format::{
 };
 use crate::method::load_network;
 use crate::paint::{PaintScratch, Painter};
-use crate::svg::to_svg;
+use crate::svg::to_svg_numbered;
 
 /// Finds the objects of pictures: shapes, poses and colors.
 ///
@@ -237,9 +238,8 @@ fn try_fit(
         }
         Some(frame) => stack_picture(stacks, &input.path, frame).context("image of the stack is gone")?,
     };
-    let (mut fit, time) = solver.solve(picture.image.view(), &input.stem, scratch)?;
-    // A transparent picture has no background; the one that was fitted is the color that the picture was put over.
-    fit.scene.transparent = picture.transparent;
+    let (fit, time) = solver.solve(picture.image.view(), &input.stem, scratch)?;
+    let fit = if picture.transparent { openings::cut_out(fit, picture, &mut scratch.paint)? } else { fit };
     let scene = Measurable::new(&fit, solver.bank(), picture.image.size());
     finish(arguments, [&*input.name(), &input.stem], picture, &scene, time, &mut scratch.paint)
 }
@@ -271,15 +271,16 @@ fn stack_picture<'a>(stacks: &'a [Stack], path: &Path, frame: usize) -> Option<&
 /// The scene file, which is to be called `json`, the SVG and the reconstruction.
 fn encode_results(
     arguments: &Arguments,
-    &Measurable { fit, bank, size, .. }: &Measurable<'_>,
+    scene: &Measurable<'_>,
     picture: &Picture<f32>,
     json: &Path,
     scratch: &mut PaintScratch<f32>,
 ) -> Result<Vec<PictureFile>> {
+    let &Measurable { fit, bank, size, .. } = scene;
     let line = SceneJson::from_fit(fit, picture)?.to_line(&Place::file(json))? + "\n";
     let mut files = vec![("json", line.into_bytes())];
     if !arguments.no_svg {
-        files.push(("svg", to_svg(&fit.scene, size, bank)?.into_bytes()));
+        files.push(("svg", to_svg_numbered(&fit.scene, size, bank, &scene.numbers())?.into_bytes()));
     }
     if !arguments.no_png {
         let painter = Painter::default();

@@ -9,8 +9,8 @@ use usvg::{ClipPath, Group, Mask, MaskType, Node};
 
 use super::error::SvgError;
 use super::place::{Placed, array};
-use super::region::Region;
 use super::walk::{Layer, Walk, affine_of};
+use crate::region::Region;
 
 /// Masks of less than this share hide, those of more than its complement show.
 const CLEAR: f64 = 2e-3;

@@ -17,7 +17,6 @@
 //! | `stroke` | figure, transform, style | stroke |
 //! | `paint` | paint | color and opacity |
 //! | `clip` | clip paths, masks | regions |
-//! | `region` | regions | what they have in common; shapes cut by them |
 //! | `losses` | | what was not kept |
 
 mod clip;
@@ -30,7 +29,6 @@ mod paint;
 mod path_data;
 mod place;
 mod references;
-mod region;
 mod source;
 mod stroke;
 #[cfg(test)]

@@ -15,9 +15,9 @@ use super::forms::Forms;
 use super::losses::Losses;
 use super::paint::{FlatPaint, flat};
 use super::place::{Frame, Placed};
-use super::region::{Region, cut};
 use super::source::by_id;
 use super::stroke;
+use crate::region::{Region, cut};
 
 /// Most lines and curves.
 const MOST_SEGMENTS: usize = 1 << 18;
