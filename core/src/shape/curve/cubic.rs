@@ -16,8 +16,8 @@ const WIDEST_TURN: f64 = 1.0;
 /// and so on, so that they do not move with the control points.
 ///
 /// The polygon strays at most `tolerance` from the cubic, and those of its parallels at distances up to `distance` from
-/// them. A part strays that far from its chord, and the vertices stand outside by at most as much; by a third more if there is
-/// but one of them.
+/// them; next to a cusp by up to a twentieth more, where its parts are no parabolas. A part strays that far from its chord, and
+/// the vertices stand outside by at most as much; by a third more if there is but one of them.
 pub(crate) fn cut<T: Real>(points: [Vec2<T>; 4], tolerance: T, distance: T, parameters: &mut Vec<T>) {
     let is_flat = |part: &[Vec2<T>; 4], depth: u32| {
         let tolerance = if depth == 1 { tolerance * T::of(0.75) } else { tolerance };
@@ -113,7 +113,8 @@ pub(crate) fn derivatives<T: Real>(points: &[Vec2<T>; 4], t: T) -> [Vec2<T>; 3] 
 /// up to `distance`.
 ///
 /// An edge over a step h lacks the area h^3 |p' x p''| / 12; half of it is each end's, and a vertex that moves out by d
-/// adds d |p'| (h + h') / 2. 0 next to a cusp, where that is more than a vertex may stand outside.
+/// adds d |p'| (h + h') / 2. Where edges curve evenly that is two thirds of what they stray; 0 next to a cusp, where it is more
+/// than three quarters of the tolerance.
 pub(crate) fn push<T: Real>(
     points: &[Vec2<T>; 4],
     t: T,
@@ -127,7 +128,7 @@ pub(crate) fn push<T: Real>(
     let speed = first.length();
     let turning = (first.cross(second) / (speed * speed)).abs();
     let out = push * (speed + distance * turning) * turning;
-    if out <= tolerance { push } else { T::zero() }
+    if out <= tolerance * T::of(0.75) { push } else { T::zero() }
 }
 
 /// The vertices at all parameters of [`cut`].
