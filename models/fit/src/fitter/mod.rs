@@ -139,7 +139,7 @@ impl<T: Real> Fitter<T> {
 
     /// From pixels to a scene. In pictures of 512 x 512 pixels and more whose edges are many pixels wide, every k-th pixel
     /// is looked at: they tell those between. Never worse than one flat color: if no scene was found whose mean absolute error is
-    /// smaller, that color is returned, and [`StopReason::NoBetterThanFlat`] says so.
+    /// smaller, that color is returned, and [`StopReason::NoBetterThanFlat`](crate::StopReason::NoBetterThanFlat) says so.
     ///
     /// # Errors
     /// [`FitError::NotFinite`] for an image with NaN or infinity.
