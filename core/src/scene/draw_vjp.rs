@@ -1,6 +1,9 @@
 //! The way back of [`Scene::draw`]: the gradient of a drawing to the gradient of a scene.
 
-use super::{DrawingGrad, Object, ObjectGrad, Scene, SceneGrad};
+use alloc::vec::Vec;
+
+use super::{DrawingGrad, Object, ObjectGrad, PoseGrad, Scene, SceneGrad};
+use crate::diff_op::add_scaled;
 use crate::real::Real;
 use crate::shape::{AnyShape, Efd, Flattening, Outline, OutlineBasis, Prototype, Shape as _, ShapeError};
 
@@ -36,7 +39,7 @@ impl<T: Real> Scene<T> {
         for (value, &g) in grad.background.iter_mut().zip(&grad_drawing.background) {
             *value += g;
         }
-        let mut unit = Outline::default();
+        let (mut unit, mut grad_unit) = (Outline::default(), Vec::new());
         let mut rest = &grad_drawing.vertices[..];
         for ((k, object), grad_object) in self.objects.iter().enumerate().zip(&mut grad.objects) {
             for (value, &g) in grad_object.color.iter_mut().zip(&grad_drawing.colors[k]) {
@@ -59,8 +62,14 @@ impl<T: Real> Scene<T> {
                     unit.clear();
                     shape.flatten(&how, &mut unit)?;
                     let grad_outline = take(unit.vertices.len())?;
-                    pull_back_pose(object, &mut unit.vertices, grad_outline, grad_object);
-                    shape.flatten_vjp(&how, &unit.vertices, &mut grad_object.numbers)?;
+                    grad_unit.clear();
+                    grad_unit.resize(grad_outline.len(), [T::zero(); 2]);
+                    let mut pose = PoseGrad::default();
+                    object.pose.transform_vjp(&unit.vertices, grad_outline, &mut pose, &mut grad_unit);
+                    add_scaled(&mut grad_object.translation, &pose.translation, T::one());
+                    grad_object.scale += pose.scale;
+                    grad_object.rotation += pose.rotation;
+                    shape.flatten_vjp(&how, &grad_unit, &mut grad_object.numbers)?;
                 }
             }
         }
@@ -100,22 +109,6 @@ impl<T: Real> Scene<T> {
             }
         }
         Ok(())
-    }
-}
-
-/// Gradients of the pose; `unit`, the outline in the frame of the shape, becomes the gradient with respect to itself:
-/// scale R^T g.
-fn pull_back_pose<T: Real>(object: &Object<T>, unit: &mut [[T; 2]], grad_outline: &[[T; 2]], grad: &mut ObjectGrad<T>) {
-    let scale = object.pose.scale;
-    let (sin, cos) = object.pose.rotation.sin_cos();
-    for (vertex, &[gx, gy]) in unit.iter_mut().zip(grad_outline) {
-        grad.translation[0] += gx;
-        grad.translation[1] += gy;
-        let [x, y] = *vertex;
-        let [hx, hy] = [cos * gx + sin * gy, cos * gy - sin * gx];
-        grad.scale += hx * x + hy * y;
-        grad.rotation += scale * (hy * x - hx * y);
-        *vertex = [scale * hx, scale * hy];
     }
 }
 
