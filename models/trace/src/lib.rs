@@ -21,6 +21,8 @@
 
 extern crate alloc;
 
+pub mod boundary;
+pub mod partition;
 pub mod ruler;
 pub mod sample;
 pub mod tuning;
