@@ -28,3 +28,20 @@ pub const ROUNDING: f64 = 0.29 / 255.0;
 /// Second difference (pixels) of windows side by side from which on there is a corner between them and no bend: that of a circle of two
 /// pixels' radius.
 pub const MOST_BEND: f64 = 0.5;
+/// Distance (pixels) within which the walks of three faces past one another are the same junction.
+pub const JUNCTION_SIZE: f64 = 4.0;
+/// Samples on either side of a junction that tell whether a boundary goes on through it.
+pub const JUNCTION_SAMPLES: usize = 8;
+/// Standard deviation (pixels) of a boundary that goes on through a junction: what a parabola over 16 pixels cannot follow.
+pub const JUNCTION_SIGMA: f64 = 0.08;
+/// Most bits that one junction may speak for an order: one that is read wrongly must not outvote all others.
+pub const MOST_VOTE: f64 = 40.0;
+/// Bits for a face with a single neighbor lying in front of it: less than any junction that was read.
+pub const ENCLOSED_VOTE: f64 = 2.0;
+/// Steps without a sample after which a boundary counts as unread: at 45 degrees every second step has one.
+pub const MOST_UNREAD: usize = 5;
+/// Standard deviation (pixels) of a boundary that is known from the cracks between pixels alone: 1 / sqrt(12), and a little for their
+/// being stairs.
+pub const CRACK_SIGMA: f64 = 0.35;
+/// Share of a face's pixels that its outline may get wrong.
+pub const MOST_WRONG: f64 = 0.01;
