@@ -55,7 +55,7 @@ pub fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<Color>) 
             continue;
         }
         let is_hidden = |step: &Step| step.other == OUTSIDE || order.rank[step.other as usize] > rank;
-        let outlines = outlines(partition, of_face, face, is_hidden, &ruler, |label| {
+        let outlines = outlines(partition, of_face, is_hidden, &ruler, |label| {
             if label == face {
                 Some(true)
             } else if order.rank[label as usize] > rank {
@@ -75,7 +75,6 @@ pub fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<Color>) 
 fn outlines(
     partition: &Partition,
     rings: &[Ring],
-    face: u32,
     is_hidden: impl Fn(&Step) -> bool,
     ruler: &Ruler,
     wanted: impl Fn(u32) -> Option<bool>,
@@ -94,8 +93,7 @@ fn outlines(
         if polygons.is_empty() {
             return false;
         }
-        let wrong = raster::compare(partition, &polygons, |i| wanted(partition.labels[i]));
-        (wrong.bare + wrong.hidden) as f64 <= crate::tuning::MOST_WRONG * partition.faces[face as usize].area as f64
+        raster::agrees(partition, &polygons, &wanted)
     };
     if is_good(&whole) {
         return whole;

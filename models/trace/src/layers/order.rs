@@ -48,22 +48,30 @@ impl Order {
     }
 }
 
-/// A face with one neighbor only lies on it. What has the color of the background is a hole in what is around it, for sure if nothing is
-/// painted there (`clear`).
+/// A face with one neighbor only lies on it. What has the color of the background is a hole where all around it lies on the background,
+/// and for sure if nothing is painted there (`clear`).
 fn add_enclosures(partition: &Partition, rings: &[Vec<Ring>], background: u32, clear: bool, votes: &mut Votes) {
+    let neighbors: Vec<Vec<u32>> = rings.iter().map(|rings| neighbors_along(rings.iter())).collect();
     let back = partition.faces[background as usize].color;
+    let is_back = |face: u32| partition.faces[face as usize].color == back;
     for (face, rings) in rings.iter().enumerate() {
-        let steps = rings.iter().take(1).flat_map(|ring| &ring.steps);
-        let mut neighbors: Vec<u32> = steps.map(|step| step.other).filter(|&other| other != OUTSIDE).collect();
-        neighbors.sort_unstable();
-        neighbors.dedup();
-        if partition.faces[face].color == back {
+        let around: Vec<u32> = neighbors_along(rings.iter().take(1));
+        let lies_on_back = |other: &u32| neighbors[*other as usize].iter().any(|&next| next == background);
+        if is_back(face as u32) && (clear || around.iter().all(lies_on_back)) {
             let bits = if clear { f64::MAX.sqrt() } else { tuning::ENCLOSED_VOTE };
-            for neighbor in neighbors {
+            for neighbor in around {
                 *votes.entry((neighbor, face as u32)).or_default() += bits;
             }
-        } else if let [neighbor] = neighbors[..] {
+        } else if let [neighbor] = around[..] {
             *votes.entry((face as u32, neighbor)).or_default() += tuning::ENCLOSED_VOTE;
         }
     }
+}
+
+/// The faces along rings.
+fn neighbors_along<'a>(rings: impl Iterator<Item = &'a Ring>) -> Vec<u32> {
+    let mut all: Vec<u32> = rings.flat_map(|ring| &ring.steps).map(|step| step.other).filter(|&other| other != OUTSIDE).collect();
+    all.sort_unstable();
+    all.dedup();
+    all
 }

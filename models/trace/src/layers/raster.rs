@@ -1,34 +1,28 @@
 //! Which pixels an outline covers: the check that a layer hides nothing that lies behind it, and shows all that is its own.
 
+use alloc::collections::BTreeMap;
 use alloc::vec::Vec;
+use core::ops::Range;
 
-use crate::partition::Partition;
+use crate::partition::{Face, Partition};
+use crate::tuning;
 
-/// Pixels that an outline gets wrong.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Wrong {
-    /// Pixels of its own that it does not cover.
-    pub(super) bare: usize,
-    /// Pixels of what lies behind it that it covers.
-    pub(super) hidden: usize,
-}
-
-/// Compares what polygons (pixels, even-odd) cover with what they should; pixels that are mixed count for neither.
-///
-/// `wanted`: Some(true) for pixels to cover, Some(false) for those not to, none where either will do.
-pub(super) fn compare(partition: &Partition, polygons: &[Vec<[f64; 2]>], wanted: impl Fn(usize) -> Option<bool>) -> Wrong {
+/// Whether what polygons (pixels, even-odd) cover is what they should cover, but for few pixels: of all pixels that are `wanted`
+/// (Some(true)), and of every face that is not (Some(false)), however small it is. Mixed pixels count for nothing.
+pub(super) fn agrees(partition: &Partition, polygons: &[Vec<[f64; 2]>], wanted: impl Fn(u32) -> Option<bool>) -> bool {
     let [width, height] = partition.size;
-    let mut wrong = Wrong::default();
+    let rows = rows(partition, polygons, &wanted);
+    let mut missed = 0;
+    let mut hidden: BTreeMap<u32, usize> = BTreeMap::new();
     let mut crossings: Vec<f64> = Vec::new();
-    for y in 0..height {
+    for y in rows.start..rows.end.min(height) {
         crossings.clear();
         let center = y as f64 + 0.5;
         for polygon in polygons {
             let mut last = polygon[polygon.len() - 1];
             for &point in polygon {
-                let (a, b) = (last, point);
-                if (a[1] <= center) != (b[1] <= center) {
-                    crossings.push(a[0] + (center - a[1]) / (b[1] - a[1]) * (b[0] - a[0]));
+                if (last[1] <= center) != (point[1] <= center) {
+                    crossings.push(last[0] + (center - last[1]) / (point[1] - last[1]) * (point[0] - last[0]));
                 }
                 last = point;
             }
@@ -43,12 +37,29 @@ pub(super) fn compare(partition: &Partition, polygons: &[Vec<[f64; 2]>], wanted:
             if partition.shares[i] < 0.9 {
                 continue;
             }
-            match (wanted(i), crossed % 2 == 1) {
-                (Some(true), false) => wrong.bare += 1,
-                (Some(false), true) => wrong.hidden += 1,
+            match (wanted(partition.labels[i]), crossed % 2 == 1) {
+                (Some(true), false) => missed += 1,
+                (Some(false), true) => *hidden.entry(partition.labels[i]).or_default() += 1,
                 _ => (),
             }
         }
     }
-    wrong
+    let few = |count: usize, face: &Face| count <= 1 || (count as f64) <= tuning::MOST_WRONG * face.area as f64;
+    let own = partition.faces.iter().enumerate().filter(|&(face, _)| wanted(face as u32) == Some(true));
+    let area = own.map(|(_, face)| face.area).sum::<usize>();
+    missed as f64 <= (tuning::MOST_WRONG * area as f64).max(1.0)
+        && hidden.iter().all(|(&face, &count)| few(count, &partition.faces[face as usize]))
+}
+
+/// The rows that the polygons, or faces that are wanted, reach.
+fn rows(partition: &Partition, polygons: &[Vec<[f64; 2]>], wanted: impl Fn(u32) -> Option<bool>) -> Range<usize> {
+    let own = partition.faces.iter().enumerate().filter(|&(face, _)| wanted(face as u32) == Some(true));
+    let (mut top, mut bottom) = own.fold((usize::MAX, 0), |(top, bottom), (_, face)| {
+        (top.min(face.bounds[1]), bottom.max(face.bounds[3]))
+    });
+    for [_, y] in polygons.iter().flatten() {
+        top = top.min(y.max(0.0) as usize);
+        bottom = bottom.max(y.max(0.0) as usize + 1);
+    }
+    top..bottom
 }

@@ -8,7 +8,7 @@ use alloc::vec::Vec;
 
 use super::flat::{Flats, NONE, Noise};
 use super::palette::{Palette, distance};
-use super::{Color, NoPartition};
+use super::Color;
 use crate::tuning;
 
 /// The main color of every pixel.
@@ -43,7 +43,7 @@ pub(super) fn explain(
     flats: &Flats,
     palette: Palette,
     noise: &Noise,
-) -> Result<Mixed, NoPartition> {
+) -> Mixed {
     let of_region: Vec<u16> = palette.of_region.iter().map(|&color| narrow(color)).collect();
     let mut mixed = Mixed {
         colors: vec![u16::MAX; pixels.len()],
@@ -69,7 +69,7 @@ pub(super) fn explain(
             None => open.push(i),
         }
     }
-    mixed.explain_thin(pixels, size, &flat_colors, &mut open)?;
+    mixed.explain_thin(pixels, size, &flat_colors, &mut open);
     for &i in &open {
         let all: Vec<u16> = (0..mixed.palette.len()).map(narrow).collect();
         if let Some(best) = best_mixture(pixels[i].map(f64::from), &all, &mixed.palette) {
@@ -77,7 +77,7 @@ pub(super) fn explain(
         }
     }
     mixed.unexplained = open.len() as f64 / pixels.len() as f64;
-    Ok(mixed)
+    mixed
 }
 
 impl Mixed {
@@ -93,7 +93,7 @@ impl Mixed {
         size: [usize; 2],
         flat_colors: &[u16],
         open: &mut Vec<usize>,
-    ) -> Result<(), NoPartition> {
+    ) {
         let mut near = Vec::new();
         let mut tried_from = 0;
         loop {
@@ -129,12 +129,12 @@ impl Mixed {
             }
             let progressed = left.len() < open.len();
             *open = left;
-            let Some((away, i)) = extreme else { return Ok(()) };
+            let Some((away, i)) = extreme else { return };
             if away <= tuning::LEAST_CONTRAST || (!progressed && tried_from > 0 && open.len() < tuning::LEAST_THIN) {
-                return Ok(());
+                return;
             }
-            if self.palette.len() == tuning::MOST_COLORS {
-                return Err(NoPartition::TooManyColors);
+            if self.palette.len() >= tuning::MOST_COLORS {
+                return;
             }
             tried_from = self.palette.len();
             self.palette.push(pixels[i].map(f64::from));

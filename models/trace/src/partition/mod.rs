@@ -70,7 +70,7 @@ impl Partition {
             return Err(NoPartition::NotFlat { flat: share });
         }
         let colors = palette::Palette::of(&flats, &noise)?;
-        let mixed = mix::explain(&pixels, size, &flats, colors, &noise)?;
+        let mixed = mix::explain(&pixels, size, &flats, colors, &noise);
         Ok(faces::cut(size, pixels, mixed))
     }
 
