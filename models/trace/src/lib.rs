@@ -21,6 +21,7 @@
 
 extern crate alloc;
 
+pub mod outline;
 pub mod ruler;
 pub mod sample;
 pub mod tuning;
