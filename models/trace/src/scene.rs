@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 
 use dvp_core::render::{Compositing, EdgeProfile};
-use dvp_core::shape::{AnyShape, Circle, Ellipse, FillRule, Path, PathRing, Rectangle, RegularPolygon, Segment};
+use dvp_core::shape::{AnyShape, Circle, Ellipse, FillRule, Path, PathRing, Rectangle, RegularPolygon, Segment, Star};
 use dvp_core::{ImageSize, Object, Pose, Real as _, Scene};
 
 use crate::layers::{Layer, Layers};
@@ -40,7 +40,11 @@ fn object(layer: &Layer, unit: f64) -> Option<Object<f32>> {
             AnyShape::RegularPolygon(RegularPolygon { sides: *sides, radius: radius / unit }),
             [center.x, center.y, *angle],
         ),
-        outlines => path(outlines.iter().map(Outline::path_ring).collect(), unit),
+        [Outline { shape: OutlineShape::Star { center, points, radii, angle }, .. }] => (
+            AnyShape::Star(Star { points: *points, radius: radii[0] / unit, inner_radius: radii[1] / unit }),
+            [center.x, center.y, *angle],
+        ),
+        outlines => path(outlines.iter().map(|outline| outline.shape.ring()).collect(), unit),
     };
     let [x, y, rotation] = pose;
     let pose = Pose { translation: [x / unit, y / unit].map(f32::of), scale: 1.0, rotation: f32::of(rotation) };

@@ -8,12 +8,13 @@ mod order;
 mod raster;
 mod visible;
 
+use alloc::vec;
 use alloc::vec::Vec;
 
-use dvp_core::shape::{FillRule, Outline as Polygons, Path, Shape as _};
+use dvp_core::shape::{FillRule, Outline as Polygons, Path, PathRing, Shape as _};
 
 use crate::boundary::{Ring, Step};
-use crate::outline::{Outline, fit_closed};
+use crate::outline::{Outline, OutlineShape, fit_closed};
 use crate::partition::{Color, OUTSIDE, Partition};
 use crate::ruler::Ruler;
 use crate::sample::RingSamples;
@@ -112,12 +113,13 @@ fn traced(samples: &RingSamples, ring: &Ring, ruler: &Ruler) -> Outline {
     if points.len() < 3 {
         points = ring.steps.iter().map(|step| step.crack.start.map(|value| value as f64)).collect();
     }
-    Outline::polygon(points, ruler)
+    let bits = 2.0 * points.len() as f64 * ruler.number(0.1);
+    Outline { shape: OutlineShape::Path(PathRing::polygon(points)), bits, misfit: 0.0 }
 }
 
 /// The polygon of an outline.
 fn polygon(outline: &Outline) -> Option<Vec<[f64; 2]>> {
-    let path = Path { rings: alloc::vec![outline.path_ring()], fill: FillRule::EvenOdd };
+    let path = Path { rings: vec![outline.shape.ring()], fill: FillRule::EvenOdd };
     let mut polygons = Polygons::default();
     path.boundary().ok()?.flatten(0.1, &mut polygons).ok()?;
     (polygons.vertices.len() > 2).then_some(polygons.vertices)

@@ -1,0 +1,180 @@
+//! A row of lines, arcs and cubics as numbers, and what each misses a sample by.
+
+use alloc::vec::Vec;
+
+use dvp_core::Vec2;
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
+
+use super::cubic::{at, basis, nearer};
+use super::track::LEAST_COSINE;
+use crate::sample::Sample;
+
+/// How the outline leads from one point to the next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Curve {
+    Line,
+    /// Its bulge: tan(sweep / 4).
+    Arc(f64),
+    /// Its two control points.
+    Cubic([Vec2<f64>; 2]),
+}
+
+/// Curves from point to point; in a closed chain the last leads back to the first point.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Chain {
+    pub(super) points: Vec<Vec2<f64>>,
+    pub(super) curves: Vec<Curve>,
+    /// Of each curve: its first sample; counted on past the last sample of the track, so that they rise.
+    pub(super) firsts: Vec<usize>,
+    pub(super) closed: bool,
+}
+
+/// Slopes of a misfit: places of numbers and the derivatives by them.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Slopes {
+    entries: [(usize, f64); 14],
+    len: usize,
+}
+
+impl Slopes {
+    pub(super) fn push(&mut self, place: usize, slope: f64) {
+        if let Some(entry) = self.entries.get_mut(self.len) {
+            *entry = (place, slope);
+            self.len += 1;
+        }
+    }
+
+    fn push_point(&mut self, place: usize, slope: Vec2<f64>) {
+        self.push(place, slope.x);
+        self.push(place + 1, slope.y);
+    }
+
+    pub(super) fn entries(&self) -> &[(usize, f64)] {
+        &self.entries[..self.len]
+    }
+}
+
+impl Curve {
+    fn number_count(self) -> usize {
+        match self {
+            Self::Line => 0,
+            Self::Arc(_) => 1,
+            Self::Cubic(_) => 4,
+        }
+    }
+}
+
+impl Chain {
+    /// The point after curve `k`.
+    pub(super) fn next(&self, k: usize) -> usize {
+        if k + 1 < self.points.len() { k + 1 } else { 0 }
+    }
+
+    /// Where the numbers of each point start; those of the curve that leaves it follow. Last, how many there are.
+    pub(super) fn places(&self) -> Vec<usize> {
+        let mut place = 0;
+        let mut places = Vec::with_capacity(self.points.len() + 1);
+        for k in 0..self.points.len() {
+            places.push(place);
+            place += 2 + self.curves.get(k).map_or(0, |curve| curve.number_count());
+        }
+        places.push(place);
+        places
+    }
+
+    /// Adds a change to all numbers.
+    pub(super) fn shift(&mut self, change: &[f64]) {
+        let mut change = change.iter().copied();
+        let mut next = || change.next().unwrap_or(0.0);
+        for k in 0..self.points.len() {
+            self.points[k] = self.points[k] + Vec2::new(next(), next());
+            match self.curves.get_mut(k) {
+                Some(Curve::Arc(bulge)) => *bulge += next(),
+                Some(Curve::Cubic(controls)) => {
+                    controls.iter_mut().for_each(|control| *control = *control + Vec2::new(next(), next()));
+                }
+                Some(Curve::Line) | None => {}
+            }
+        }
+    }
+
+    /// The four points of curve `k` if it is a cubic.
+    pub(super) fn cubic(&self, k: usize) -> Option<[Vec2<f64>; 4]> {
+        match self.curves[k] {
+            Curve::Cubic([a, b]) => Some([self.points[k], a, b, self.points[self.next(k)]]),
+            _ => None,
+        }
+    }
+
+    /// The directions, of length 1, in which curve `k` leaves and arrives; none without length.
+    pub(super) fn directions(&self, k: usize) -> Option<[Vec2<f64>; 2]> {
+        let [from, to] = [k, self.next(k)].map(|point| self.points[point]);
+        let chord = (to - from).normalized();
+        match self.curves[k] {
+            Curve::Line => chord.map(|chord| [chord; 2]),
+            Curve::Arc(bulge) => {
+                // Half the sweep, by which the ends point away from the chord, is twice the angle whose tangent is the bulge.
+                let half = Vec2::new(1.0 - bulge * bulge, 2.0 * bulge) / (1.0 + bulge * bulge);
+                chord.map(|chord| [chord.turned(Vec2::new(half.x, -half.y)), chord.turned(half)])
+            }
+            Curve::Cubic([a, b]) => {
+                let leave = (a - from).normalized().or_else(|| (b - from).normalized()).or(chord)?;
+                let arrive = (to - b).normalized().or_else(|| (to - a).normalized()).or(chord)?;
+                Some([leave, arrive])
+            }
+        }
+    }
+
+    /// By how much the curve passes `sample` along its axis, in its sigmas, and the slopes of that. `t` is the sample's parameter on
+    /// a cubic, made better. None where the curve has no length.
+    pub(super) fn misfit(&self, k: usize, sample: &Sample, places: &[usize], t: &mut f64) -> Option<(f64, Slopes)> {
+        let mut slopes = Slopes::default();
+        let (from, to) = (self.points[k], self.points[self.next(k)]);
+        let (first, last) = (places[k], places[self.next(k)]);
+        if let Some(cubic) = self.cubic(k) {
+            *t = nearer(&cubic, sample.point, *t);
+            let (place, velocity) = at(&cubic, *t);
+            let across = velocity.normalized()?.perp();
+            let across = across / (held(across.dot(sample.axis), 1.0) * sample.sigma);
+            let share = basis(*t);
+            for (share, place) in share.into_iter().zip([first, first + 2, first + 4, last]) {
+                slopes.push_point(place, across * share);
+            }
+            return Some(((place - sample.point).dot(across), slopes));
+        }
+        let bulge = if let Curve::Arc(bulge) = self.curves[k] { bulge } else { 0.0 };
+        // The circle through both ends is where g = bulge (|q|^2 - |c|^2 / 4) + (bulge^2 - 1) / 2 (c x q) is 0: c the chord, q from its
+        // middle to the point. At bulge 0 it is the straight line: no case of its own.
+        let (chord, q) = (to - from, sample.point - (from + to) * 0.5);
+        let (quarter, cross) = (q.length_squared() - 0.25 * chord.length_squared(), chord.cross(q));
+        let factor = 0.5 * (bulge * bulge - 1.0);
+        let g = bulge * quarter + factor * cross;
+        let by_q = q * (2.0 * bulge) + chord.perp() * factor;
+        let by_chord = chord * (-0.5 * bulge) - q.perp() * factor;
+        let steepness = by_q.length();
+        let along = held(by_q.dot(sample.axis), steepness) * sample.sigma;
+        if steepness <= 0.0 || !along.is_finite() {
+            return None;
+        }
+        let scale = -1.0 / along;
+        slopes.push_point(first, (by_q * -0.5 - by_chord) * scale);
+        slopes.push_point(last, (by_q * -0.5 + by_chord) * scale);
+        if let Curve::Arc(_) = self.curves[k] {
+            slopes.push(first + 2, (quarter + bulge * cross) * scale);
+        }
+        Some((g * scale, slopes))
+    }
+
+    /// Whether the window of `sample` holds point `k`: it tells of both curves there.
+    pub(super) fn is_spoiled(&self, k: usize, sample: &Sample) -> bool {
+        let offset = sample.point - self.points[k];
+        offset.cross(sample.axis).abs() < 0.55 && offset.dot(sample.axis).abs() < 2.0
+    }
+}
+
+/// A component of a vector of given length, away from 0.
+fn held(component: f64, length: f64) -> f64 {
+    let least = LEAST_COSINE * length;
+    if component.abs() >= least { component } else { least.copysign(component) }
+}

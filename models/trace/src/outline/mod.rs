@@ -1,0 +1,136 @@
+//! The ladder of outlines: the shortest description of a boundary.
+//!
+//! In: samples of a boundary. Out: the [`Outline`] whose numbers and misfit cost the fewest bits together.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `track` | samples in order, with what pieces are scored by |
+//! | `nodes` | places where pieces may meet |
+//! | `moments`, `cubic` | how well a line, a circle, a cubic explains a stretch |
+//! | `programme` | the cheapest row of pieces: a dynamic programme |
+//! | `chain`, `skyline`, `solve` | all numbers of a row of pieces together, by least squares |
+//! | `ties` | lines along the axes, smooth joins, equal radii, where they make the description shorter |
+//! | `path` | from samples to a path |
+//! | `as_ring` | outlines of any kind as rings of lines, arcs and cubics |
+
+mod as_ring;
+mod chain;
+mod cubic;
+mod moments;
+mod nodes;
+mod path;
+mod programme;
+mod skyline;
+mod solve;
+#[cfg(test)]
+mod tests;
+mod ties;
+mod track;
+
+use dvp_core::Vec2;
+use dvp_core::shape::PathRing;
+
+use crate::ruler::Ruler;
+use crate::sample::{RingSamples, Sample};
+use path::FittedPath;
+use track::Track;
+
+/// An outline, in pixels, and what it costs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outline {
+    /// The outline.
+    pub shape: OutlineShape,
+    /// Bits of its numbers and of its structure.
+    pub bits: f64,
+    /// Bits of what it misses the samples by.
+    pub misfit: f64,
+}
+
+/// The kinds of outlines that are tried.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum OutlineShape {
+    /// A circle.
+    Circle {
+        /// Its middle.
+        center: Vec2<f64>,
+        /// Its radius.
+        radius: f64,
+    },
+    /// An ellipse.
+    Ellipse {
+        /// Its middle.
+        center: Vec2<f64>,
+        /// Half its width and height before it is turned.
+        radii: [f64; 2],
+        /// The turn from +x to +y, radians.
+        angle: f64,
+    },
+    /// A rectangle, with round corners or sharp ones.
+    Rectangle {
+        /// Its middle.
+        center: Vec2<f64>,
+        /// Width and height before it is turned.
+        size: [f64; 2],
+        /// Radius of its corners; 0 if they are sharp.
+        corner_radius: f64,
+        /// The turn from +x to +y, radians.
+        angle: f64,
+    },
+    /// A polygon of equal sides and angles.
+    RegularPolygon {
+        /// Its middle.
+        center: Vec2<f64>,
+        /// How many sides it has.
+        sides: usize,
+        /// From the middle to its corners.
+        radius: f64,
+        /// From +x toward +y to its first corner, radians.
+        angle: f64,
+    },
+    /// A star.
+    Star {
+        /// Its middle.
+        center: Vec2<f64>,
+        /// How many points it has.
+        points: usize,
+        /// From the middle to the points, and to the corners between them.
+        radii: [f64; 2],
+        /// From +x toward +y to its first point, radians.
+        angle: f64,
+    },
+    /// A closed path of lines, arcs and cubics.
+    Path(PathRing<f64>),
+}
+
+/// An open line and what it costs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OpenFit {
+    /// Its pieces, in pixels.
+    pub path: PathRing<f64>,
+    /// Bits of its numbers and of its structure.
+    pub bits: f64,
+    /// Bits of what it misses the samples by.
+    pub misfit: f64,
+}
+
+/// The shortest description of a closed boundary. Where it is hidden the outline goes straight on, or to a corner if the
+/// directions beside meet in one not far away, or straight across.
+///
+/// None if fewer than three samples can be used.
+#[must_use]
+pub fn fit_closed(ring: &RingSamples, ruler: &Ruler) -> Option<Outline> {
+    let mut track = Track::of_ring(ring)?;
+    let FittedPath { ring, bits, misfit } = path::fit_ring(&mut track, ruler)?;
+    Some(Outline { shape: OutlineShape::Path(ring), bits, misfit })
+}
+
+/// The shortest description of an open line through samples.
+///
+/// None if fewer than three samples can be used.
+#[must_use]
+pub fn fit_open(samples: &[Sample], ruler: &Ruler) -> Option<OpenFit> {
+    let track = Track::of_line(samples)?;
+    let FittedPath { ring, bits, misfit } = path::fit_line(&track, ruler)?;
+    Some(OpenFit { path: ring, bits, misfit })
+}

@@ -1,0 +1,184 @@
+//! The cheapest path through samples: cut into pieces, then all its numbers together, then what is tied.
+
+use alloc::vec::Vec;
+
+use dvp_core::Vec2;
+use dvp_core::shape::{PathRing, Segment};
+
+use super::chain::{Chain, Curve};
+use super::nodes::Nodes;
+use super::programme::{Kind, Span, cut};
+use super::solve::Fitted;
+use super::ties::{Tie, Tied, tie};
+use super::track::Track;
+use crate::ruler::Ruler;
+use crate::tuning;
+
+/// A path and what it costs.
+#[derive(Clone, Debug)]
+pub(super) struct FittedPath {
+    pub(super) ring: PathRing<f64>,
+    /// Numbers and structure.
+    pub(super) bits: f64,
+    /// Bits of the misfit.
+    pub(super) misfit: f64,
+}
+
+/// The cheapest closed path; the track starts somewhere else afterward.
+pub(super) fn fit_ring(track: &mut Track, ruler: &Ruler) -> Option<FittedPath> {
+    let corner = Nodes::sharpest(track);
+    track.rotate(corner.unwrap_or(0));
+    let mut spans = cut(track, ruler);
+    if corner.is_none() && spans.len() > 1 {
+        // Nothing says where to start: again from a place where two pieces meet.
+        track.rotate(spans[spans.len() / 2].samples.start);
+        spans = cut(track, ruler);
+    }
+    fit_spans(&spans, track, ruler)
+}
+
+/// The cheapest open path.
+pub(super) fn fit_line(track: &Track, ruler: &Ruler) -> Option<FittedPath> {
+    fit_spans(&cut(track, ruler), track, ruler)
+}
+
+fn fit_spans(spans: &[Span], track: &Track, ruler: &Ruler) -> Option<FittedPath> {
+    let chain = chain_of(spans, track)?;
+    let fitted = bridge(Fitted::of(chain, track, ruler, &[])?, track, ruler);
+    Some(finish(tie(fitted, track, ruler), ruler))
+}
+
+/// The curves of the pieces, through the samples where they meet. Where the boundary is hidden between two pieces a straight
+/// line leads over.
+fn chain_of(spans: &[Span], track: &Track) -> Option<Chain> {
+    let count = track.len();
+    let mut chain = Chain { points: Vec::new(), curves: Vec::new(), firsts: Vec::new(), closed: track.closed };
+    let (first, last) = (spans.first()?, spans.last()?);
+    let mut before = track.closed.then_some(last);
+    for span in spans {
+        let start = track.point(span.samples.start);
+        let came_from = before.map(|before| (before.samples.end - 1, track.point(before.samples.end - 1)));
+        match came_from {
+            Some((sample, point)) if is_hidden(track, sample, span.samples.start) => {
+                chain.push(point, Curve::Line, count + span.samples.start);
+                chain.push(start, Curve::Line, count + span.samples.start);
+            }
+            Some((_, point)) => chain.push((point + start) * 0.5, Curve::Line, count + span.samples.start),
+            None => chain.push(start, Curve::Line, count),
+        }
+        let curve = match span.kind {
+            Kind::Line => Curve::Line,
+            Kind::Cubic([_, a, b, _]) => Curve::Cubic([a, b]),
+            Kind::Arc => {
+                let middle = track.point(usize::midpoint(span.samples.start, span.samples.end));
+                Curve::Arc(bulge_through(start, middle, track.point(span.samples.end - 1)))
+            }
+        };
+        if let Some(place) = chain.curves.last_mut() {
+            *place = curve;
+        }
+        before = Some(span);
+    }
+    if !track.closed {
+        chain.points.push(track.point(count - 1));
+    }
+    // A ring of one line is no ring.
+    (!track.closed || chain.points.len() > 1 || matches!(first.kind, Kind::Cubic(_))).then_some(chain)
+}
+
+impl Chain {
+    fn push(&mut self, point: Vec2<f64>, curve: Curve, first: usize) {
+        self.points.push(point);
+        self.curves.push(curve);
+        self.firsts.push(first);
+    }
+}
+
+/// Whether the boundary is hidden somewhere between two samples.
+fn is_hidden(track: &Track, before: usize, after: usize) -> bool {
+    let after = if after <= before { after + track.len() } else { after };
+    (before + 1..=after).any(|k| track.hidden[k % track.len()])
+}
+
+/// tan(sweep / 4) of the arc between `from` and `to` through `middle`.
+fn bulge_through(from: Vec2<f64>, middle: Vec2<f64>, to: Vec2<f64>) -> f64 {
+    let chord = to - from;
+    let q = middle - (from + to) * 0.5;
+    let (quarter, cross) = (q.length_squared() - 0.25 * chord.length_squared(), chord.cross(q));
+    let bulge = -cross / (quarter.hypot(cross) - quarter);
+    if bulge.is_finite() { bulge.clamp(-20.0, 20.0) } else { 0.0 }
+}
+
+/// Takes the straight lines over hidden stretches away where the curves beside them meet ahead and not far away.
+fn bridge(fitted: Fitted, track: &Track, ruler: &Ruler) -> Fitted {
+    let mut fitted = fitted;
+    let mut k = 0;
+    while k < fitted.chain.curves.len() {
+        if let Some(chain) = without_bridge(&fitted.chain, track, k)
+            && let Some(next) = Fitted::of(chain, track, ruler, &[])
+            && next.misfit(ruler) + next.number_bits(ruler) < fitted.misfit(ruler) + fitted.number_bits(ruler)
+        {
+            fitted = next;
+            continue;
+        }
+        k += 1;
+    }
+    fitted
+}
+
+/// The chain in which the curves beside curve `k`, along which nothing is seen, meet in a corner; none if they do not.
+fn without_bridge(chain: &Chain, track: &Track, k: usize) -> Option<Chain> {
+    let count = chain.curves.len();
+    let samples = super::solve::samples_of(chain, track.len(), k);
+    if !samples.is_empty() || count < 3 || chain.points.len() != count || k == 0 {
+        return None;
+    }
+    let next = chain.next(k);
+    let [_, arrive] = chain.directions(k - 1)?;
+    let [leave, _] = chain.directions(next)?;
+    let gap = chain.points[next] - chain.points[k];
+    let sine = arrive.cross(leave);
+    let (on, back) = (gap.cross(leave) / sine, gap.cross(arrive) / sine);
+    let far = tuning::OUTLINE_BRIDGE * gap.length();
+    if !(0.0..far).contains(&on) || !(0.0..far).contains(&-back) {
+        return None;
+    }
+    let mut shorter = chain.clone();
+    let corner = chain.points[k] + arrive * on;
+    shorter.points[next] = corner;
+    shorter.points.remove(k);
+    shorter.curves.remove(k);
+    shorter.firsts.remove(k);
+    Some(shorter)
+}
+
+fn finish(tied: Tied, ruler: &Ruler) -> FittedPath {
+    let misfit = tied.fitted.misfit(ruler);
+    let ring = ring_of(&tied);
+    #[expect(clippy::cast_precision_loss, reason = "counts of pieces are small")]
+    let pieces = ring.segments.len() as f64;
+    FittedPath { ring, bits: tied.number_bits.max(0.0) + tuning::OUTLINE_PIECE_BITS * (pieces + 1.0), misfit }
+}
+
+/// The path of a chain; what is tied is exact.
+fn ring_of(tied: &Tied) -> PathRing<f64> {
+    let chain = &tied.fitted.chain;
+    let mut points: Vec<[f64; 2]> = chain.points.iter().map(|point| point.to_array()).collect();
+    for &(tie, _) in &tied.ties {
+        let (line, axis) = match tie {
+            Tie::Horizontal { line } => (line, 1),
+            Tie::Vertical { line } => (line, 0),
+            Tie::Smooth { .. } | Tie::EqualRadius { .. } => continue,
+        };
+        let next = chain.next(line);
+        let mean = 0.5 * (points[line][axis] + points[next][axis]);
+        points[line][axis] = mean;
+        points[next][axis] = mean;
+    }
+    let segment = |curve: &Curve| match *curve {
+        Curve::Line => Segment::Line,
+        Curve::Arc(bulge) => Segment::Arc { bulge },
+        Curve::Cubic(controls) => Segment::Cubic { controls: controls.map(Vec2::to_array) },
+    };
+    PathRing { points, segments: chain.curves.iter().map(segment).collect() }
+}

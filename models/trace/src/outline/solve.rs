@@ -1,0 +1,259 @@
+//! All numbers of a chain together, by damped least squares.
+
+use alloc::vec;
+use alloc::vec::Vec;
+use core::ops::Range;
+
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
+
+use super::chain::{Chain, Curve};
+use super::skyline::Skyline;
+use super::ties::Tie;
+use super::track::Track;
+use crate::ruler::Ruler;
+use crate::tuning;
+
+/// Most steps of a fit.
+const MOST_STEPS: usize = 15;
+/// A step that lowers the sum of squares by less ends the fit.
+const LEAST_GAIN: f64 = 0.02;
+/// Samples beside a corner that may be moved from one curve to the next at once.
+const REACH: usize = 8;
+
+/// A chain as the samples want it.
+#[derive(Clone, Debug)]
+pub(super) struct Fitted {
+    pub(super) chain: Chain,
+    /// Sum of squared misfits of the samples, each by its variance; beyond [`tuning::OUTLINE_HUBER`] sigmas it grows linearly.
+    pub(super) chi2: f64,
+    /// Cholesky factor of the inverse covariance of the numbers, ties included.
+    pub(super) factor: Skyline,
+}
+
+/// What is minimized.
+struct Problem<'a> {
+    track: &'a Track,
+    ties: &'a [(Tie, f64)],
+    /// Of each sample: its parameter on the cubic that explains it.
+    parameters: Vec<f64>,
+}
+
+/// The state of a chain: its equations.
+struct Equations {
+    normal: Skyline,
+    right: Vec<f64>,
+    chi2: f64,
+    /// Squared violations of the ties by their weight.
+    strain: f64,
+}
+
+impl Fitted {
+    /// The chain of these curves, with `ties` held, that misses the samples least; none if nothing can be computed.
+    pub(super) fn of(mut chain: Chain, track: &Track, ruler: &Ruler, ties: &[(Tie, f64)]) -> Option<Self> {
+        let mut problem = Problem { track, ties, parameters: vec![f64::NAN; track.len()] };
+        let ridge = ruler.extent.max(1.0).powi(-2);
+        problem.assign(&mut chain);
+        let mut now = problem.equations(&chain)?;
+        let mut damping = 1e-3;
+        for _ in 0..MOST_STEPS {
+            let mut change = now.right.clone();
+            now.normal.factor(damping, ridge)?.solve(&mut change);
+            let mut next = chain.clone();
+            next.shift(&change);
+            problem.assign(&mut next);
+            let Some(then) = problem.equations(&next).filter(|then| then.cost() < now.cost()) else {
+                damping *= 10.0;
+                if damping > 1e3 {
+                    break;
+                }
+                continue;
+            };
+            let gain = now.cost() - then.cost();
+            (chain, now, damping) = (next, then, (damping * 0.1).max(1e-7));
+            if gain < LEAST_GAIN {
+                break;
+            }
+        }
+        let factor = now.normal.factor(0.0, ridge)?;
+        Some(Self { chain, chi2: now.chi2, factor })
+    }
+
+    /// Bits of the misfit.
+    pub(super) fn misfit(&self, ruler: &Ruler) -> f64 {
+        ruler.misfit(self.chi2)
+    }
+
+    /// Bits of the numbers, each given those after it: half the logarithm of the determinant of the inverse covariance.
+    pub(super) fn number_bits(&self, ruler: &Ruler) -> f64 {
+        let chain = &self.chain;
+        let mut bits = 0.0;
+        let mut diagonal = self.factor.diagonal();
+        for k in 0..chain.points.len() {
+            let mut price = |lever: f64| diagonal.next().map_or(0.0, |root| ruler.number(lever / root));
+            bits += price(1.0) + price(1.0);
+            match chain.curves.get(k) {
+                Some(Curve::Arc(_)) => {
+                    let chord = chain.points[chain.next(k)] - chain.points[k];
+                    bits += price(0.5 * chord.length());
+                }
+                Some(Curve::Cubic(_)) => bits += (0..4).map(|_| price(1.0)).sum::<f64>(),
+                Some(Curve::Line) | None => {}
+            }
+        }
+        bits
+    }
+}
+
+impl Equations {
+    fn cost(&self) -> f64 {
+        self.chi2 + self.strain
+    }
+}
+
+impl Problem<'_> {
+    /// Gives samples beside points to the curve on whose side of the point they lie.
+    fn assign(&mut self, chain: &mut Chain) {
+        let count = chain.curves.len();
+        for k in usize::from(!chain.closed)..count {
+            let before = if k == 0 { count - 1 } else { k - 1 };
+            let (Some([_, arrive]), Some([leave, _])) = (chain.directions(before), chain.directions(k)) else {
+                continue;
+            };
+            let (low, high) = limits(chain, self.track, k);
+            let mut first = chain.firsts[k];
+            if first <= low || high <= first {
+                // Nothing is seen of one of both.
+                continue;
+            }
+            let forward = arrive + leave;
+            let ahead = |sample: usize| {
+                (self.track.point(sample % self.track.len()) - chain.points[k]).dot(forward) > 0.0
+            };
+            let start = first;
+            while first > low + 1 && first + REACH > start && ahead(first - 1) {
+                first -= 1;
+            }
+            while first + 1 < high && first < start + REACH && !ahead(first) {
+                first += 1;
+            }
+            for sample in first.min(start)..first.max(start) {
+                self.parameters[sample % self.track.len()] = f64::NAN;
+            }
+            chain.firsts[k] = first;
+        }
+    }
+
+    fn equations(&mut self, chain: &Chain) -> Option<Equations> {
+        let places = chain.places();
+        let count = places.last().copied().unwrap_or(0);
+        let mut equations = Equations {
+            normal: Skyline::new(self.first_columns(chain, &places)),
+            right: vec![0.0; count],
+            chi2: 0.0,
+            strain: 0.0,
+        };
+        for k in 0..chain.curves.len() {
+            let range = samples_of(chain, self.track.len(), k);
+            let sharp = [k, chain.next(k)].map(|point| is_sharp(chain, point).then_some(point));
+            for sample_number in range.clone() {
+                let index = sample_number % self.track.len();
+                let sample = &self.track.samples[index];
+                let at_ends = [sample_number - range.start < 4, range.end - sample_number <= 4];
+                let near = sharp.iter().zip(at_ends).filter_map(|(&point, near)| point.filter(|_| near));
+                if near.into_iter().any(|point| chain.is_spoiled(point, sample)) {
+                    // As much as an honest sample is expected to miss by.
+                    equations.chi2 += 1.0;
+                    continue;
+                }
+                let t = &mut self.parameters[index];
+                if t.is_nan() {
+                    #[expect(clippy::cast_precision_loss, reason = "counts of samples are small")]
+                    let share = (sample_number - range.start) as f64 / range.len() as f64;
+                    *t = share;
+                    for _ in 0..4 {
+                        chain.misfit(k, sample, &places, t)?;
+                    }
+                }
+                let (misfit, slopes) = chain.misfit(k, sample, &places, t)?;
+                let far = misfit.abs() / tuning::OUTLINE_HUBER;
+                let weight = 1.0 / far.max(1.0);
+                equations.chi2 += misfit * misfit * weight * (2.0 - weight);
+                equations.add(slopes.entries(), misfit, weight);
+            }
+        }
+        for &(tie, weight) in self.ties {
+            if let Some((value, slopes)) = tie.violation(chain, &places) {
+                equations.strain += weight * value * value;
+                equations.add(slopes.entries(), value, weight);
+            }
+        }
+        equations.cost().is_finite().then_some(equations)
+    }
+
+    /// The first number that each meets, by what curves and ties hold together.
+    fn first_columns(&self, chain: &Chain, places: &[usize]) -> Vec<usize> {
+        let mut firsts: Vec<usize> = (0..places.last().copied().unwrap_or(0)).collect();
+        let mut meet = |groups: &[Range<usize>]| {
+            let least = groups.iter().map(|group| group.start).min().unwrap_or(0);
+            for row in groups.iter().cloned().flatten() {
+                firsts[row] = firsts[row].min(least);
+            }
+        };
+        let numbers = |k: usize| {
+            let end = places[chain.next(k)];
+            [places[k]..places[k + 1], end..end + 2]
+        };
+        (0..chain.curves.len()).for_each(|k| meet(&numbers(k)));
+        for (tie, _) in self.ties {
+            let [a, b] = tie.curves(chain);
+            meet([numbers(a), numbers(b)].as_flattened());
+        }
+        firsts
+    }
+}
+
+impl Equations {
+    fn add(&mut self, slopes: &[(usize, f64)], misfit: f64, weight: f64) {
+        self.normal.add_outer(slopes, weight);
+        for &(place, slope) in slopes {
+            self.right[place] -= weight * slope * misfit;
+        }
+    }
+}
+
+/// Samples of curve `k`, counted on past the last of the track.
+pub(super) fn samples_of(chain: &Chain, track_len: usize, k: usize) -> Range<usize> {
+    let end = match chain.firsts.get(k + 1) {
+        Some(&end) => end,
+        None if chain.closed => chain.firsts[0] + track_len,
+        None => 2 * track_len,
+    };
+    chain.firsts[k]..end
+}
+
+/// Between which samples point `k` may part its curves: at least one stays on either side.
+fn limits(chain: &Chain, track: &Track, k: usize) -> (usize, usize) {
+    let high = samples_of(chain, track.len(), k).end;
+    let low = match k {
+        0 => chain.firsts.last().copied().unwrap_or(0).saturating_sub(track.len()),
+        _ => chain.firsts[k - 1],
+    };
+    (low, high)
+}
+
+/// Whether the chain has a corner at point `k`.
+fn is_sharp(chain: &Chain, k: usize) -> bool {
+    let before = match k {
+        0 if chain.closed => chain.curves.len() - 1,
+        0 => return false,
+        _ => k - 1,
+    };
+    if k >= chain.curves.len() {
+        return false;
+    }
+    match (chain.directions(before), chain.directions(k)) {
+        (Some([_, arrive]), Some([leave, _])) => arrive.dot(leave) < tuning::OUTLINE_SHARP.cos(),
+        _ => false,
+    }
+}
