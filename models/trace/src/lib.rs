@@ -20,7 +20,10 @@
 #![no_std]
 
 extern crate alloc;
+#[cfg(test)]
+extern crate std;
 
 pub mod ruler;
 pub mod sample;
+pub mod stroke;
 pub mod tuning;
