@@ -42,14 +42,23 @@ pub(super) fn lines(border: &Border, chains: &[Chain], width: f64, ruler: &Ruler
         }
     }
     let mut drawing = Drawing { lines, half_width: 0.5 * width, is_mitered: false };
-    for (i, chain) in chains.iter().enumerate() {
-        for (at_finish, end) in [false, true].into_iter().zip(&chain.tips) {
-            if matches!(end, Tip::Junction) {
-                run_into(&mut drawing, i, at_finish)?;
+    for (line, chain) in drawing.lines.iter_mut().zip(chains) {
+        line.is_covered = [0, 1].map(|end| matches!(chain.tips[end], Tip::Junction));
+    }
+    run_together(&mut drawing);
+    Some(drawing)
+}
+
+/// Lets lines that others hide the ends of end on the center lines of these.
+pub(super) fn run_together(drawing: &mut Drawing) {
+    for line in 0..drawing.lines.len() {
+        for at_finish in [false, true] {
+            if drawing.lines[line].is_covered[usize::from(at_finish)] {
+                // What cannot be moved stays where it is.
+                let _ = run_into(drawing, line, at_finish);
             }
         }
     }
-    Some(drawing)
 }
 
 /// The center line of a chain, corners where its stretches meet.
@@ -121,8 +130,7 @@ fn run_into(drawing: &mut Drawing, line: usize, at_finish: bool) -> Option<()> {
     }
     let to = place(reach);
     let mut ring = own.ring.clone();
-    let cap = own.cap;
     move_tip(&mut ring, at_finish, to);
-    *drawing.lines.get_mut(line)? = Line::new(ring, cap)?;
+    *drawing.lines.get_mut(line)? = own.with_ring(ring)?;
     Some(())
 }

@@ -15,6 +15,8 @@ pub(super) struct Line {
     pub(super) ring: PathRing<f64>,
     /// Round or butt.
     pub(super) cap: Cap,
+    /// Whether its start and its end are hidden by other lines: nothing is measured to them then.
+    pub(super) is_covered: [bool; 2],
     pub(super) pieces: Vec<Piece<f64>>,
     /// A disk around each piece.
     disks: Vec<(Vec2<f64>, f64)>,
@@ -51,7 +53,12 @@ impl Line {
     pub(super) fn new(ring: PathRing<f64>, cap: Cap) -> Option<Self> {
         let pieces = pieces(&ring);
         let disks = pieces.iter().map(disk).collect();
-        (!pieces.is_empty() && pieces.len() == ring.segments.len()).then_some(Self { ring, cap, pieces, disks })
+        (!pieces.is_empty() && pieces.len() == ring.segments.len()).then_some(Self { ring, cap, is_covered: [false; 2], pieces, disks })
+    }
+
+    /// The same line with another center line of as many pieces.
+    pub(super) fn with_ring(&self, ring: PathRing<f64>) -> Option<Self> {
+        Some(Self { is_covered: self.is_covered, ..Self::new(ring, self.cap)? })
     }
 
     /// How far a point is outside of the line's strip, and which part of the outline that is measured to; none if that is
@@ -64,6 +71,12 @@ impl Line {
                 continue;
             }
             let t = nearest(shape, point);
+            let is_covered = !self.ring.is_closed()
+                && (t <= 0.0 && piece == 0 && self.is_covered[0]
+                    || t >= 1.0 && piece + 1 == self.pieces.len() && self.is_covered[1]);
+            if is_covered {
+                continue;
+            }
             let distance = (point - shape.point(t)).length();
             if distance < least {
                 (least, body) = (distance, Some((piece, t)));
@@ -77,7 +90,7 @@ impl Line {
         let neighbor = if self.ring.is_closed() { (neighbor.wrapping_add(count)) % count } else { neighbor };
         if neighbor >= count {
             // Beside a straight end the nearest point is not always the end itself.
-            if self.cap == Cap::Butt {
+            if self.cap == Cap::Butt && !self.is_covered[usize::from(at_finish)] {
                 feet[1] = Some(Foot::Face { at_finish });
                 if is_end {
                     feet[0] = Some(Foot::Tangent { piece, t });

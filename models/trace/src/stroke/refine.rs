@@ -9,6 +9,7 @@ use dvp_core::{Shape as _, Vec2};
 use num_traits::Float as _;
 
 use super::border::Border;
+use super::center::run_together;
 use super::draw::{Drawing, Foot, Line, gap};
 use super::piece::pieces;
 use super::skyline::Skyline;
@@ -67,11 +68,16 @@ pub(super) fn refine(mut drawing: Drawing, border: &Border, ruler: &Ruler) -> Op
             break;
         }
     }
+    let bits = number_bits(&drawing, &equations.0.factor(0.0, ridge)?, ruler);
+    // What is drawn in the end is measured whole, ends that other lines hide included.
+    run_together(&mut drawing);
+    drawing.lines.iter_mut().for_each(|line| line.is_covered = [false; 2]);
+    let misses = self::misses(&drawing, border)?;
     let strays = misses.iter().filter(|miss| miss.gap.abs() > tuning::STROKE_STRAY).count() as f64;
     Some(Refined {
         chi2: chi2(border, &misses),
         strays: strays / border.marks.len() as f64,
-        bits: number_bits(&drawing, &equations.0.factor(0.0, ridge)?, ruler),
+        bits,
         drawing,
     })
 }
@@ -108,7 +114,7 @@ fn numbers(ring: &PathRing<f64>) -> (Path<f64>, Vec<f64>) {
 fn with_numbers(line: &Line, numbers: &[f64]) -> Option<Line> {
     let (mut path, _) = self::numbers(&line.ring);
     path.set_numbers(numbers).ok()?;
-    Line::new(path.rings.pop()?, line.cap)
+    line.with_ring(path.rings.pop()?)
 }
 
 /// The drawing after a change of all numbers: those of its lines, and half the width.
