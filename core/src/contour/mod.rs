@@ -3,7 +3,7 @@
 //! | file | comes in | goes out |
 //! |---|---|---|
 //! | `label` | a mask, or what neighbors have in common | connected components, [`label`], [`label_by`] |
-//! | `walk` | a yes or no per pixel | the cracks between yes and no, loop by loop |
+//! | `walk` | a yes or no per pixel | the cracks between yes and no, loop by loop; [`Crack`] |
 //! | `trace` | a mask, or a field and a level | closed polygons, [`trace_mask`], [`trace_level`] |
 //! | `polygon` | a polygon | area, centroid, perimeter, inside or not, points at equal distances |
 //!
@@ -21,6 +21,7 @@ mod walk;
 pub use label::{Components, label, label_by};
 pub use polygon::{centroid, contains, perimeter, resample, signed_area};
 pub use trace::{trace_level, trace_mask};
+pub use walk::{Crack, Heading};
 
 /// Which neighbors of a pixel are in one piece with it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]

@@ -7,19 +7,24 @@ use crate::dims::ImageSize;
 
 /// Directions of travel in the order of right turns: +x, +y, -x, -y. The right hand of +x is +y, since y is down.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Heading {
+pub enum Heading {
+    /// To the right.
     PlusX,
+    /// Down.
     PlusY,
+    /// To the left.
     MinusX,
+    /// Up.
     MinusY,
 }
 
 /// One edge between a pixel inside, on the right hand, and a pixel outside or the end of the image, on the left hand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Crack {
+pub struct Crack {
     /// Column and row of the pixel corner where it starts.
-    pub(super) start: [usize; 2],
-    pub(super) heading: Heading,
+    pub start: [usize; 2],
+    /// Where it leads to, one pixel on.
+    pub heading: Heading,
 }
 
 impl Heading {
@@ -39,7 +44,8 @@ impl Heading {
 
 impl Crack {
     /// Column and row of the pixel inside and of the pixel outside. Outside the image an index is `usize::MAX` or too large.
-    pub(super) fn sides(self) -> [[usize; 2]; 2] {
+    #[must_use]
+    pub fn sides(self) -> [[usize; 2]; 2] {
         let [x, y] = self.start;
         let (west, north) = (x.wrapping_sub(1), y.wrapping_sub(1));
         match self.heading {
@@ -51,7 +57,8 @@ impl Crack {
     }
 
     /// The corner where it ends.
-    fn end(self) -> [usize; 2] {
+    #[must_use]
+    pub fn end(self) -> [usize; 2] {
         let [x, y] = self.start;
         match self.heading {
             Heading::PlusX => [x + 1, y],
@@ -61,8 +68,9 @@ impl Crack {
         }
     }
 
-    /// The crack that follows.
-    fn next(self, inside: impl Fn([usize; 2]) -> bool, connectivity: Connectivity) -> Self {
+    /// The crack that follows; `connectivity` is what holds at the corner where this one ends.
+    #[must_use]
+    pub fn next(self, inside: impl Fn([usize; 2]) -> bool, connectivity: Connectivity) -> Self {
         let start = self.end();
         // The pixels ahead are those beside a crack straight on.
         let [ahead_right, ahead_left] = Self { start, heading: self.heading }.sides().map(inside);

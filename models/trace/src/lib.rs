@@ -23,7 +23,30 @@ extern crate alloc;
 #[cfg(test)]
 extern crate std;
 
+pub mod boundary;
+pub mod layers;
+pub mod outline;
+pub mod partition;
 pub mod ruler;
 pub mod sample;
+<<<<<<< HEAD
 pub mod stroke;
+=======
+pub mod scene;
+>>>>>>> main
 pub mod tuning;
+
+use dvp_core::{ImageView, Scene};
+
+use crate::partition::{NoPartition, Partition};
+
+/// The drawing that a picture is. `matte`: the color that transparent parts are shown on, if it has such.
+///
+/// # Errors
+/// [`NoPartition`] if the picture is no drawing of flat colors with clear edges.
+pub fn trace(image: &ImageView<'_, f32>, matte: Option<[f32; 3]>) -> Result<Scene<f32>, NoPartition> {
+    let partition = Partition::of(image)?;
+    let rings = boundary::rings(&partition);
+    let layers = layers::layers(&partition, &rings, matte.map(|matte| matte.map(f64::from)));
+    Ok(scene::scene(&layers, image.size(), matte.is_some()))
+}

@@ -31,3 +31,45 @@ pub const OUTLINE_HUBER: f64 = 3.0;
 
 /// What a piece costs beside its numbers, bits: its kind, one of four.
 pub const OUTLINE_PIECE_BITS: f64 = 2.0;
+
+/// Share of a picture's pixels that must lie in flat blocks for it to be a drawing of flat colors. Photographs have fewer than
+/// a tenth, dense line art at 128 pixels about a half.
+pub const LEAST_FLAT: f64 = 0.3;
+/// Most difference of a channel between pixels of one color in a clean picture: rounding to 8 bits, twice.
+pub const CLEAN_STEP: f32 = 1.5 / 255.0;
+/// Most difference of a channel between pixels of one color in a picture that went through a coder: JPEG of quality 80 leaves
+/// about 5 levels within a pixel of an edge.
+pub const CODED_STEP: f32 = 6.5 / 255.0;
+/// Most difference of a channel between a pixel and the mixture that explains it, clean: rounding of pixel and colors, and renderers that
+/// round their coverage to 1/64.
+pub const CLEAN_MIX: f32 = 5.0 / 255.0;
+/// The same in pictures that went through a coder.
+pub const CODED_MIX: f32 = 24.0 / 255.0;
+/// Most colors of a drawing.
+pub const MOST_COLORS: usize = 96;
+/// Least difference of a channel that makes a color of its own of pixels that nothing else explains.
+pub const LEAST_CONTRAST: f64 = 12.0 / 255.0;
+/// Fewer pixels than this that nothing explains are left to the nearest mixture.
+pub const LEAST_THIN: usize = 3;
+/// Standard deviation of a channel by rounding to 8 bits.
+pub const ROUNDING: f64 = 0.29 / 255.0;
+/// Second difference (pixels) of windows side by side from which on there is a corner between them and no bend: that of a circle of two
+/// pixels' radius.
+pub const MOST_BEND: f64 = 0.5;
+/// Distance (pixels) within which the walks of three faces past one another are the same junction.
+pub const JUNCTION_SIZE: f64 = 4.0;
+/// Samples on either side of a junction that tell whether a boundary goes on through it.
+pub const JUNCTION_SAMPLES: usize = 8;
+/// Standard deviation (pixels) of a boundary that goes on through a junction: what a parabola over 16 pixels cannot follow.
+pub const JUNCTION_SIGMA: f64 = 0.08;
+/// Most bits that one junction may speak for an order: one that is read wrongly must not outvote all others.
+pub const MOST_VOTE: f64 = 40.0;
+/// Bits for a face with a single neighbor lying in front of it: less than any junction that was read.
+pub const ENCLOSED_VOTE: f64 = 2.0;
+/// Steps without a sample after which a boundary counts as unread: at 45 degrees every second step has one.
+pub const MOST_UNREAD: usize = 5;
+/// Standard deviation (pixels) of a boundary that is known from the cracks between pixels alone: 1 / sqrt(12), and a little for their
+/// being stairs.
+pub const CRACK_SIGMA: f64 = 0.35;
+/// Share of a face's pixels that its outline may get wrong.
+pub const MOST_WRONG: f64 = 0.01;

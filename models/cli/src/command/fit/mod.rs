@@ -238,7 +238,7 @@ fn try_fit(
         }
         Some(frame) => stack_picture(stacks, &input.path, frame).context("image of the stack is gone")?,
     };
-    let (fit, time) = solver.solve(picture.image.view(), &input.stem, scratch)?;
+    let (fit, time) = solver.solve(picture, &input.stem, scratch)?;
     let fit = if picture.transparent { openings::cut_out(fit, picture, &mut scratch.paint)? } else { fit };
     let scene = Measurable::new(&fit, solver.bank(), picture.image.size());
     finish(arguments, [&*input.name(), &input.stem], picture, &scene, time, &mut scratch.paint)

@@ -7,15 +7,17 @@ use std::path::PathBuf;
 
 use anyhow::{Result, bail};
 use clap::ValueEnum;
-use dvp_core::{ImageView, Scene};
+use dvp_core::Scene;
+use dvp_core::loss::{ImagePair, Loss as _};
+use dvp_core::render::PixelLoss;
 use dvp_fit::opt_iter::OptIter;
 use dvp_fit::refine::{Refine, RefineScratch};
-use dvp_fit::{Bank, Fit, FitOptions, FitScratch, Fitter};
+use dvp_fit::{Bank, Fit, FitOptions, FitScratch, Fitter, StopReason};
 use dvp_net::propose::Proposer;
 
-use crate::format::{Place, read_scene};
+use crate::format::{Picture, Place, read_scene};
 use crate::method;
-use crate::paint::PaintScratch;
+use crate::paint::{PaintScratch, Painter};
 
 /// How a scene is found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -82,7 +84,7 @@ impl Solver {
     /// The fit, and the processor time that it took on this thread.
     pub(super) fn solve(
         &self,
-        image: ImageView<'_, f32>,
+        picture: &Picture<f32>,
         stem: &str,
         scratch: &mut Scratch,
     ) -> Result<(Fit<f32>, Duration)> {
@@ -94,7 +96,7 @@ impl Solver {
             _ => None,
         };
         // A defect in the fit of one picture must not cost the others.
-        let run = || Ok(catch_unwind(AssertUnwindSafe(|| self.run(image, read, stem, scratch))));
+        let run = || Ok(catch_unwind(AssertUnwindSafe(|| self.run(picture, read, stem, scratch))));
         let (fit, time) = method::timed(run)?;
         match fit {
             Ok(fit) => Ok((fit?, time)),
@@ -112,11 +114,12 @@ impl Solver {
 
     fn run(
         &self,
-        image: ImageView<'_, f32>,
+        picture: &Picture<f32>,
         read: Option<Scene<f32>>,
         stem: &str,
         scratch: &mut Scratch,
     ) -> Result<Fit<f32>> {
+        let image = picture.image.view();
         let start = match &self.start {
             Start::Network(network) => Some(network.objects(image)?),
             _ => read,
@@ -127,7 +130,10 @@ impl Solver {
                 let (compositing, settings) = (compositing.unwrap_or_default(), Refine::default());
                 method::refine(&settings, image, &start, compositing, max_objects, &mut scratch.refine)
             }
-            (Method::Segment, None) => Ok(self.fitter.fit(image, &mut scratch.fit)?),
+            (Method::Segment, None) => match self.trace(picture, scratch)? {
+                Some(fit) => Ok(fit),
+                None => Ok(self.fitter.fit(image, &mut scratch.fit)?),
+            },
             (Method::RandOptP, _) => {
                 let seed = method::seed_of(stem, self.seed);
                 method::rand_opt_p(image, &method::random_start(self.bank(), self.object_count, seed))
@@ -138,5 +144,20 @@ impl Solver {
                 method::descend(&Scene::empty([0.0; 3]), |descent| Ok(opt_iter.fit(descent, image)?))
             }
         }
+    }
+
+    /// The picture as a drawing, if it is one: flat colors with clear edges, and no shapes are known beforehand.
+    fn trace(&self, picture: &Picture<f32>, scratch: &mut Scratch) -> Result<Option<Fit<f32>>> {
+        if self.options.bank.is_some() || self.options.compositing.is_some() {
+            return Ok(None);
+        }
+        let image = picture.image.view();
+        let Ok(scene) = dvp_trace::trace(&image, picture.transparent.then_some(picture.matte)) else { return Ok(None) };
+        let painter = Painter::default();
+        let drawing = painter.draw(&scene, image.size())?;
+        let painted = painter.paint_in(&scene, image.size(), &mut scratch.paint)?;
+        let loss = PixelLoss::Mae.value(ImagePair::new(painted.view(), image)?, &mut ())?;
+        let fit = Fit::of_painted(scene, &drawing, &image, painted.data());
+        Ok(Some(Fit { loss, stop: StopReason::Converged, ..fit }))
     }
 }

@@ -1,0 +1,57 @@
+//! Where two faces meet, to a few hundredths of a pixel or better.
+//!
+//! `ring` walks around faces along the cracks between pixels, `window` reads at every crack where the boundary passes.
+
+mod ring;
+mod window;
+
+use alloc::vec::Vec;
+
+use dvp_core::Vec2;
+use dvp_core::contour::Crack;
+
+use crate::partition::Partition;
+use crate::sample::Sample;
+
+pub use ring::walk_mask;
+
+/// A step along the boundary of a face.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step {
+    /// The edge between two pixels.
+    pub crack: Crack,
+    /// Face on the right hand.
+    pub inner: u32,
+    /// Face on the left hand; [`OUTSIDE`](crate::partition::OUTSIDE) beyond the border.
+    pub other: u32,
+    /// What the window across the crack tells.
+    pub sample: Option<Sample>,
+}
+
+/// A closed boundary of a face, with the face on its right hand.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ring {
+    /// Crack after crack.
+    pub steps: Vec<Step>,
+    /// Signed area in pixels: positive around a face, negative around a hole of it.
+    pub area: f64,
+}
+
+impl Ring {
+    /// Where a crack has its middle, pixels.
+    #[must_use]
+    pub fn middle(crack: Crack) -> Vec2<f64> {
+        let [from, to] = [crack.start, crack.end()].map(|[x, y]| Vec2::new(x as f64, y as f64));
+        from.lerp(to, 0.5)
+    }
+}
+
+/// The boundaries of every face, its outer one first.
+#[must_use]
+pub fn rings(partition: &Partition) -> Vec<Vec<Ring>> {
+    let mut rings = ring::walk_faces(partition);
+    for ring in rings.iter_mut().flatten() {
+        window::read(partition, ring);
+    }
+    rings
+}

@@ -1,0 +1,76 @@
+//! What is seen of a layer's boundary.
+
+use alloc::vec::Vec;
+
+use dvp_core::Vec2;
+
+use crate::boundary::{Ring, Step};
+use crate::sample::{RingSamples, Sample};
+use crate::tuning;
+
+/// The samples of a ring; where `is_hidden` says so, the boundary is not the layer's own.
+///
+/// Stretches that no window could read (thin things, crowded junctions) are known from the cracks themselves, to a third of a pixel.
+pub(super) fn samples(ring: &Ring, is_hidden: impl Fn(&Step) -> bool) -> RingSamples {
+    let n = ring.steps.len();
+    // Begin behind a hidden step, so that no run is cut in two.
+    let Some(start) = (0..n).find(|&k| is_hidden(&ring.steps[k])) else {
+        let run = read(ring, 0, n, true);
+        return RingSamples { runs: alloc::vec![run], closed: true };
+    };
+    let mut runs = Vec::new();
+    let mut k = 0;
+    while k < n {
+        let at = |k: usize| &ring.steps[(start + k) % n];
+        if is_hidden(at(k)) {
+            k += 1;
+            continue;
+        }
+        let length = (k..n).take_while(|&j| !is_hidden(at(j))).count();
+        let run = read(ring, (start + k) % n, length, false);
+        if !run.is_empty() {
+            runs.push(run);
+        }
+        k += length;
+    }
+    RingSamples { runs, closed: false }
+}
+
+/// The samples of `length` steps from `start` on.
+fn read(ring: &Ring, start: usize, length: usize, closed: bool) -> Vec<Sample> {
+    let n = ring.steps.len();
+    let mut run: Vec<Sample> = Vec::new();
+    let mut unread = 0;
+    for k in 0..length {
+        let step = &ring.steps[(start + k) % n];
+        // Where a boundary is flat half of the steps have samples, at 45 degrees; else more. A longer stretch without is unread.
+        unread = if step.sample.is_some() { 0 } else { unread + 1 };
+        match step.sample {
+            Some(sample) => push(&mut run, sample),
+            None if unread > tuning::MOST_UNREAD => push(&mut run, of_crack(step)),
+            None => (),
+        }
+    }
+    if closed && run.len() < 8 {
+        run = (0..length).map(|k| of_crack(&ring.steps[(start + k) % n])).collect();
+    }
+    run
+}
+
+/// Leaves out a sample that does not lead on: where columns give way to rows, two windows read the same stretch.
+fn push(run: &mut Vec<Sample>, sample: Sample) {
+    if let [.., before, last] = run[..] {
+        let along = last.point - before.point;
+        if (sample.point - last.point).dot(along) <= 0.2 * along.length() && (sample.point - last.point).length() < 1.0 {
+            return;
+        }
+    }
+    run.push(sample);
+}
+
+/// A boundary known from a crack alone.
+fn of_crack(step: &Step) -> Sample {
+    let [from, to] = [step.crack.start, step.crack.end()];
+    let axis = if from[0] == to[0] { Vec2::new(1.0, 0.0) } else { Vec2::new(0.0, 1.0) };
+    Sample { point: Ring::middle(step.crack), axis, sigma: tuning::CRACK_SIGMA }
+}

@@ -1,0 +1,149 @@
+//! Pixels of one color that touch: faces.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use dvp_core::geometry::DisjointSets;
+
+use super::flat::{NONE, index};
+use super::mix::{Mixed, best_mixture};
+use super::Partition;
+
+/// A connected part of the picture of one color.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Face {
+    /// Index into the palette.
+    pub color: usize,
+    /// Pixels that are mostly of this face.
+    pub area: usize,
+    /// Those of them in flat blocks; a face without is thinner than two pixels.
+    pub flat: usize,
+    /// First column and row, and those after the last.
+    pub bounds: [usize; 4],
+}
+
+/// Cuts a picture into faces; specks that a mixture of their neighbors explains as well are given to these.
+pub(super) fn cut(size: [usize; 2], pixels: Vec<[f32; 3]>, mut mixed: Mixed) -> Partition {
+    let (labels, faces) = label(size, &mixed);
+    if remove_specks(size, &pixels, &mut mixed, &labels, &faces) {
+        let (labels, faces) = label(size, &mixed);
+        return partition(size, pixels, mixed, labels, faces);
+    }
+    partition(size, pixels, mixed, labels, faces)
+}
+
+fn partition(size: [usize; 2], pixels: Vec<[f32; 3]>, mixed: Mixed, labels: Vec<u32>, faces: Vec<Face>) -> Partition {
+    let Mixed { shares, palette, unexplained, noise, .. } = mixed;
+    Partition { size, pixels, labels, shares, faces, palette, mix_noise: noise, unexplained }
+}
+
+/// Whether, of four pixels around a corner whose diagonals are of two colors, the diagonal from upper left to lower right is
+/// joined and the other one cut: that of the larger shares is.
+fn falling_joins(shares: &[f32], [nw, ne, sw, se]: [usize; 4]) -> bool {
+    shares[nw] + shares[se] >= shares[ne] + shares[sw]
+}
+
+/// Numbers the faces.
+fn label([width, height]: [usize; 2], mixed: &Mixed) -> (Vec<u32>, Vec<Face>) {
+    let colors = &mixed.colors;
+    let mut sets = DisjointSets::default();
+    sets.reset(index(colors.len()));
+    for y in 0..height {
+        for x in 0..width {
+            let i = y * width + x;
+            if x + 1 < width && colors[i] == colors[i + 1] {
+                sets.unite(index(i), index(i + 1));
+            }
+            if y + 1 < height && colors[i] == colors[i + width] {
+                sets.unite(index(i), index(i + width));
+            }
+            if x + 1 < width && y + 1 < height {
+                let four = [i, i + 1, i + width, i + width + 1];
+                let [nw, ne, sw, se] = four;
+                let (falls, rises) = (colors[nw] == colors[se], colors[ne] == colors[sw]);
+                if falls && (!rises || falling_joins(&mixed.shares, four)) {
+                    sets.unite(index(nw), index(se));
+                } else if rises {
+                    sets.unite(index(ne), index(sw));
+                }
+            }
+        }
+    }
+    let mut number = vec![NONE; colors.len()];
+    let mut faces: Vec<Face> = Vec::new();
+    let mut labels = vec![NONE; colors.len()];
+    for i in 0..colors.len() {
+        let (x, y) = (i % width, i / width);
+        let root = sets.root(index(i)) as usize;
+        if number[root] == NONE {
+            number[root] = index(faces.len());
+            faces.push(Face { color: usize::from(colors[i]), area: 0, flat: 0, bounds: [x, y, x + 1, y + 1] });
+        }
+        labels[i] = number[root];
+        let face = &mut faces[number[root] as usize];
+        face.area += 1;
+        face.flat += usize::from(mixed.is_flat[i]);
+        let [left, top, right, bottom] = face.bounds;
+        face.bounds = [left.min(x), top.min(y), right.max(x + 1), bottom.max(y + 1)];
+    }
+    (labels, faces)
+}
+
+/// Gives specks, faces without a flat pixel, to the faces around them where mixtures of those explain every one of their pixels.
+/// Whether there were any.
+fn remove_specks(size: [usize; 2], pixels: &[[f32; 3]], mixed: &mut Mixed, labels: &[u32], faces: &[Face]) -> bool {
+    let [width, height] = size;
+    let mut of_speck: Vec<Vec<usize>> = vec![Vec::new(); faces.len()];
+    for (i, &label) in labels.iter().enumerate() {
+        if faces[label as usize].flat == 0 {
+            of_speck[label as usize].push(i);
+        }
+    }
+    let mut changed = false;
+    let mut around: Vec<u16> = Vec::new();
+    for (face, speck) in of_speck.iter().enumerate().filter(|(_, speck)| !speck.is_empty()) {
+        around.clear();
+        for &i in speck {
+            let (x, y) = (i % width, i / width);
+            for row in y.saturating_sub(1)..(y + 2).min(height) {
+                for j in (row * width + x.saturating_sub(1))..(row * width + (x + 2).min(width)) {
+                    let (other, color) = (labels[j] as usize, mixed.colors[j]);
+                    if other != face && faces[other].flat > 0 && usize::from(color) != faces[face].color && !around.contains(&color) {
+                        around.push(color);
+                    }
+                }
+            }
+        }
+        let mixtures: Option<Vec<_>> = speck
+            .iter()
+            .map(|&i| best_mixture(pixels[i].map(f64::from), &around, &mixed.palette).filter(|m| m.misfit <= mixed.noise))
+            .collect();
+        if let Some(mixtures) = mixtures {
+            for (&i, mixture) in speck.iter().zip(mixtures) {
+                mixed.colors[i] = mixture.color;
+                mixed.shares[i] = mixture.share as f32;
+            }
+            changed = true;
+        }
+    }
+    changed
+}
+
+impl Partition {
+    /// Whether faces that only touch at a corner (column and row of the pixel to its lower right) are one there: the pixels to its upper left
+    /// and lower right if `falling`, else those to its upper right and lower left.
+    #[must_use]
+    pub fn joins_at(&self, [x, y]: [usize; 2], falling: bool) -> bool {
+        let [width, height] = self.size;
+        if x == 0 || y == 0 || x >= width || y >= height {
+            return false;
+        }
+        let se = y * width + x;
+        let four = [se - width - 1, se - width, se - 1, se];
+        let color = |i: usize| self.faces[self.labels[i] as usize].color;
+        let [nw, ne, sw, se] = four;
+        let (falls, rises) = (color(nw) == color(se), color(ne) == color(sw));
+        let falling_wins = falls && (!rises || falling_joins(&self.shares, four));
+        if falling { falling_wins } else { rises && !falling_wins }
+    }
+}

@@ -1,0 +1,110 @@
+//! What is of one color beyond doubt: blocks of two by two pixels that are equal up to noise.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use dvp_core::geometry::DisjointSets;
+
+use crate::tuning;
+
+/// How far pixels of one color differ.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Noise {
+    /// Most difference of a channel inside a flat block.
+    pub(super) flat: f32,
+    /// Most difference of a channel from the mixture that explains a pixel.
+    pub(super) mixed: f32,
+}
+
+/// Pixels in flat blocks, and the regions that these make.
+#[derive(Debug)]
+pub(super) struct Flats {
+    /// Region of every pixel; `NONE` outside of flat blocks.
+    pub(super) regions: Vec<u32>,
+    /// Mean color and pixels of every region.
+    pub(super) means: Vec<([f64; 3], usize)>,
+}
+
+/// Marks pixels that are in no flat block.
+pub(super) const NONE: u32 = u32::MAX;
+
+impl Noise {
+    /// From the blocks themselves: in a clean picture nearly all that are not equal are edges. Coders of photographs leave many
+    /// that differ a little.
+    pub(super) fn of(pixels: &[[f32; 3]], size: [usize; 2]) -> Self {
+        let [mut little, mut much] = [0usize; 2];
+        for range in ranges(pixels, size).map(|(_, range)| range) {
+            if range > tuning::CLEAN_STEP && range <= tuning::CODED_STEP {
+                little += 1;
+            } else if range > tuning::CODED_STEP {
+                much += 1;
+            }
+        }
+        if little > much / 2 {
+            Self { flat: tuning::CODED_STEP, mixed: tuning::CODED_MIX }
+        } else {
+            Self { flat: tuning::CLEAN_STEP, mixed: tuning::CLEAN_MIX }
+        }
+    }
+}
+
+impl Flats {
+    /// How many pixels are in flat blocks.
+    pub(super) fn pure_count(&self) -> usize {
+        self.means.iter().map(|&(_, count)| count).sum()
+    }
+}
+
+/// Upper left corner (pixel index) of every block of two by two pixels, and the most that a channel differs inside.
+fn ranges(pixels: &[[f32; 3]], [width, height]: [usize; 2]) -> impl Iterator<Item = (usize, f32)> {
+    let blocks = (0..height.saturating_sub(1)).flat_map(move |y| (0..width - 1).map(move |x| y * width + x));
+    blocks.map(move |i| {
+        let four = [pixels[i], pixels[i + 1], pixels[i + width], pixels[i + width + 1]];
+        let range = |c: usize| {
+            let [low, high] = four.iter().fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], p| [low.min(p[c]), high.max(p[c])]);
+            high - low
+        };
+        (i, range(0).max(range(1)).max(range(2)))
+    })
+}
+
+pub(super) fn find(pixels: &[[f32; 3]], size: [usize; 2], noise: &Noise) -> Flats {
+    let width = size[0];
+    let mut sets = DisjointSets::default();
+    sets.reset(u32::try_from(pixels.len()).unwrap_or(NONE));
+    let mut is_flat = vec![false; pixels.len()];
+    for (i, range) in ranges(pixels, size) {
+        if range <= noise.flat {
+            let block = [i, i + 1, i + width, i + width + 1];
+            for j in block {
+                is_flat[j] = true;
+                sets.unite(index(i), index(j));
+            }
+        }
+    }
+    let mut number = vec![NONE; pixels.len()];
+    let mut means: Vec<([f64; 3], usize)> = Vec::new();
+    let mut regions = vec![NONE; pixels.len()];
+    for (i, pixel) in pixels.iter().enumerate().filter(|&(i, _)| is_flat[i]) {
+        let root = sets.root(index(i)) as usize;
+        if number[root] == NONE {
+            number[root] = index(means.len());
+            means.push(([0.0; 3], 0));
+        }
+        let (sum, count) = &mut means[number[root] as usize];
+        for (total, &value) in sum.iter_mut().zip(pixel) {
+            *total += f64::from(value);
+        }
+        *count += 1;
+        regions[i] = number[root];
+    }
+    for (sum, count) in &mut means {
+        *sum = sum.map(|total| total / *count as f64);
+    }
+    Flats { regions, means }
+}
+
+/// An index into pixels: pictures have fewer than 2^32 of them.
+pub(super) fn index(i: usize) -> u32 {
+    u32::try_from(i).unwrap_or(NONE)
+}

@@ -1,0 +1,230 @@
+//! Pixels that are in no flat block: mixtures of colors nearby.
+//!
+//! A pixel across an edge is a mixture of the two colors beside it, one at a junction of three. What no mixture of colors nearby
+//! explains belongs to something thinner than a flat block: its color is one of the palette's, or a new one.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use super::flat::{Flats, NONE, Noise};
+use super::palette::{Palette, distance};
+use super::{Color, NoPartition};
+use crate::tuning;
+
+/// The main color of every pixel.
+#[derive(Debug)]
+pub(super) struct Mixed {
+    /// Index into `palette`.
+    pub(super) colors: Vec<u16>,
+    /// Share of that color; 1 for flat pixels.
+    pub(super) shares: Vec<f32>,
+    /// Whether the pixel is in a flat block.
+    pub(super) is_flat: Vec<bool>,
+    pub(super) palette: Vec<Color>,
+    pub(super) unexplained: f64,
+    /// Most difference of a channel from the mixture that explains a pixel.
+    pub(super) noise: f64,
+}
+
+/// A mixture: the color of the largest share, that share, and what is left of the pixel, the most that a channel differs.
+#[derive(Clone, Copy)]
+pub(super) struct Mixture {
+    pub(super) color: u16,
+    pub(super) share: f64,
+    pub(super) misfit: f64,
+}
+
+/// How far (pixels) from a mixed pixel the colors that it is made of are looked for.
+const REACH: usize = 2;
+
+pub(super) fn explain(
+    pixels: &[[f32; 3]],
+    size: [usize; 2],
+    flats: &Flats,
+    palette: Palette,
+    noise: &Noise,
+) -> Result<Mixed, NoPartition> {
+    let of_region: Vec<u16> = palette.of_region.iter().map(|&color| narrow(color)).collect();
+    let mut mixed = Mixed {
+        colors: vec![u16::MAX; pixels.len()],
+        shares: vec![1.0; pixels.len()],
+        is_flat: flats.regions.iter().map(|&region| region != NONE).collect(),
+        palette: palette.colors,
+        unexplained: 0.0,
+        noise: f64::from(noise.mixed),
+    };
+    for (color, &region) in mixed.colors.iter_mut().zip(&flats.regions) {
+        if region != NONE {
+            *color = of_region[region as usize];
+        }
+    }
+    let flat_colors = mixed.colors.clone();
+    let mut open = Vec::new();
+    let mut near = Vec::new();
+    for i in (0..pixels.len()).filter(|&i| flats.regions[i] == NONE) {
+        colors_near(&flat_colors, size, i, &mut near);
+        let best = best_mixture(pixels[i].map(f64::from), &near, &mixed.palette);
+        match best.filter(|best| best.misfit <= mixed.noise) {
+            Some(best) => mixed.give(i, best),
+            None => open.push(i),
+        }
+    }
+    mixed.explain_thin(pixels, size, &flat_colors, &mut open)?;
+    for &i in &open {
+        let all: Vec<u16> = (0..mixed.palette.len()).map(narrow).collect();
+        if let Some(best) = best_mixture(pixels[i].map(f64::from), &all, &mixed.palette) {
+            mixed.give(i, best);
+        }
+    }
+    mixed.unexplained = open.len() as f64 / pixels.len() as f64;
+    Ok(mixed)
+}
+
+impl Mixed {
+    fn give(&mut self, i: usize, mixture: Mixture) {
+        self.colors[i] = mixture.color;
+        self.shares[i] = mixture.share as f32;
+    }
+
+    /// Explains the pixels of `open` as mixtures of a color nearby and any other, new ones included; what is left stays in `open`.
+    fn explain_thin(
+        &mut self,
+        pixels: &[[f32; 3]],
+        size: [usize; 2],
+        flat_colors: &[u16],
+        open: &mut Vec<usize>,
+    ) -> Result<(), NoPartition> {
+        let mut near = Vec::new();
+        let mut tried_from = 0;
+        loop {
+            let count = self.palette.len();
+            let mut left = Vec::new();
+            let mut extreme: Option<(f64, usize)> = None;
+            for &i in open.iter() {
+                let pixel = pixels[i].map(f64::from);
+                colors_near(flat_colors, size, i, &mut near);
+                if near.is_empty() {
+                    near.extend((0..tried_from.max(1).min(count)).map(narrow));
+                }
+                let bases = near.clone();
+                let others = (tried_from..count).map(narrow);
+                let mut best: Option<Mixture> = None;
+                for other in others {
+                    for &base in bases.iter().filter(|&&base| base != other) {
+                        let mixture = pair(pixel, base, other, &self.palette);
+                        if best.is_none_or(|best| mixture.misfit < best.misfit) {
+                            best = Some(mixture);
+                        }
+                    }
+                }
+                if let Some(best) = best.filter(|best| best.misfit <= self.noise) {
+                    self.give(i, best);
+                    continue;
+                }
+                left.push(i);
+                let away = bases.iter().map(|&k| distance(self.palette[k as usize], pixel)).fold(f64::INFINITY, f64::min);
+                if extreme.is_none_or(|(most, _)| away > most) {
+                    extreme = Some((away, i));
+                }
+            }
+            let progressed = left.len() < open.len();
+            *open = left;
+            let Some((away, i)) = extreme else { return Ok(()) };
+            if away <= tuning::LEAST_CONTRAST || (!progressed && tried_from > 0 && open.len() < tuning::LEAST_THIN) {
+                return Ok(());
+            }
+            if self.palette.len() == tuning::MOST_COLORS {
+                return Err(NoPartition::TooManyColors);
+            }
+            tried_from = self.palette.len();
+            self.palette.push(pixels[i].map(f64::from));
+        }
+    }
+}
+
+/// The best explanation by one, two or three of some colors.
+pub(super) fn best_mixture(pixel: Color, colors: &[u16], palette: &[Color]) -> Option<Mixture> {
+    let one = |&color: &u16| Mixture { color, share: 1.0, misfit: distance(palette[color as usize], pixel) };
+    let mut best = colors.iter().map(one).min_by(|a, b| a.misfit.total_cmp(&b.misfit))?;
+    for (k, &a) in colors.iter().enumerate() {
+        for &b in &colors[..k] {
+            let mixture = pair(pixel, a, b, palette);
+            if mixture.misfit < best.misfit {
+                best = mixture;
+            }
+        }
+    }
+    if colors.len() > 2 && best.misfit > tuning::LEAST_CONTRAST / 2.0 {
+        for (k, &a) in colors.iter().enumerate() {
+            for (l, &b) in colors[..k].iter().enumerate() {
+                for &c in &colors[..l] {
+                    if let Some(mixture) = triple(pixel, [a, b, c], palette)
+                        && mixture.misfit < best.misfit / 2.0
+                    {
+                        best = mixture;
+                    }
+                }
+            }
+        }
+    }
+    Some(best)
+}
+
+/// A pixel as a mixture of two colors.
+fn pair(pixel: Color, a: u16, b: u16, palette: &[Color]) -> Mixture {
+    let (from, to) = (palette[a as usize], palette[b as usize]);
+    let share = coverage(pixel, from, to).clamp(0.0, 1.0);
+    let misfit = (0..3).map(|c| (pixel[c] - from[c] - share * (to[c] - from[c])).abs()).fold(0.0, f64::max);
+    if share > 0.5 { Mixture { color: b, share, misfit } } else { Mixture { color: a, share: 1.0 - share, misfit } }
+}
+
+/// How much of `to` a mixture of `from` and `to` has; not clamped.
+pub(crate) fn coverage(pixel: Color, from: Color, to: Color) -> f64 {
+    let [mut dot, mut square] = [0.0; 2];
+    for c in 0..3 {
+        let difference = to[c] - from[c];
+        dot += (pixel[c] - from[c]) * difference;
+        square += difference * difference;
+    }
+    if square > 0.0 { dot / square } else { 0.0 }
+}
+
+/// A pixel as a mixture of three colors; none if they lie on a line or a share is negative.
+fn triple(pixel: Color, colors: [u16; 3], palette: &[Color]) -> Option<Mixture> {
+    let [a, b, c] = colors.map(|k| palette[k as usize]);
+    let minus = |p: Color, q: Color| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
+    let dot = |p: Color, q: Color| p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
+    let (u, v, w) = (minus(b, a), minus(c, a), minus(pixel, a));
+    let (uu, uv, vv) = (dot(u, u), dot(u, v), dot(v, v));
+    let determinant = uu * vv - uv * uv;
+    if determinant <= 1e-4 * uu * vv {
+        return None;
+    }
+    let s = (dot(u, w) * vv - dot(v, w) * uv) / determinant;
+    let t = (dot(v, w) * uu - dot(u, w) * uv) / determinant;
+    let shares = [1.0 - s - t, s, t];
+    if shares.iter().any(|&share| share < 0.0) {
+        return None;
+    }
+    let misfit = (0..3).map(|k| (w[k] - s * u[k] - t * v[k]).abs()).fold(0.0, f64::max);
+    let most = (0..3).max_by(|&k, &l| shares[k].total_cmp(&shares[l]))?;
+    Some(Mixture { color: colors[most], share: shares[most], misfit })
+}
+
+/// The colors of flat pixels within reach of pixel `i`.
+fn colors_near(flat_colors: &[u16], [width, height]: [usize; 2], i: usize, near: &mut Vec<u16>) {
+    let (x, y) = (i % width, i / width);
+    near.clear();
+    for row in y.saturating_sub(REACH)..(y + REACH + 1).min(height) {
+        for &color in &flat_colors[row * width + x.saturating_sub(REACH)..row * width + (x + REACH + 1).min(width)] {
+            if color != u16::MAX && !near.contains(&color) {
+                near.push(color);
+            }
+        }
+    }
+}
+
+/// An index into the palette, which is short.
+pub(super) fn narrow(color: usize) -> u16 {
+    u16::try_from(color).unwrap_or(u16::MAX)
+}

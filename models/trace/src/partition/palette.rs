@@ -1,0 +1,49 @@
+//! The colors of a picture: those of its flat regions, equal ones taken together.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use super::flat::{Flats, Noise};
+use super::{Color, NoPartition};
+use crate::tuning;
+
+/// The colors, and which of them each flat region has.
+#[derive(Debug)]
+pub(super) struct Palette {
+    pub(super) colors: Vec<Color>,
+    /// Color of every flat region.
+    pub(super) of_region: Vec<usize>,
+}
+
+impl Palette {
+    /// Colors by falling area; a region whose color is that of a larger one but for noise shares its entry.
+    pub(super) fn of(flats: &Flats, noise: &Noise) -> Result<Self, NoPartition> {
+        let mut order: Vec<usize> = (0..flats.means.len()).collect();
+        order.sort_by_key(|&region| core::cmp::Reverse(flats.means[region].1));
+        let mut colors: Vec<(Color, f64)> = Vec::new();
+        let mut of_region = vec![0; flats.means.len()];
+        for region in order {
+            let (mean, count) = flats.means[region];
+            let known = colors.iter().position(|(color, _)| distance(*color, mean) <= f64::from(noise.mixed));
+            of_region[region] = known.unwrap_or(colors.len());
+            match known {
+                None if colors.len() == tuning::MOST_COLORS => return Err(NoPartition::TooManyColors),
+                None => colors.push((mean, count as f64)),
+                Some(k) => {
+                    let (color, weight) = &mut colors[k];
+                    let share = count as f64 / (*weight + count as f64);
+                    for (old, new) in color.iter_mut().zip(mean) {
+                        *old += share * (new - *old);
+                    }
+                    *weight += count as f64;
+                }
+            }
+        }
+        Ok(Self { colors: colors.into_iter().map(|(color, _)| color).collect(), of_region })
+    }
+}
+
+/// The most that a channel differs.
+pub(super) fn distance(a: Color, b: Color) -> f64 {
+    (0..3).map(|c| (a[c] - b[c]).abs()).fold(0.0, f64::max)
+}

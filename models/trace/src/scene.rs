@@ -1,0 +1,78 @@
+//! Layers to a scene: objects in scene units, each with a pose.
+
+use alloc::vec::Vec;
+
+use dvp_core::render::{Compositing, EdgeProfile};
+use dvp_core::shape::{AnyShape, Circle, Ellipse, FillRule, Path, PathRing, Rectangle, RegularPolygon, Segment};
+use dvp_core::{ImageSize, Object, Pose, Real as _, Scene};
+
+use crate::layers::{Layer, Layers};
+use crate::outline::{Outline, OutlineShape};
+
+/// The scene that layers make of a picture of some size.
+#[must_use]
+pub fn scene(layers: &Layers, size: ImageSize, transparent: bool) -> Scene<f32> {
+    let unit = size.unit_px() as f64;
+    Scene {
+        background: layers.background.map(|value| f32::of(value.clamp(0.0, 1.0))),
+        transparent,
+        objects: layers.layers.iter().filter_map(|layer| object(layer, unit)).collect(),
+        edge: EdgeProfile::area(),
+        compositing: Compositing::Over,
+    }
+}
+
+/// The object of a layer; none if it has no outline.
+fn object(layer: &Layer, unit: f64) -> Option<Object<f32>> {
+    let (shape, pose) = match &layer.outlines[..] {
+        [] => return None,
+        [Outline { shape: OutlineShape::Circle { center, radius }, .. }] => {
+            (AnyShape::Circle(Circle { radius: radius / unit }), [center.x, center.y, 0.0])
+        }
+        [Outline { shape: OutlineShape::Ellipse { center, radii, angle }, .. }] => {
+            (AnyShape::Ellipse(Ellipse { radii: radii.map(|radius| radius / unit) }), [center.x, center.y, *angle])
+        }
+        [Outline { shape: OutlineShape::Rectangle { center, size, corner_radius, angle }, .. }] => (
+            AnyShape::Rectangle(Rectangle { size: size.map(|side| side / unit), corner_radius: corner_radius / unit }),
+            [center.x, center.y, *angle],
+        ),
+        [Outline { shape: OutlineShape::RegularPolygon { center, sides, radius, angle }, .. }] => (
+            AnyShape::RegularPolygon(RegularPolygon { sides: *sides, radius: radius / unit }),
+            [center.x, center.y, *angle],
+        ),
+        outlines => path(outlines.iter().map(Outline::path_ring).collect(), unit),
+    };
+    let [x, y, rotation] = pose;
+    let pose = Pose { translation: [x / unit, y / unit].map(f32::of), scale: 1.0, rotation: f32::of(rotation) };
+    let color = layer.color.map(|value| f32::of(value.clamp(0.0, 1.0)));
+    Some(Object { shape: shape.cast(), pose, paint: color.into(), confidence: 1.0 })
+}
+
+/// A path around the middle of its points.
+fn path(mut rings: Vec<PathRing<f64>>, unit: f64) -> (AnyShape<f64>, [f64; 3]) {
+    let points = rings.iter().flat_map(|ring| &ring.points);
+    let [mut low, mut high] = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+    for point in points {
+        for k in 0..2 {
+            low[k] = low[k].min(point[k]);
+            high[k] = high[k].max(point[k]);
+        }
+    }
+    let center = [0, 1].map(|k| 0.5 * (low[k] + high[k]));
+    let place = |point: &mut [f64; 2]| *point = [0, 1].map(|k| (point[k] - center[k]) / unit);
+    for ring in &mut rings {
+        ring.points.iter_mut().for_each(place);
+        for segment in &mut ring.segments {
+            match segment {
+                Segment::Cubic { controls } => controls.iter_mut().for_each(place),
+                Segment::SmoothCubic { handle, control } => {
+                    *handle /= unit;
+                    place(control);
+                }
+                Segment::Line | Segment::Arc { .. } | Segment::SmoothArc => (),
+            }
+        }
+    }
+    let path = AnyShape::Path(Path { rings, fill: FillRule::EvenOdd });
+    (path, [center[0], center[1], 0.0])
+}
