@@ -20,6 +20,8 @@
 #![no_std]
 
 extern crate alloc;
+#[cfg(test)]
+extern crate std;
 
 pub mod boundary;
 pub mod layers;
@@ -27,7 +29,11 @@ pub mod outline;
 pub mod partition;
 pub mod ruler;
 pub mod sample;
+<<<<<<< HEAD
+pub mod stroke;
+=======
 pub mod scene;
+>>>>>>> main
 pub mod tuning;
 
 use dvp_core::{ImageView, Scene};

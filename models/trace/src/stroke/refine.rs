@@ -1,0 +1,220 @@
+//! All numbers of a drawing together, by damped least squares on every mark of the boundary.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use dvp_core::shape::{Cap, Path, PathRing, Piece, Segment};
+use dvp_core::{Shape as _, Vec2};
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
+
+use super::border::Border;
+use super::center::run_together;
+use super::draw::{Drawing, Foot, Line, gap};
+use super::piece::pieces;
+use super::skyline::Skyline;
+use crate::ruler::Ruler;
+use crate::tuning;
+
+/// Most steps of the refinement.
+const MOST_STEPS: usize = 8;
+/// A step that lowers the sum of squares by less, per mark, ends it.
+const LEAST_GAIN: f64 = 1e-3;
+/// Step of differences, pixels.
+const STEP: f64 = 1e-6;
+
+/// A drawing as the marks want it.
+#[derive(Debug)]
+pub(super) struct Refined {
+    pub(super) drawing: Drawing,
+    /// Sum of squared misfits of the marks, each by its variance; beyond [`tuning::OUTLINE_HUBER`] sigmas it grows linearly.
+    pub(super) chi2: f64,
+    /// Share of the marks that are off by more than [`tuning::STROKE_STRAY`].
+    pub(super) strays: f64,
+    /// Bits of the numbers, each given those before it.
+    pub(super) bits: f64,
+}
+
+/// A mark and what it misses by.
+struct Miss {
+    mark: usize,
+    gap: f64,
+    line: usize,
+    foot: Foot,
+}
+
+/// The drawing near this one that misses the marks least; none if nothing can be computed.
+pub(super) fn refine(mut drawing: Drawing, border: &Border, ruler: &Ruler) -> Option<Refined> {
+    let ridge = ruler.extent.max(1.0).powi(-2);
+    let mut misses = misses(&drawing, border)?;
+    let mut damping = 1e-3;
+    let mut equations = equations(&drawing, border, &misses)?;
+    for _ in 0..MOST_STEPS {
+        let mut change = equations.1.clone();
+        equations.0.factor(damping, ridge)?.solve(&mut change);
+        let then = moved(&drawing, &change).and_then(|drawing| Some((self::misses(&drawing, border)?, drawing)));
+        let before = chi2(border, &misses);
+        let Some((next, moved)) = then.filter(|(next, _)| chi2(border, next) < before) else {
+            damping *= 10.0;
+            if damping > 1e3 {
+                break;
+            }
+            continue;
+        };
+        let gain = before - chi2(border, &next);
+        (drawing, misses, damping) = (moved, next, damping * 0.1);
+        equations = self::equations(&drawing, border, &misses)?;
+        if gain < LEAST_GAIN * border.marks.len() as f64 {
+            break;
+        }
+    }
+    let bits = number_bits(&drawing, &equations.0.factor(0.0, ridge)?, ruler);
+    // What is drawn in the end is measured whole, ends that other lines hide included.
+    run_together(&mut drawing);
+    drawing.lines.iter_mut().for_each(|line| line.is_covered = [false; 2]);
+    let misses = self::misses(&drawing, border)?;
+    let strays = misses.iter().filter(|miss| miss.gap.abs() > tuning::STROKE_STRAY).count() as f64;
+    Some(Refined {
+        chi2: chi2(border, &misses),
+        strays: strays / border.marks.len() as f64,
+        bits,
+        drawing,
+    })
+}
+
+fn misses(drawing: &Drawing, border: &Border) -> Option<Vec<Miss>> {
+    let miss = |(mark, place): (usize, Vec2<f64>)| {
+        drawing.gap(place).map(|(gap, line, foot)| Miss { mark, gap, line, foot })
+    };
+    border.marks.iter().map(|mark| mark.point).enumerate().map(miss).collect()
+}
+
+/// The weight that a robust sum of squares gives to a misfit of so many sigmas.
+fn weight(sigmas: f64) -> f64 {
+    (tuning::OUTLINE_HUBER / sigmas.abs()).min(1.0)
+}
+
+pub(super) fn chi2_of(sigmas: f64) -> f64 {
+    let weight = weight(sigmas);
+    sigmas * sigmas * weight * (2.0 - weight)
+}
+
+fn chi2(border: &Border, misses: &[Miss]) -> f64 {
+    misses.iter().map(|miss| chi2_of(miss.gap / border.marks[miss.mark].sigma)).sum()
+}
+
+fn numbers(ring: &PathRing<f64>) -> (Path<f64>, Vec<f64>) {
+    let path = Path { rings: vec![ring.clone()], ..Path::default() };
+    let mut numbers = Vec::new();
+    path.numbers(&mut numbers);
+    (path, numbers)
+}
+
+/// The line with other numbers.
+fn with_numbers(line: &Line, numbers: &[f64]) -> Option<Line> {
+    let (mut path, _) = self::numbers(&line.ring);
+    path.set_numbers(numbers).ok()?;
+    line.with_ring(path.rings.pop()?)
+}
+
+/// The drawing after a change of all numbers: those of its lines, and half the width.
+fn moved(drawing: &Drawing, change: &[f64]) -> Option<Drawing> {
+    let mut change = change.iter().copied();
+    let mut lines = Vec::with_capacity(drawing.lines.len());
+    for line in &drawing.lines {
+        let mut numbers = numbers(&line.ring).1;
+        numbers.iter_mut().zip(change.by_ref()).for_each(|(number, change)| *number += change);
+        lines.push(with_numbers(line, &numbers)?);
+    }
+    let half_width = drawing.half_width + change.next()?;
+    (half_width > 0.0).then_some(Drawing { lines, half_width, ..*drawing })
+}
+
+/// The normal equations and their right side.
+fn equations(drawing: &Drawing, border: &Border, misses: &[Miss]) -> Option<(Skyline, Vec<f64>)> {
+    let counts: Vec<_> = drawing.lines.iter().map(|line| numbers(&line.ring).1.len()).collect();
+    let count = counts.iter().sum::<usize>() + 1;
+    // Numbers of a line meet each other, and all of them the width.
+    let mut firsts = Vec::with_capacity(count);
+    for &own in &counts {
+        firsts.extend(core::iter::repeat_n(firsts.len(), own));
+    }
+    firsts.push(0);
+    let (mut normal, mut right) = (Skyline::new(firsts), vec![0.0; count]);
+    let mut first = 0;
+    for (index, line) in drawing.lines.iter().enumerate() {
+        let own: Vec<_> = misses.iter().filter(|miss| miss.line == index).collect();
+        let slopes = slopes(line, drawing.half_width, border, &own);
+        for (miss, mut slopes) in own.into_iter().zip(slopes) {
+            let sigma = border.marks[miss.mark].sigma;
+            slopes.iter_mut().for_each(|entry| *entry = (first + entry.0, entry.1 / sigma));
+            if !matches!(miss.foot, Foot::Face { .. }) {
+                slopes.push((count - 1, -1.0 / sigma));
+            }
+            let weight = weight(miss.gap / sigma);
+            normal.add_outer(&slopes, weight);
+            slopes.iter().for_each(|&(place, slope)| right[place] -= weight * slope * miss.gap / sigma);
+        }
+        first += counts[index];
+    }
+    right.iter().all(|value| value.is_finite()).then_some((normal, right))
+}
+
+/// How the gap of each mark beside a line changes with the line's numbers: numbers and slopes.
+fn slopes(line: &Line, half: f64, border: &Border, misses: &[&Miss]) -> Vec<Vec<(usize, f64)>> {
+    let mut slopes = vec![Vec::new(); misses.len()];
+    let (mut path, mut numbers) = numbers(&line.ring);
+    for number in 0..numbers.len() {
+        let old = numbers[number];
+        numbers[number] = old + STEP;
+        let moved = path.set_numbers(&numbers).map(|()| path.rings.first().map(pieces).unwrap_or_default());
+        numbers[number] = old;
+        let Ok(moved) = moved else { continue };
+        let is_moved: Vec<_> = line.pieces.iter().zip(&moved).map(|(a, b)| a != b).collect();
+        for (slopes, miss) in slopes.iter_mut().zip(misses) {
+            let piece = match miss.foot {
+                Foot::Body { piece, .. } | Foot::Tangent { piece, .. } => piece,
+                Foot::Face { at_finish } => if at_finish { is_moved.len() - 1 } else { 0 },
+            };
+            if is_moved.get(piece) == Some(&true) {
+                let point = border.marks[miss.mark].point;
+                let change = |pieces: &[Piece<f64>]| gap(pieces, miss.foot, point, half);
+                slopes.push((number, (change(&moved) - change(&line.pieces)) / STEP));
+            }
+        }
+    }
+    slopes
+}
+
+/// Bits of all numbers: half the logarithm of the determinant of their inverse covariance, of those that can be seen.
+fn number_bits(drawing: &Drawing, factor: &Skyline, ruler: &Ruler) -> f64 {
+    let mut bits = 0.0;
+    let mut roots = factor.diagonal();
+    let mut price = |lever: f64| roots.next().map_or(0.0, |root| ruler.number(lever / root));
+    for line in &drawing.lines {
+        (0..2 * line.ring.points.len()).for_each(|_| bits += price(1.0));
+        for (segment, piece) in line.ring.segments.iter().zip(&line.pieces) {
+            bits += tuning::OUTLINE_PIECE_BITS;
+            bits += match segment {
+                Segment::Line | Segment::SmoothArc => 0.0,
+                // A bulge moves the middle of its arc by half the chord.
+                Segment::Arc { .. } => price(0.5 * (piece.to() - piece.from()).length()),
+                Segment::Cubic { .. } => (0..4).map(|_| price(1.0)).sum(),
+                Segment::SmoothCubic { .. } => (0..3).map(|_| price(1.0)).sum(),
+            };
+        }
+    }
+    // The width itself, which is twice the half; the cap and the join are one of two each.
+    bits + price(2.0) + 2.0
+}
+
+/// Whether corners go on until their sides meet, by what the marks miss either way.
+pub(super) fn choose_join(drawing: &mut Drawing, border: &Border) {
+    let sum = |drawing: &Drawing| misses(drawing, border).map_or(f64::INFINITY, |misses| chi2(border, &misses));
+    let round = sum(drawing);
+    drawing.is_mitered = true;
+    let miter = sum(drawing);
+    // Without corners both are the same, and ends say which is likelier.
+    let is_butt = drawing.lines.iter().any(|line| line.cap == Cap::Butt);
+    drawing.is_mitered = if (miter - round).abs() < 1e-6 { is_butt } else { miter < round };
+}

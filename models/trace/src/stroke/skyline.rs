@@ -1,0 +1,97 @@
+//! Symmetric equations in which each number meets few others: rows are kept from their first entry on.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
+
+/// The lower triangle of a symmetric matrix, or of its Cholesky factor.
+#[derive(Clone, Debug)]
+pub(super) struct Skyline {
+    /// First column of each row.
+    first: Vec<usize>,
+    /// Where each row starts in the entries, less its first column.
+    start: Vec<usize>,
+    entries: Vec<f64>,
+}
+
+impl Skyline {
+    /// Zeros, each row from its column in `first` (at most its own number) on.
+    pub(super) fn new(first: Vec<usize>) -> Self {
+        let mut start = Vec::with_capacity(first.len());
+        let mut count = 0;
+        for (row, &column) in first.iter().enumerate() {
+            start.push(count);
+            count += row + 1 - column;
+        }
+        Self { first, start, entries: vec![0.0; count] }
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.entries.fill(0.0);
+    }
+
+    fn row(&self, row: usize) -> &[f64] {
+        &self.entries[self.start[row]..][..row + 1 - self.first[row]]
+    }
+
+    /// Adds the products of sparse `slopes` with each other, times `weight`.
+    pub(super) fn add_outer(&mut self, slopes: &[(usize, f64)], weight: f64) {
+        for &(row, slope) in slopes {
+            let (first, start) = (self.first[row], self.start[row]);
+            for &(column, other) in slopes.iter().filter(|&&(column, _)| column <= row) {
+                self.entries[start + column - first] += weight * slope * other;
+            }
+        }
+    }
+
+    /// The Cholesky factor of this matrix with its diagonal multiplied by 1 + `damping` and `ridge` added; none if it is not
+    /// positive.
+    pub(super) fn factor(&self, damping: f64, ridge: f64) -> Option<Self> {
+        let mut factor = self.clone();
+        for row in 0..self.first.len() {
+            let (done, rest) = factor.entries.split_at_mut(self.start[row]);
+            let row_first = self.first[row];
+            let entries = &mut rest[..row + 1 - row_first];
+            for column in row_first..row {
+                let first = self.first[column].max(row_first);
+                let other = &done[self.start[column] + first - self.first[column]..][..column - first];
+                let sum: f64 = entries[first - row_first..column - row_first].iter().zip(other).map(|(a, b)| a * b).sum();
+                let diagonal = done[self.start[column] + column - self.first[column]];
+                entries[column - row_first] = (entries[column - row_first] - sum) / diagonal;
+            }
+            let sum: f64 = entries[..row - row_first].iter().map(|a| a * a).sum();
+            let value = entries[row - row_first] * (1.0 + damping) + ridge - sum;
+            entries[row - row_first] = (value > 0.0 && value.is_finite()).then(|| value.sqrt())?;
+        }
+        Some(factor)
+    }
+
+    /// Of a factor: the solution of L x = `right`, in place.
+    pub(super) fn solve_lower(&self, right: &mut [f64]) {
+        for row in 0..right.len() {
+            let (first, entries) = (self.first[row], self.row(row));
+            let sum: f64 = entries.iter().zip(&right[first..row]).map(|(a, b)| a * b).sum();
+            right[row] = (right[row] - sum) / entries[row - first];
+        }
+    }
+
+    /// Of a factor: the solution of L L^T x = `right`, in place.
+    pub(super) fn solve(&self, right: &mut [f64]) {
+        self.solve_lower(right);
+        for row in (0..right.len()).rev() {
+            let (first, entries) = (self.first[row], self.row(row));
+            let value = right[row] / entries[row - first];
+            right[row] = value;
+            for (other, entry) in right[first..row].iter_mut().zip(entries) {
+                *other -= entry * value;
+            }
+        }
+    }
+
+    /// Of a factor: its diagonal.
+    pub(super) fn diagonal(&self) -> impl Iterator<Item = f64> {
+        (0..self.first.len()).map(|row| self.row(row)[row - self.first[row]])
+    }
+}
