@@ -29,11 +29,8 @@ pub mod outline;
 pub mod partition;
 pub mod ruler;
 pub mod sample;
-<<<<<<< HEAD
-pub mod stroke;
-=======
 pub mod scene;
->>>>>>> main
+pub mod stroke;
 pub mod tuning;
 
 use dvp_core::{ImageView, Scene};
