@@ -3,10 +3,10 @@
 use alloc::vec::Vec;
 
 use dvp_core::render::{Compositing, EdgeProfile};
-use dvp_core::shape::{AnyShape, Circle, Ellipse, FillRule, Path, PathRing, Rectangle, RegularPolygon, Segment, Star};
+use dvp_core::shape::{AnyShape, Circle, Ellipse, FillRule, Path, PathRing, Rectangle, RegularPolygon, Segment, Star, Stroke};
 use dvp_core::{ImageSize, Object, Pose, Real as _, Scene};
 
-use crate::layers::{Layer, Layers};
+use crate::layers::{Form, Layer, Layers};
 use crate::outline::{Outline, OutlineShape};
 
 /// The scene that layers make of a picture of some size.
@@ -24,7 +24,21 @@ pub fn scene(layers: &Layers, size: ImageSize, transparent: bool) -> Scene<f32> 
 
 /// The object of a layer; none if it has no outline.
 fn object(layer: &Layer, unit: f64) -> Option<Object<f32>> {
-    let (shape, pose) = match &layer.outlines[..] {
+    let (shape, pose) = match &layer.form {
+        Form::Stroked(stroke) => stroked(stroke, unit),
+        Form::Filled(outlines) => filled(outlines, unit)?,
+    };
+    let [x, y, rotation] = pose;
+    let pose = Pose { translation: [x / unit, y / unit].map(f32::of), scale: 1.0, rotation: f32::of(rotation) };
+    let color = layer.color.map(|value| f32::of(value.clamp(0.0, 1.0)));
+    Some(Object { shape: shape.cast(), pose, paint: color.into(), confidence: 1.0 })
+}
+
+/// A shape in scene units around its place; its place in pixels and its turn.
+type Placed = (AnyShape<f64>, [f64; 3]);
+
+fn filled(outlines: &[Outline], unit: f64) -> Option<Placed> {
+    Some(match outlines {
         [] => return None,
         [Outline { shape: OutlineShape::Circle { center, radius }, .. }] => {
             (AnyShape::Circle(Circle { radius: radius / unit }), [center.x, center.y, 0.0])
@@ -44,16 +58,22 @@ fn object(layer: &Layer, unit: f64) -> Option<Object<f32>> {
             AnyShape::Star(Star { points: *points, radius: radii[0] / unit, inner_radius: radii[1] / unit }),
             [center.x, center.y, *angle],
         ),
-        outlines => path(outlines.iter().map(|outline| outline.shape.ring()).collect(), unit),
-    };
-    let [x, y, rotation] = pose;
-    let pose = Pose { translation: [x / unit, y / unit].map(f32::of), scale: 1.0, rotation: f32::of(rotation) };
-    let color = layer.color.map(|value| f32::of(value.clamp(0.0, 1.0)));
-    Some(Object { shape: shape.cast(), pose, paint: color.into(), confidence: 1.0 })
+        outlines => {
+            let mut rings: Vec<PathRing<f64>> = outlines.iter().map(|outline| outline.shape.ring()).collect();
+            let center = recenter(&mut rings, unit);
+            (AnyShape::Path(Path { rings, fill: FillRule::EvenOdd }), center)
+        }
+    })
 }
 
-/// A path around the middle of its points.
-fn path(mut rings: Vec<PathRing<f64>>, unit: f64) -> (AnyShape<f64>, [f64; 3]) {
+fn stroked(stroke: &Stroke<f64>, unit: f64) -> Placed {
+    let mut rings = stroke.rings.clone();
+    let center = recenter(&mut rings, unit);
+    (AnyShape::Stroke(Stroke { rings, width: stroke.width / unit, ..*stroke }), center)
+}
+
+/// Moves rings (pixels) to scene units around the middle of their points, which is returned.
+fn recenter(rings: &mut [PathRing<f64>], unit: f64) -> [f64; 3] {
     let points = rings.iter().flat_map(|ring| &ring.points);
     let [mut low, mut high] = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
     for point in points {
@@ -64,7 +84,7 @@ fn path(mut rings: Vec<PathRing<f64>>, unit: f64) -> (AnyShape<f64>, [f64; 3]) {
     }
     let center = [0, 1].map(|k| 0.5 * (low[k] + high[k]));
     let place = |point: &mut [f64; 2]| *point = [0, 1].map(|k| (point[k] - center[k]) / unit);
-    for ring in &mut rings {
+    for ring in rings {
         ring.points.iter_mut().for_each(place);
         for segment in &mut ring.segments {
             match segment {
@@ -77,6 +97,5 @@ fn path(mut rings: Vec<PathRing<f64>>, unit: f64) -> (AnyShape<f64>, [f64; 3]) {
             }
         }
     }
-    let path = AnyShape::Path(Path { rings, fill: FillRule::EvenOdd });
-    (path, [center[0], center[1], 0.0])
+    [center[0], center[1], 0.0]
 }

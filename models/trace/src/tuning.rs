@@ -98,3 +98,5 @@ pub const OUTLINE_CUBIC_SAMPLES: usize = 9;
 /// The curves beside a hidden stretch are drawn out to where they meet if that is no further than this many times the chord over
 /// it: else the corner would be a spike that nothing speaks for.
 pub const OUTLINE_BRIDGE: f64 = 3.0;
+/// Bits for a line lying in front of what it touches: as much as a junction may speak for.
+pub const PEN_VOTE: f64 = 40.0;

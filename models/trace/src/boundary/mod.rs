@@ -13,8 +13,6 @@ use dvp_core::contour::Crack;
 use crate::partition::Partition;
 use crate::sample::Sample;
 
-pub use ring::walk_mask;
-
 /// A step along the boundary of a face.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Step {
@@ -51,6 +49,17 @@ impl Ring {
 pub fn rings(partition: &Partition) -> Vec<Vec<Ring>> {
     let mut rings = ring::walk_faces(partition);
     for ring in rings.iter_mut().flatten() {
+        window::read(partition, ring);
+    }
+    rings
+}
+
+/// The rings around the pixels of some faces, with samples where they border on others. `inside` is asked for pixels within `bounds` (first
+/// column and row, and those after the last).
+#[must_use]
+pub fn walk_mask(partition: &Partition, inside: impl Fn([usize; 2]) -> bool, bounds: [usize; 4]) -> Vec<Ring> {
+    let mut rings = ring::walk_mask(partition, inside, bounds);
+    for ring in &mut rings {
         window::read(partition, ring);
     }
     rings

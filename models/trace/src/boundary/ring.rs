@@ -32,8 +32,7 @@ pub(super) fn walk_faces(partition: &Partition) -> Vec<Vec<Ring>> {
 }
 
 /// The rings around a set of faces, given as the answer whether a pixel belongs to it.
-#[must_use]
-pub fn walk_mask(partition: &Partition, inside: impl Fn([usize; 2]) -> bool, bounds: [usize; 4]) -> Vec<Ring> {
+pub(super) fn walk_mask(partition: &Partition, inside: impl Fn([usize; 2]) -> bool, bounds: [usize; 4]) -> Vec<Ring> {
     let [width, height] = partition.size;
     let inside = |at: [usize; 2]| at[0] < width && at[1] < height && inside(at);
     let [left, top, right, bottom] = bounds;

@@ -6,6 +6,7 @@ use alloc::vec::Vec;
 use super::junction::{Votes, votes};
 use crate::boundary::Ring;
 use crate::partition::{OUTSIDE, Partition};
+use crate::stroke::StrokeFit;
 use crate::tuning;
 
 /// Faces from back to front, the background first.
@@ -17,8 +18,9 @@ pub(super) struct Order {
 }
 
 impl Order {
-    pub(super) fn of(partition: &Partition, rings: &[Vec<Ring>], background: u32, clear: bool) -> Self {
+    pub(super) fn of(partition: &Partition, rings: &[Vec<Ring>], background: u32, clear: bool, pens: &[Option<StrokeFit>]) -> Self {
         let mut votes = votes(rings);
+        add_pens(rings, pens, &mut votes);
         add_enclosures(partition, rings, background, clear, &mut votes);
         let n = partition.faces.len();
         // What lies in front of each face, and behind how much each face must lie that is not placed yet.
@@ -45,6 +47,17 @@ impl Order {
             next = open.min_by(|a, b| key(a).0.total_cmp(&key(b).0).then(key(a).1.cmp(&key(b).1))).map(|face| face as u32);
         }
         order
+    }
+}
+
+/// Lines are drawn over what is filled.
+fn add_pens(rings: &[Vec<Ring>], pens: &[Option<StrokeFit>], votes: &mut Votes) {
+    for (face, rings) in rings.iter().enumerate().filter(|&(face, _)| pens[face].is_some()) {
+        for neighbor in neighbors_along(rings.iter()) {
+            if pens[neighbor as usize].is_none() {
+                *votes.entry((face as u32, neighbor)).or_default() += tuning::PEN_VOTE;
+            }
+        }
     }
 }
 

@@ -3,31 +3,45 @@
 use alloc::vec::Vec;
 
 use dvp_core::Vec2;
+use dvp_core::contour::Heading;
 
 use crate::boundary::{Ring, Step};
 use crate::sample::{RingSamples, Sample};
 use crate::tuning;
 
-/// The samples of a ring; where `is_hidden` says so, the boundary is not the layer's own.
+/// How a step of a boundary is hidden.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Hidden {
+    /// The outline may go anywhere there.
+    Free,
+    /// It lies somewhere under a stroke whose middle is `shift` pixels outward.
+    Under {
+        /// Pixels, negative inward.
+        shift: f64,
+    },
+}
+
+/// The samples of a ring; where `hidden` says so, the boundary is not the layer's own.
 ///
 /// Stretches that no window could read (thin things, crowded junctions) are known from the cracks themselves, to a third of a pixel.
-pub(super) fn samples(ring: &Ring, is_hidden: impl Fn(&Step) -> bool) -> RingSamples {
+pub(super) fn samples(ring: &Ring, hidden: impl Fn(&Step) -> Option<Hidden>) -> RingSamples {
+    let is_free = |step: &Step| hidden(step) == Some(Hidden::Free);
     let n = ring.steps.len();
     // Begin behind a hidden step, so that no run is cut in two.
-    let Some(start) = (0..n).find(|&k| is_hidden(&ring.steps[k])) else {
-        let run = read(ring, 0, n, true);
+    let Some(start) = (0..n).find(|&k| is_free(&ring.steps[k])) else {
+        let run = read(ring, 0, n, true, &hidden);
         return RingSamples { runs: alloc::vec![run], closed: true };
     };
     let mut runs = Vec::new();
     let mut k = 0;
     while k < n {
         let at = |k: usize| &ring.steps[(start + k) % n];
-        if is_hidden(at(k)) {
+        if is_free(at(k)) {
             k += 1;
             continue;
         }
-        let length = (k..n).take_while(|&j| !is_hidden(at(j))).count();
-        let run = read(ring, (start + k) % n, length, false);
+        let length = (k..n).take_while(|&j| !is_free(at(j))).count();
+        let run = read(ring, (start + k) % n, length, false, &hidden);
         if !run.is_empty() {
             runs.push(run);
         }
@@ -37,7 +51,13 @@ pub(super) fn samples(ring: &Ring, is_hidden: impl Fn(&Step) -> bool) -> RingSam
 }
 
 /// The samples of `length` steps from `start` on.
-fn read(ring: &Ring, start: usize, length: usize, closed: bool) -> Vec<Sample> {
+fn read(
+    ring: &Ring,
+    start: usize,
+    length: usize,
+    closed: bool,
+    hidden: impl Fn(&Step) -> Option<Hidden>,
+) -> Vec<Sample> {
     let n = ring.steps.len();
     let mut run: Vec<Sample> = Vec::new();
     let mut unread = 0;
@@ -46,7 +66,7 @@ fn read(ring: &Ring, start: usize, length: usize, closed: bool) -> Vec<Sample> {
         // Where a boundary is flat half of the steps have samples, at 45 degrees; else more. A longer stretch without is unread.
         unread = if step.sample.is_some() { 0 } else { unread + 1 };
         match step.sample {
-            Some(sample) => push(&mut run, sample),
+            Some(sample) => push(&mut run, moved(sample, step, hidden(step))),
             None if unread > tuning::MOST_UNREAD => push(&mut run, of_crack(step)),
             None => (),
         }
@@ -55,6 +75,19 @@ fn read(ring: &Ring, start: usize, length: usize, closed: bool) -> Vec<Sample> {
         run = (0..length).map(|k| of_crack(&ring.steps[(start + k) % n])).collect();
     }
     run
+}
+
+/// The sample of a step that is hidden under a stroke: it is the stroke's middle that the outline is near, give or take a quarter of its width.
+fn moved(sample: Sample, step: &Step, hidden: Option<Hidden>) -> Sample {
+    let Some(Hidden::Under { shift }) = hidden else { return sample };
+    // The face is on the right hand: outward is to the left.
+    let outward = match step.crack.heading {
+        Heading::PlusX => Vec2::new(0.0, -1.0),
+        Heading::PlusY => Vec2::new(1.0, 0.0),
+        Heading::MinusX => Vec2::new(0.0, 1.0),
+        Heading::MinusY => Vec2::new(-1.0, 0.0),
+    };
+    Sample { point: sample.point + outward * shift, sigma: sample.sigma.max(0.5 * shift.abs()), ..sample }
 }
 
 /// Leaves out a sample that does not lead on: where columns give way to rows, two windows read the same stretch.

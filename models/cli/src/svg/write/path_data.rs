@@ -39,10 +39,7 @@ impl PathData {
             match *piece {
                 // The last side of a closed ring comes with the Z.
                 Piece::Line { .. } if is_closed && k + 1 == pieces.len() => (),
-                Piece::Line { to, .. } => {
-                    self.command('L');
-                    self.point(to);
-                }
+                Piece::Line { to, .. } => self.line(to),
                 Piece::Arc { to, bulge, .. } => self.arc(to, bulge),
                 Piece::Cubic([_, first, second, to]) => {
                     self.command('C');
@@ -75,12 +72,28 @@ impl PathData {
         Vec2::new(rounded(point.x, self.decimals), rounded(point.y, self.decimals))
     }
 
+    /// A straight line; one along an axis needs one number.
+    #[expect(clippy::float_cmp, reason = "equal as they are written")]
+    fn line(&mut self, to: Vec2<f64>) {
+        let end = self.rounded(to);
+        let (letter, value) = match (end.x == self.pen.x, end.y == self.pen.y) {
+            (true, false) => ('V', to.y),
+            (false, true) => ('H', to.x),
+            _ => {
+                self.command('L');
+                return self.point(to);
+            }
+        };
+        self.command(letter);
+        push(&mut self.text, value, self.decimals);
+        self.pen = end;
+    }
+
     fn arc(&mut self, to: Vec2<f64>, bulge: f64) {
         let chord = (self.rounded(to) - self.pen).length();
         let height = bulge.abs() * chord * 0.5;
         if height < ARC_TOLERANCE {
-            self.command('L');
-            return self.point(to);
+            return self.line(to);
         }
         let (radius, decimals) = written_radius(chord, bulge.abs(), self.decimals);
         self.command('A');
