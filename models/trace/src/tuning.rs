@@ -82,7 +82,7 @@ pub const OUTLINE_SHARP: f64 = 0.4;
 pub const OUTLINE_POLYGON_SIGMAS: f64 = 2.5;
 
 /// Boundaries of up to this many samples are cut at any of them.
-pub const OUTLINE_ALL_PLACES: usize = 64;
+pub const OUTLINE_ALL_PLACES: usize = 40;
 
 /// Samples whose window holds a corner say where neither side is: so many may be left out between two pieces.
 pub const OUTLINE_SPOILED: usize = 2;

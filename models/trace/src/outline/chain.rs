@@ -165,11 +165,13 @@ impl Chain {
         }
         Some((g * scale, slopes))
     }
+}
 
-    /// Whether the window of `sample` holds point `k`: it tells of both curves there.
-    pub(super) fn is_spoiled(&self, k: usize, sample: &Sample) -> bool {
-        let offset = sample.point - self.points[k];
-        offset.cross(sample.axis).abs() < 0.55 && offset.dot(sample.axis).abs() < 2.0
+impl Sample {
+    /// Whether the window of the sample holds a corner: then it tells of both sides.
+    pub(super) fn holds(&self, corner: Vec2<f64>) -> bool {
+        let offset = self.point - corner;
+        offset.cross(self.axis).abs() < 0.55 && offset.dot(self.axis).abs() < 2.0
     }
 }
 

@@ -11,7 +11,7 @@ use super::track::{LEAST_COSINE, Track};
 /// Most samples that a trial of a cubic looks at: two for each of its numbers.
 const MOST_LOOKS: usize = 16;
 /// Steps of the fit, each with the samples' parameters found anew.
-const STEPS: usize = 4;
+const STEPS: usize = 6;
 
 /// Bernstein polynomials of degree 3.
 pub(super) fn basis(t: f64) -> [f64; 4] {
@@ -52,6 +52,7 @@ pub(super) fn fit(track: &Track, range: Range<usize>) -> Option<([Vec2<f64>; 4],
     let ends = [track.point(range.start), track.point(range.end - 1)];
     let mut cubic = start(ends, (0..looks).map(|k| (track.point(index(k)), parameters[k])))?;
     let anchor = track.sigma.powi(-2);
+    let damping = (8.0 / length).powi(2);
     let mut chi2 = f64::INFINITY;
     for step in 0..=STEPS {
         // Normal equations of the eight coordinates; the ends are held to their samples as a sample would.
@@ -62,7 +63,11 @@ pub(super) fn fit(track: &Track, range: Range<usize>) -> Option<([Vec2<f64>; 4],
                 normal[row][row] += anchor;
                 normal[row][8] += anchor * (end.to_array()[axis] - cubic[corner].to_array()[axis]);
             }
+            // Along a curve that is nearly straight the control points are hardly determined: held back from far steps.
+            normal[2 + axis][2 + axis] += damping;
+            normal[4 + axis][4 + axis] += damping;
         }
+        let before = chi2;
         chi2 = 0.0;
         for (k, t) in parameters[..looks].iter_mut().enumerate() {
             let sample = &track.samples[index(k)];
@@ -82,11 +87,12 @@ pub(super) fn fit(track: &Track, range: Range<usize>) -> Option<([Vec2<f64>; 4],
                 normal[i][8] += row[i] * misfit;
             }
         }
-        if step < STEPS {
-            let change = solve(&mut normal)?;
-            for (corner, delta) in cubic.iter_mut().zip(change.chunks_exact(2)) {
-                *corner = *corner + Vec2::new(delta[0], delta[1]);
-            }
+        if step == STEPS || chi2 > 0.9 * before {
+            break;
+        }
+        let change = solve(&mut normal)?;
+        for (corner, delta) in cubic.iter_mut().zip(change.chunks_exact(2)) {
+            *corner = *corner + Vec2::new(delta[0], delta[1]);
         }
     }
     let reach = (cubic[1] - cubic[0]).length() + (cubic[3] - cubic[2]).length();

@@ -12,10 +12,13 @@
 //! | `ties` | lines along the axes, smooth joins, equal radii, where they make the description shorter |
 //! | `path` | from samples to a path |
 //! | `as_ring` | outlines of any kind as rings of lines, arcs and cubics |
+//! | `figure`, `conic`, `whole` | circles, ellipses, rectangles, regular polygons and stars, fitted to all samples |
 
 mod as_ring;
 mod chain;
+mod conic;
 mod cubic;
+mod figure;
 mod moments;
 mod nodes;
 mod path;
@@ -26,6 +29,7 @@ mod solve;
 mod tests;
 mod ties;
 mod track;
+mod whole;
 
 use dvp_core::Vec2;
 use dvp_core::shape::PathRing;
@@ -121,8 +125,10 @@ pub struct OpenFit {
 #[must_use]
 pub fn fit_closed(ring: &RingSamples, ruler: &Ruler) -> Option<Outline> {
     let mut track = Track::of_ring(ring)?;
-    let FittedPath { ring, bits, misfit } = path::fit_ring(&mut track, ruler)?;
-    Some(Outline { shape: OutlineShape::Path(ring), bits, misfit })
+    let path = path::fit_ring(&mut track, ruler)?;
+    let whole = whole::fit(&track, &path, ruler);
+    let FittedPath { ring, bits, misfit } = path;
+    whole.or(Some(Outline { shape: OutlineShape::Path(ring), bits, misfit }))
 }
 
 /// The shortest description of an open line through samples.

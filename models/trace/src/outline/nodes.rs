@@ -15,8 +15,10 @@ use crate::tuning;
 pub(super) struct Nodes {
     /// Rising, from 0 to the number of samples.
     pub(super) places: Vec<usize>,
-    /// Of each place: how sharply the polygon turns there, radians.
+    /// Of each place: how sharply the polygon turns there, radians; 0 beside its vertices.
     pub(super) turns: Vec<f64>,
+    /// Of each place: whether cubics may start and end there; beside vertices without a corner they may not.
+    pub(super) cubic: Vec<bool>,
 }
 
 impl Nodes {
@@ -24,34 +26,42 @@ impl Nodes {
     pub(super) fn of(track: &Track) -> Self {
         let count = track.len();
         let polygon = polygon(track);
-        let mut turns = vec![None::<f64>; count + 1];
-        let mut mark = |place: usize, turn: f64| {
-            if let Some(old) = turns.get_mut(place) {
-                *old = Some(old.unwrap_or(0.0).max(turn));
+        let mut marks = vec![None::<(f64, bool)>; count + 1];
+        let mut mark = |place: usize, turn: f64, cubic: bool| {
+            if let Some(old) = marks.get_mut(place) {
+                let (turn_before, cubic_before) = old.unwrap_or_default();
+                *old = Some((turn_before.max(turn), cubic_before || cubic));
             }
         };
         for (k, &corner) in polygon.iter().enumerate() {
             let turn = turn(track, &polygon, k);
-            mark(corner, turn);
+            mark(corner, turn, true);
             if turn > tuning::OUTLINE_SHARP {
                 for place in corner.saturating_sub(2)..=corner + 3 {
-                    mark(place, turn);
+                    mark(place, 0.0, true);
                 }
             } else {
-                mark(corner + 1, 0.0);
+                mark(corner + 1, 0.0, false);
             }
         }
         for place in [0, 1, 2, count - 2, count - 1, count] {
-            mark(place, 0.0);
+            mark(place, 0.0, true);
         }
         for place in (0..count).filter(|&k| track.hidden[k]) {
-            mark(place, 0.0);
+            mark(place, 0.0, true);
         }
         if count <= tuning::OUTLINE_ALL_PLACES {
-            (0..=count).for_each(|place| mark(place, 0.0));
+            (0..=count).for_each(|place| mark(place, 0.0, false));
         }
-        let (places, turns) = turns.iter().enumerate().filter_map(|(place, turn)| turn.map(|turn| (place, turn))).unzip();
-        Self { places, turns }
+        let mut nodes = Self { places: Vec::new(), turns: Vec::new(), cubic: Vec::new() };
+        for (place, mark) in marks.iter().enumerate() {
+            if let &Some((turn, cubic)) = mark {
+                nodes.places.push(place);
+                nodes.turns.push(turn);
+                nodes.cubic.push(cubic);
+            }
+        }
+        nodes
     }
 
     /// The sample at the sharpest corner, if there is one.

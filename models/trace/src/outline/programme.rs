@@ -142,20 +142,31 @@ impl<'a> Programme<'a> {
     /// Cubics that end at `node`, where they may be cheaper than what is known.
     fn try_cubics(&mut self, node: usize) {
         let place = self.nodes.places[node];
+        if !self.nodes.cubic[node] {
+            return;
+        }
+        let (mut floor, mut corner) = (0.0_f64, 0);
         for from in (0..node).rev() {
-            if self.nodes.turns[from + 1..node].iter().any(|&turn| turn > tuning::OUTLINE_SHARP) {
+            let (before, first) = (self.starts[from].0, self.nodes.places[from]);
+            if corner > first + 2 {
                 break;
             }
-            let (before, first) = (self.starts[from].0, self.nodes.places[from]);
-            let floor = before + self.prices.cubic + self.floors[from];
-            if place - first < tuning::OUTLINE_CUBIC_SAMPLES || floor >= self.ends[node].bits {
+            if self.nodes.turns[from] > tuning::OUTLINE_SHARP && first + 2 < place {
+                corner = first;
+            }
+            // What contains a stretch that a cubic missed misses more.
+            floor = floor.max(self.floors[from]);
+            if !self.nodes.cubic[from]
+                || place - first < tuning::OUTLINE_CUBIC_SAMPLES
+                || before + self.prices.cubic + floor >= self.ends[node].bits
+            {
                 continue;
             }
             let Some((cubic, chi2)) = cubic::fit(self.track, first..place) else {
                 continue;
             };
             let misfit = self.ruler.misfit(chi2);
-            self.floors[from] = self.floors[from].max(0.5 * misfit);
+            self.floors[from] = self.floors[from].max(0.7 * misfit);
             self.offer(node, Best { bits: before + self.prices.cubic + misfit, from, kind: Kind::Cubic(cubic) });
         }
     }

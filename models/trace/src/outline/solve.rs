@@ -75,7 +75,8 @@ impl Fitted {
                 break;
             }
         }
-        let factor = now.normal.factor(0.0, ridge)?;
+        // Damping only where rounding makes the equations indefinite.
+        let factor = [0.0, 1e-9, 1e-6].into_iter().find_map(|damping| now.normal.factor(damping, ridge))?;
         Some(Self { chain, chi2: now.chi2, factor })
     }
 
@@ -161,7 +162,7 @@ impl Problem<'_> {
                 let sample = &self.track.samples[index];
                 let at_ends = [sample_number - range.start < 4, range.end - sample_number <= 4];
                 let near = sharp.iter().zip(at_ends).filter_map(|(&point, near)| point.filter(|_| near));
-                if near.into_iter().any(|point| chain.is_spoiled(point, sample)) {
+                if near.into_iter().any(|point| sample.holds(chain.points[point])) {
                     // As much as an honest sample is expected to miss by.
                     equations.chi2 += 1.0;
                     continue;

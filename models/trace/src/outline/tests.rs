@@ -1,0 +1,2 @@
+mod windows;
+mod report;

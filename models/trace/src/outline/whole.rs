@@ -1,0 +1,287 @@
+//! Whole outlines of few numbers, fitted to all samples.
+
+use alloc::vec::Vec;
+use core::f64::consts::PI;
+
+use dvp_core::Vec2;
+use dvp_core::shape::{PathRing, Segment};
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
+
+use super::conic;
+use super::figure::{Figure, MOST_NUMBERS, as_f64};
+use super::moments::Moments;
+use super::path::FittedPath;
+use super::track::{LEAST_COSINE, Track};
+use super::{Outline, OutlineShape};
+use crate::ruler::Ruler;
+use crate::tuning;
+
+/// Samples that a figure is first held against: enough for its numbers, and few, since most are refused.
+const FIRST_LOOKS: usize = 48;
+/// Steps of a fit.
+const STEPS: usize = 8;
+/// Step of differences, pixels and radians.
+const STEP: f64 = 1e-6;
+
+/// The cheapest whole outline that costs less than `path`.
+pub(super) fn fit(track: &Track, path: &FittedPath, ruler: &Ruler) -> Option<Outline> {
+    let most = path.bits + path.misfit;
+    let mut best: Option<Outline> = None;
+    for (figure, start, free) in starts(track, &path.ring) {
+        let most = best.as_ref().map_or(most, |best| best.bits + best.misfit);
+        let trial = Trial { track, ruler, figure, free };
+        best = trial.run(start, most).or(best);
+    }
+    best
+}
+
+/// A figure, its numbers to start from, and how many of them, of the first, are free.
+type Start = (Figure, [f64; MOST_NUMBERS], [bool; MOST_NUMBERS]);
+
+fn starts(track: &Track, ring: &PathRing<f64>) -> Vec<Start> {
+    let all = [true; MOST_NUMBERS];
+    let mut starts = Vec::new();
+    if ring.segments.iter().any(|segment| !matches!(segment, Segment::Line)) {
+        let mut moments = Moments::default();
+        let origin = track.point(0);
+        (0..track.len()).for_each(|k| moments.add(track.point(k) - origin, track.weights[k]));
+        if let Some(circle) = moments.circle() {
+            let center = circle.center + origin;
+            starts.push((Figure::Circle, [center.x, center.y, circle.radius, 0.0, 0.0, 0.0], all));
+        }
+        if let Some([x, y, a, b, angle]) = conic::ellipse(track) {
+            let upright = if angle.sin().abs() < 0.5f64.sqrt() { [a, b] } else { [b, a] };
+            starts.push((Figure::Ellipse, [x, y, upright[0], upright[1], 0.0, 0.0], [true, true, true, true, false, false]));
+            starts.push((Figure::Ellipse, [x, y, a, b, angle, 0.0], all));
+        }
+    }
+    rectangles(track, ring, &mut starts);
+    polygons(ring, &mut starts);
+    starts
+}
+
+/// Upright and along the longest line of the path; sharp, and round if the path has arcs or curves.
+fn rectangles(track: &Track, ring: &PathRing<f64>, starts: &mut Vec<Start>) {
+    let lines = edges(ring).filter(|(segment, _)| matches!(segment, Segment::Line)).map(|(_, chord)| chord);
+    let Some(longest) = lines.max_by(|a, b| a.length_squared().total_cmp(&b.length_squared())) else {
+        return;
+    };
+    let round = ring.segments.iter().any(|segment| !matches!(segment, Segment::Line));
+    if !round && ring.segments.len() > 8 {
+        return;
+    }
+    let quarter = longest.angle().rem_euclid(0.5 * PI);
+    let angle = if quarter > 0.25 * PI { quarter - 0.5 * PI } else { quarter };
+    for (angle, turns) in [(0.0, false), (angle, true)] {
+        let turn = Vec2::from_angle(-angle);
+        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        for sample in &track.samples {
+            let local = sample.point.turned(turn).to_array();
+            low = core::array::from_fn(|axis| low[axis].min(local[axis]));
+            high = core::array::from_fn(|axis| high[axis].max(local[axis]));
+        }
+        let [width, height] = [high[0] - low[0], high[1] - low[1]];
+        let center = Vec2::new(0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])).turned(Vec2::from_angle(angle));
+        // What the corners take away of the area, (4 - pi) radius^2, tells the radius of a rectangle that is seen whole.
+        let missing = (width * height - area(track).abs()) / (4.0 - PI);
+        let most = 0.5 * width.min(height);
+        let radius = if missing > 0.0 { missing.sqrt().min(0.98 * most) } else { 0.0 };
+        if round {
+            starts.push((Figure::Rectangle, [center.x, center.y, width, height, radius, angle], [true, true, true, true, true, turns]));
+        }
+        starts.push((Figure::Rectangle, [center.x, center.y, width, height, 0.0, angle], [true, true, true, true, false, turns]));
+    }
+}
+
+fn polygons(ring: &PathRing<f64>, starts: &mut Vec<Start>) {
+    let count = ring.points.len();
+    if ring.segments.iter().any(|segment| !matches!(segment, Segment::Line)) || count < 3 || count == 4 {
+        return;
+    }
+    let points: Vec<Vec2<f64>> = ring.points.iter().map(|&point| point.into()).collect();
+    let center = points.iter().fold(Vec2::default(), |sum, &point| sum + point) / as_f64(count);
+    let arms: Vec<Vec2<f64>> = points.iter().map(|&point| point - center).collect();
+    let mean = |every: usize, first: usize| {
+        arms.iter().skip(first).step_by(every).map(|arm| arm.length()).sum::<f64>() * as_f64(every) / as_f64(count)
+    };
+    let mut push = |figure: Figure, radii: &[f64], first: usize, sector: f64| {
+        // Artists let a corner or the middle of a side point along an axis.
+        let free = arms[first].angle();
+        let step = 0.25 * sector;
+        let upright = (free / step).round() * step;
+        for (angle, is_free) in [(upright, false), (free, true)] {
+            let mut numbers = [center.x, center.y, 0.0, 0.0, 0.0, 0.0];
+            numbers[2..2 + radii.len()].copy_from_slice(radii);
+            numbers[2 + radii.len()] = angle;
+            let mut mask = [true; MOST_NUMBERS];
+            mask[2 + radii.len()] = is_free;
+            starts.push((figure, numbers, mask));
+        }
+    };
+    push(Figure::Polygon { sides: count }, &[mean(1, 0)], 0, 2.0 * PI / as_f64(count));
+    if count >= 6 && count % 2 == 0 {
+        let first = usize::from(mean(2, 0) < mean(2, 1));
+        push(Figure::Star { points: count / 2 }, &[mean(2, first), mean(2, 1 - first)], first, 4.0 * PI / as_f64(count));
+    }
+}
+
+/// Segments and their chords.
+fn edges(ring: &PathRing<f64>) -> impl Iterator<Item = (&Segment<f64>, Vec2<f64>)> {
+    let next = ring.points.iter().cycle().skip(1);
+    let chords = ring.points.iter().zip(next).map(|(&from, &to)| Vec2::from(to) - Vec2::from(from));
+    ring.segments.iter().zip(chords)
+}
+
+/// Area of the polygon through the samples.
+fn area(track: &Track) -> f64 {
+    let origin = track.point(0);
+    let points = (0..track.len()).map(|k| track.point(k) - origin);
+    0.5 * points.clone().zip(points.skip(1)).map(|(a, b)| a.cross(b)).sum::<f64>()
+}
+
+/// A figure on trial.
+struct Trial<'a> {
+    track: &'a Track,
+    ruler: &'a Ruler,
+    figure: Figure,
+    free: [bool; MOST_NUMBERS],
+}
+
+/// Normal equations of a figure's numbers; those that are not free keep to themselves.
+struct Equations {
+    normal: [[f64; MOST_NUMBERS]; MOST_NUMBERS],
+    right: [f64; MOST_NUMBERS],
+    chi2: f64,
+}
+
+impl Trial<'_> {
+    /// The outline if it costs less than `most` bits.
+    fn run(&self, start: [f64; MOST_NUMBERS], most: f64) -> Option<Outline> {
+        let few = self.track.len().div_ceil(FIRST_LOOKS);
+        let (numbers, first) = self.descend(start, few)?;
+        // Samples of a few columns tell whether all can be met; with some room for what is not found yet.
+        if self.ruler.misfit(first.chi2) * as_f64(few) > 2.0 * most {
+            return None;
+        }
+        let (numbers, equations) = if few > 1 { self.descend(numbers, 1)? } else { (numbers, first) };
+        let misfit = self.ruler.misfit(equations.chi2);
+        let factor = cholesky(&equations.normal, 0.0)?;
+        let lever = 0.5 * numbers[2].abs();
+        let mut bits = tuning::OUTLINE_PIECE_BITS;
+        for k in (0..self.figure.number_count()).filter(|&k| self.free[k]) {
+            let lever = if self.figure.angle() == Some(k) { lever } else { 1.0 };
+            let sigma = lever / factor[k][k];
+            // What is not determined is not known to be this figure.
+            if sigma > 0.5 {
+                return None;
+            }
+            bits += self.ruler.number(sigma);
+        }
+        let shape = self.shape(&numbers)?;
+        (bits + misfit < most).then_some(Outline { shape, bits, misfit })
+    }
+
+    /// Gauss-Newton on every `every`-th sample.
+    fn descend(&self, start: [f64; MOST_NUMBERS], every: usize) -> Option<([f64; MOST_NUMBERS], Equations)> {
+        let mut numbers = start;
+        let mut now = self.equations(&numbers, every)?;
+        let mut damping = 1e-6;
+        for _ in 0..STEPS {
+            let change = solve(&cholesky(&now.normal, damping)?, now.right);
+            let mut next: [f64; MOST_NUMBERS] = core::array::from_fn(|k| numbers[k] + change[k]);
+            if self.figure == Figure::Rectangle {
+                next[4] = next[4].clamp(0.0, 0.5 * next[2].min(next[3]).max(0.0));
+            }
+            match self.equations(&next, every).filter(|then| then.chi2 < now.chi2) {
+                Some(then) => {
+                    let gain = now.chi2 - then.chi2;
+                    (numbers, now, damping) = (next, then, damping * 0.1);
+                    if gain < 0.01 {
+                        break;
+                    }
+                }
+                None => damping = (damping * 100.0).max(1e-4),
+            }
+        }
+        Some((numbers, now))
+    }
+
+    fn equations(&self, numbers: &[f64; MOST_NUMBERS], every: usize) -> Option<Equations> {
+        let count = self.figure.number_count();
+        let corners = self.figure.corners(numbers);
+        let mut equations = Equations { normal: [[0.0; MOST_NUMBERS]; MOST_NUMBERS], right: [0.0; MOST_NUMBERS], chi2: 0.0 };
+        for sample in self.track.samples.iter().step_by(every) {
+            if corners.iter().any(|&corner| sample.holds(corner)) {
+                equations.chi2 += 1.0;
+                continue;
+            }
+            let (distance, normal) = self.figure.distance(numbers, sample.point);
+            let scale = 1.0 / (normal.dot(sample.axis).abs().max(LEAST_COSINE) * sample.sigma);
+            let misfit = distance * scale;
+            let far = misfit.abs() / tuning::OUTLINE_HUBER;
+            let weight = 1.0 / far.max(1.0);
+            equations.chi2 += misfit * misfit * weight * (2.0 - weight);
+            let mut slopes = [0.0; MOST_NUMBERS];
+            for k in (0..count).filter(|&k| self.free[k]) {
+                let mut moved = *numbers;
+                moved[k] += STEP;
+                slopes[k] = (self.figure.distance(&moved, sample.point).0 - distance) * scale / STEP;
+            }
+            for i in 0..count {
+                for j in 0..=i {
+                    equations.normal[i][j] += weight * slopes[i] * slopes[j];
+                }
+                equations.right[i] -= weight * slopes[i] * misfit;
+            }
+        }
+        for k in (0..MOST_NUMBERS).filter(|&k| k >= count || !self.free[k]) {
+            equations.normal[k][k] = 1.0;
+        }
+        equations.chi2.is_finite().then_some(equations)
+    }
+
+    fn shape(&self, numbers: &[f64; MOST_NUMBERS]) -> Option<OutlineShape> {
+        let [x, y, a, b, c, d] = *numbers;
+        let center = Vec2::new(x, y);
+        let good = numbers.iter().all(|number| number.is_finite()) && a > 0.0;
+        let shape = match self.figure {
+            Figure::Circle => OutlineShape::Circle { center, radius: a },
+            Figure::Ellipse => OutlineShape::Ellipse { center, radii: [a, b], angle: c },
+            Figure::Rectangle => OutlineShape::Rectangle { center, size: [a, b], corner_radius: c, angle: d },
+            Figure::Polygon { sides } => OutlineShape::RegularPolygon { center, sides, radius: a, angle: b },
+            Figure::Star { points } => OutlineShape::Star { center, points, radii: [a, b], angle: c },
+        };
+        let positive = matches!(self.figure, Figure::Circle | Figure::Polygon { .. }) || b > 0.0;
+        (good && positive).then_some(shape)
+    }
+}
+
+/// The lower factor of a matrix with its diagonal multiplied by 1 + `damping`.
+fn cholesky(normal: &[[f64; MOST_NUMBERS]; MOST_NUMBERS], damping: f64) -> Option<[[f64; MOST_NUMBERS]; MOST_NUMBERS]> {
+    let mut factor = [[0.0; MOST_NUMBERS]; MOST_NUMBERS];
+    for i in 0..MOST_NUMBERS {
+        for j in 0..=i {
+            let sum: f64 = (0..j).map(|k| factor[i][k] * factor[j][k]).sum();
+            if i == j {
+                let value = normal[i][i] * (1.0 + damping) - sum;
+                factor[i][i] = (value > 0.0 && value.is_finite()).then(|| value.sqrt())?;
+            } else {
+                factor[i][j] = (normal[i][j] - sum) / factor[j][j];
+            }
+        }
+    }
+    Some(factor)
+}
+
+fn solve(factor: &[[f64; MOST_NUMBERS]; MOST_NUMBERS], mut x: [f64; MOST_NUMBERS]) -> [f64; MOST_NUMBERS] {
+    for i in 0..MOST_NUMBERS {
+        let sum: f64 = (0..i).map(|k| factor[i][k] * x[k]).sum();
+        x[i] = (x[i] - sum) / factor[i][i];
+    }
+    for i in (0..MOST_NUMBERS).rev() {
+        let sum: f64 = (i + 1..MOST_NUMBERS).map(|k| factor[k][i] * x[k]).sum();
+        x[i] = (x[i] - sum) / factor[i][i];
+    }
+    x
+}
