@@ -21,9 +21,7 @@ mod center;
 mod chain;
 mod draw;
 mod piece;
-mod polyline;
 mod refine;
-mod skyline;
 #[cfg(test)]
 mod tests;
 mod thin;

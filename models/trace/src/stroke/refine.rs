@@ -12,7 +12,7 @@ use super::border::Border;
 use super::center::run_together;
 use super::draw::{Drawing, Foot, Line, gap};
 use super::piece::pieces;
-use super::skyline::Skyline;
+use crate::outline::Skyline;
 use crate::ruler::Ruler;
 use crate::tuning;
 
@@ -51,7 +51,8 @@ pub(super) fn refine(mut drawing: Drawing, border: &Border, ruler: &Ruler) -> Op
     let mut equations = equations(&drawing, border, &misses)?;
     for _ in 0..MOST_STEPS {
         let mut change = equations.1.clone();
-        equations.0.factor(damping, ridge)?.solve(&mut change);
+        // What no mark holds moves by no more than a pixel or so.
+        equations.0.factor(damping, 1.0)?.solve(&mut change);
         let then = moved(&drawing, &change).and_then(|drawing| Some((self::misses(&drawing, border)?, drawing)));
         let before = chi2(border, &misses);
         let Some((next, moved)) = then.filter(|(next, _)| chi2(border, next) < before) else {
