@@ -24,6 +24,7 @@ mod nodes;
 mod path;
 mod programme;
 mod skyline;
+pub(crate) use skyline::Skyline;
 mod solve;
 #[cfg(test)]
 mod tests;

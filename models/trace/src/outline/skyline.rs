@@ -8,7 +8,7 @@ use num_traits::Float as _;
 
 /// The lower triangle of a symmetric matrix, or of its Cholesky factor.
 #[derive(Clone, Debug)]
-pub(super) struct Skyline {
+pub(crate) struct Skyline {
     /// First column of each row.
     first: Vec<usize>,
     /// Where each row starts in the entries, less its first column.
@@ -18,7 +18,7 @@ pub(super) struct Skyline {
 
 impl Skyline {
     /// Zeros, each row from its column in `first` (at most its own number) on.
-    pub(super) fn new(first: Vec<usize>) -> Self {
+    pub(crate) fn new(first: Vec<usize>) -> Self {
         let mut start = Vec::with_capacity(first.len());
         let mut count = 0;
         for (row, &column) in first.iter().enumerate() {
@@ -28,12 +28,16 @@ impl Skyline {
         Self { first, start, entries: vec![0.0; count] }
     }
 
+    pub(crate) fn clear(&mut self) {
+        self.entries.fill(0.0);
+    }
+
     fn row(&self, row: usize) -> &[f64] {
         &self.entries[self.start[row]..][..row + 1 - self.first[row]]
     }
 
     /// Adds the products of sparse `slopes` with each other, times `weight`.
-    pub(super) fn add_outer(&mut self, slopes: &[(usize, f64)], weight: f64) {
+    pub(crate) fn add_outer(&mut self, slopes: &[(usize, f64)], weight: f64) {
         for &(row, slope) in slopes {
             let (first, start) = (self.first[row], self.start[row]);
             for &(column, other) in slopes.iter().filter(|&&(column, _)| column <= row) {
@@ -44,7 +48,7 @@ impl Skyline {
 
     /// The Cholesky factor of this matrix with its diagonal multiplied by 1 + `damping` and `ridge` added; none if it is not
     /// positive.
-    pub(super) fn factor(&self, damping: f64, ridge: f64) -> Option<Self> {
+    pub(crate) fn factor(&self, damping: f64, ridge: f64) -> Option<Self> {
         let mut factor = self.clone();
         for row in 0..self.first.len() {
             let (done, rest) = factor.entries.split_at_mut(self.start[row]);
@@ -65,7 +69,7 @@ impl Skyline {
     }
 
     /// Of a factor: the solution of L x = `right`, in place.
-    pub(super) fn solve_lower(&self, right: &mut [f64]) {
+    pub(crate) fn solve_lower(&self, right: &mut [f64]) {
         for row in 0..right.len() {
             let (first, entries) = (self.first[row], self.row(row));
             let sum: f64 = entries.iter().zip(&right[first..row]).map(|(a, b)| a * b).sum();
@@ -74,7 +78,7 @@ impl Skyline {
     }
 
     /// Of a factor: the solution of L L^T x = `right`, in place.
-    pub(super) fn solve(&self, right: &mut [f64]) {
+    pub(crate) fn solve(&self, right: &mut [f64]) {
         self.solve_lower(right);
         for row in (0..right.len()).rev() {
             let (first, entries) = (self.first[row], self.row(row));
@@ -87,7 +91,7 @@ impl Skyline {
     }
 
     /// Of a factor: its diagonal.
-    pub(super) fn diagonal(&self) -> impl Iterator<Item = f64> {
+    pub(crate) fn diagonal(&self) -> impl Iterator<Item = f64> {
         (0..self.first.len()).map(|row| self.row(row)[row - self.first[row]])
     }
 }

@@ -18,6 +18,8 @@ use crate::tuning;
 const MOST_STEPS: usize = 15;
 /// A step that lowers the sum of squares by less ends the fit.
 const LEAST_GAIN: f64 = 0.02;
+/// How hard ends of open lines are held: to half a pixel.
+const END_WEIGHT: f64 = 4.0;
 /// Samples beside a corner that may be moved from one curve to the next at once.
 const REACH: usize = 8;
 
@@ -181,6 +183,16 @@ impl Problem<'_> {
                 let weight = 1.0 / far.max(1.0);
                 equations.chi2 += misfit * misfit * weight * (2.0 - weight);
                 equations.add(slopes.entries(), misfit, weight);
+            }
+        }
+        if !chain.closed {
+            // No sample says how far an open line goes: it ends about where they do.
+            for (point, sample) in [(0, 0), (chain.points.len() - 1, self.track.len() - 1)] {
+                let off = chain.points[point] - self.track.point(sample);
+                for (axis, off) in [off.x, off.y].into_iter().enumerate() {
+                    equations.strain += END_WEIGHT * off * off;
+                    equations.add(&[(places[point] + axis, 1.0)], off, END_WEIGHT);
+                }
             }
         }
         for &(tie, weight) in self.ties {

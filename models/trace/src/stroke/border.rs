@@ -9,6 +9,7 @@ use dvp_core::{Real, Vec2};
 use num_traits::Float as _;
 
 use crate::sample::RingSamples;
+use crate::tuning;
 
 /// A sample of the boundary, with the direction in which the face lies.
 #[derive(Clone, Copy, Debug)]
@@ -98,7 +99,8 @@ impl Border {
                     }
                     let inward = along.perp().normalized().unwrap_or(Vec2::new(1.0, 0.0));
                     // A window along an axis sees a slanted boundary move by more than across it.
-                    let sigma = sample.sigma * inward.dot(sample.axis).abs().max(0.5);
+                    let along_axis = sample.sigma.hypot(tuning::RENDERER_SIGMA);
+                    let sigma = along_axis * inward.dot(sample.axis).abs().max(0.5);
                     marks.push(Mark { point: sample.point, inward, sigma, run: runs.len() });
                 }
                 runs.push((first..marks.len(), ring.closed));

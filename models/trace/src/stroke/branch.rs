@@ -57,21 +57,63 @@ fn is_as_wide(distance: f64, width: f64) -> bool {
     (distance - width).abs() <= tuning::STROKE_WIDTH_TOLERANCE * width.max(2.0)
 }
 
-/// The branches of a face that is `width` wide, their nodes, and the width measured on all of them.
-pub(super) fn branches(border: &Border, width: f64) -> (Vec<Branch>, Vec<Node>, f64) {
+/// What a face is made of if a pen drew it.
+#[derive(Debug)]
+pub(super) struct Skeleton {
+    pub(super) branches: Vec<Branch>,
+    pub(super) nodes: Vec<Node>,
+    /// Width of the pen.
+    pub(super) width: f64,
+    /// What the width of the pen, which does not change, tells of the marks.
+    pub(super) noise: Noise,
+}
+
+/// By how much marks are off, standard deviations in pixels.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Noise {
+    /// Each by itself.
+    pub(super) single: f64,
+    /// All of [`BLOCK`] side by side.
+    pub(super) block: f64,
+}
+
+/// Marks side by side that a renderer's lattice of sub-pixels moves by about the same.
+pub(super) const BLOCK: usize = 16;
+
+/// The branches of a face that is about `width` wide.
+pub(super) fn skeleton(border: &Border, width: f64) -> Skeleton {
     let limit = width + tuning::STROKE_WIDTH_TOLERANCE * width.max(2.0);
     let hits: Vec<_> = (0..border.marks.len())
         .map(|mark| border.across(mark, limit).filter(|hit| is_as_wide(hit.distance, width)))
         .collect();
-    let mut widths: Vec<_> = hits.iter().flatten().map(|hit| hit.distance).collect();
-    let width = median(&mut widths).unwrap_or(width);
-    let mut sides = Sides { border, hits: &hits, labels: vec![None; hits.len()], width, branches: Vec::new(), lasts: Vec::new() };
+    let (width, noise) = measure(&hits, width);
+    let mut sides = Sides { border, hits: &hits, labels: vec![None; hits.len()], branches: Vec::new(), lasts: Vec::new() };
     let mut start = 0;
     while start < hits.len() {
         start = sides.take(start);
     }
     let nodes = sides.nodes();
-    (sides.branches, nodes, width)
+    Skeleton { branches: sides.branches, nodes, width, noise }
+}
+
+/// The width by blocks of marks, and what is left unexplained by it, per side of the line. To start with, the renderer's lattice
+/// moves blocks as of one block.
+fn measure(hits: &[Option<Hit>], width: f64) -> (f64, Noise) {
+    let spread = |block: &[Option<Hit>]| {
+        let count = block.len() as f64;
+        let mean = block.iter().flatten().map(|hit| hit.distance).sum::<f64>() / count;
+        let squares: f64 = block.iter().flatten().map(|hit| (hit.distance - mean).powi(2)).sum();
+        block.iter().all(Option::is_some).then_some((mean, squares / (count - 1.0)))
+    };
+    let blocks: Vec<_> = hits.chunks_exact(BLOCK).filter_map(spread).filter(|block| (block.0 - width).abs() < 0.5).collect();
+    let count = blocks.len() as f64;
+    let width = if blocks.is_empty() { width } else { blocks.iter().map(|block| block.0).sum::<f64>() / count };
+    let squares: f64 = blocks.iter().map(|block| 0.5 * (block.0 - width).powi(2)).sum();
+    let block = ((squares + tuning::STROKE_OFFSET.powi(2)) / (count + 1.0)).sqrt();
+    // Blocks at ends of bends have jumps: the median.
+    let mut singles: Vec<_> = blocks.iter().map(|block| (0.5 * block.1).sqrt()).collect();
+    let single = median(&mut singles).unwrap_or(0.0);
+    (width, Noise { single: single.min(tuning::STROKE_OFFSET), block: block.min(tuning::STROKE_OFFSET) })
 }
 
 /// Branches on the way.
@@ -81,7 +123,6 @@ struct Sides<'a> {
     /// The end of a branch that a walk along the boundary comes to after a mark on its side: twice the number of the branch, plus one on
     /// the first side.
     labels: Vec<Option<End>>,
-    width: f64,
     branches: Vec<Branch>,
     /// The last mark of each side, in the order of ends.
     lasts: Vec<usize>,

@@ -11,8 +11,9 @@ use super::border::{Border, Mark};
 use super::chain::{Chain, Tip, meeting};
 use super::draw::{Drawing, Line};
 use super::piece::{move_tip, tip};
-use super::polyline::{fit_closed, fit_open};
+use crate::outline::{fit_closed, fit_open};
 use crate::ruler::Ruler;
+use crate::sample::RingSamples;
 
 /// The lines of all chains, each with the ends that its marks show; none if a center line cannot be fitted.
 pub(super) fn lines(border: &Border, chains: &[Chain], width: f64, ruler: &Ruler) -> Option<Drawing> {
@@ -64,9 +65,10 @@ pub(super) fn run_together(drawing: &mut Drawing) {
 /// The center line of a chain, corners where its stretches meet.
 fn center_line(chain: &Chain, width: f64, ruler: &Ruler) -> Option<PathRing<f64>> {
     if chain.is_smooth {
-        return fit_closed(chain.stretches.first()?, ruler);
+        let samples = RingSamples { runs: alloc::vec![chain.stretches.first()?.clone()], closed: true };
+        return Some(fit_closed(&samples, ruler)?.shape.ring());
     }
-    let mut stretches = chain.stretches.iter().map(|samples| fit_open(samples, ruler)).collect::<Option<Vec<_>>>()?;
+    let mut stretches = chain.stretches.iter().map(|samples| Some(fit_open(samples, ruler)?.path)).collect::<Option<Vec<_>>>()?;
     let count = stretches.len();
     let corners = if chain.is_closed { count } else { count - 1 };
     for i in 0..corners {

@@ -8,7 +8,7 @@ use dvp_core::Vec2;
 use num_traits::Float as _;
 
 use super::border::Border;
-use super::branch::{Branch, End, Node};
+use super::branch::{BLOCK, Branch, End, Node, Skeleton};
 use crate::sample::Sample;
 use crate::tuning;
 
@@ -71,7 +71,9 @@ fn tip(branches: &[Branch], end: End) -> (Vec2<f64>, Vec2<f64>) {
 }
 
 /// The chains of all branches.
-pub(super) fn chains(border: &Border, branches: &[Branch], nodes: &[Node], width: f64) -> Vec<Chain> {
+pub(super) fn chains(border: &Border, skeleton: &Skeleton) -> Vec<Chain> {
+    let Skeleton { branches, nodes, width, .. } = skeleton;
+    let (branches, width) = (&branches[..], *width);
     let mut links: Vec<Option<Link>> = vec![None; 2 * branches.len()];
     let mut tips = vec![Tip::Hidden; links.len()];
     for node in nodes {
@@ -92,7 +94,28 @@ pub(super) fn chains(border: &Border, branches: &[Branch], nodes: &[Node], width
     let open = ends().filter(|&end| links[end].is_none());
     let corners = ends().filter(|&end| links[end].as_ref().is_some_and(|link| link.is_corner));
     let starts: Vec<_> = open.chain(corners).chain(ends()).collect();
-    starts.into_iter().filter_map(|start| walk.from(start, &tips)).collect()
+    let mut chains: Vec<_> = starts.into_iter().filter_map(|start| walk.from(start, &tips)).collect();
+    chains.iter_mut().flat_map(|chain| &mut chain.stretches).for_each(|stretch| thin_out(stretch, skeleton));
+    chains
+}
+
+/// Keeps what a pen of that width can show of its center line, each with the doubt of the whole block that it stands for.
+fn thin_out(stretch: &mut Vec<Sample>, skeleton: &Skeleton) {
+    // Short ones keep some all the same.
+    let reach = stretch.first().zip(stretch.last()).map_or(0.0, |(first, last)| (last.point - first.point).length());
+    let pace = (skeleton.width / 8.0).min(reach / 8.0);
+    let last = stretch.last().map(|sample| sample.point);
+    let mut kept: Option<Vec2<f64>> = None;
+    stretch.retain_mut(|sample| {
+        let is_needed = kept.is_none_or(|kept| (sample.point - kept).length() >= pace) || Some(sample.point) == last;
+        if is_needed {
+            kept = Some(sample.point);
+        }
+        is_needed
+    });
+    // Samples of one block are off together: as many as it has count as one.
+    let shared = 0.5 * skeleton.noise.block.powi(2) * (BLOCK as f64 / pace.max(1.0)).max(1.0);
+    stretch.iter_mut().for_each(|sample| sample.sigma = (sample.sigma.powi(2) + shared).sqrt());
 }
 
 /// Which ends at a node belong together: what goes straight on does, and of the rest what turns least.

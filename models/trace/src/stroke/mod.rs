@@ -21,9 +21,7 @@ mod center;
 mod chain;
 mod draw;
 mod piece;
-mod polyline;
 mod refine;
-mod skyline;
 #[cfg(test)]
 mod tests;
 mod thin;
@@ -55,16 +53,17 @@ pub struct StrokeFit {
 /// everywhere, or its boundary is not that of such strokes.
 #[must_use]
 pub fn fit_strokes(rings: &[RingSamples], ruler: &Ruler) -> Option<StrokeFit> {
-    let border = Border::new(rings);
+    let mut border = Border::new(rings);
     let width = branch::pen_width(&border)?;
-    let (branches, nodes, width) = branch::branches(&border, width);
-    let chains = chain::chains(&border, &branches, &nodes, width);
-    let mut drawing = center::lines(&border, &chains, width, ruler)?;
+    let skeleton = branch::skeleton(&border, width);
+    border.marks.iter_mut().for_each(|mark| mark.sigma = mark.sigma.max(skeleton.noise.single));
+    let chains = chain::chains(&border, &skeleton);
+    let mut drawing = center::lines(&border, &chains, skeleton.width, ruler)?;
     if drawing.lines.is_empty() {
         return None;
     }
     refine::choose_join(&mut drawing, &border);
-    let refined = refine::refine(drawing, &border, ruler)?;
+    let refined = refine::refine(drawing, &border, skeleton.noise.block, ruler)?;
     if refined.strays > tuning::STROKE_MOST_STRAYS {
         return None;
     }

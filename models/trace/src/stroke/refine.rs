@@ -9,10 +9,11 @@ use dvp_core::{Shape as _, Vec2};
 use num_traits::Float as _;
 
 use super::border::Border;
+use super::branch::BLOCK;
 use super::center::run_together;
 use super::draw::{Drawing, Foot, Line, gap};
 use super::piece::pieces;
-use super::skyline::Skyline;
+use crate::outline::Skyline;
 use crate::ruler::Ruler;
 use crate::tuning;
 
@@ -27,7 +28,7 @@ const STEP: f64 = 1e-6;
 #[derive(Debug)]
 pub(super) struct Refined {
     pub(super) drawing: Drawing,
-    /// Sum of squared misfits of the marks, each by its variance; beyond [`tuning::OUTLINE_HUBER`] sigmas it grows linearly.
+    /// Sum of squared misfits of the marks by their covariance; beyond [`tuning::OUTLINE_HUBER`] sigmas it grows linearly.
     pub(super) chi2: f64,
     /// Share of the marks that are off by more than [`tuning::STROKE_STRAY`].
     pub(super) strays: f64,
@@ -44,14 +45,15 @@ struct Miss {
 }
 
 /// The drawing near this one that misses the marks least; none if nothing can be computed.
-pub(super) fn refine(mut drawing: Drawing, border: &Border, ruler: &Ruler) -> Option<Refined> {
+pub(super) fn refine(mut drawing: Drawing, border: &Border, offset: f64, ruler: &Ruler) -> Option<Refined> {
     let ridge = ruler.extent.max(1.0).powi(-2);
     let mut misses = misses(&drawing, border)?;
     let mut damping = 1e-3;
     let mut equations = equations(&drawing, border, &misses)?;
     for _ in 0..MOST_STEPS {
         let mut change = equations.1.clone();
-        equations.0.factor(damping, ridge)?.solve(&mut change);
+        // What no mark holds moves by no more than a pixel or so.
+        equations.0.factor(damping, 1.0)?.solve(&mut change);
         let then = moved(&drawing, &change).and_then(|drawing| Some((self::misses(&drawing, border)?, drawing)));
         let before = chi2(border, &misses);
         let Some((next, moved)) = then.filter(|(next, _)| chi2(border, next) < before) else {
@@ -75,7 +77,7 @@ pub(super) fn refine(mut drawing: Drawing, border: &Border, ruler: &Ruler) -> Op
     let misses = self::misses(&drawing, border)?;
     let strays = misses.iter().filter(|miss| miss.gap.abs() > tuning::STROKE_STRAY).count() as f64;
     Some(Refined {
-        chi2: chi2(border, &misses),
+        chi2: chi2_of_blocks(border, &misses, offset),
         strays: strays / border.marks.len() as f64,
         bits,
         drawing,
@@ -101,6 +103,23 @@ pub(super) fn chi2_of(sigmas: f64) -> f64 {
 
 fn chi2(border: &Border, misses: &[Miss]) -> f64 {
     misses.iter().map(|miss| chi2_of(miss.gap / border.marks[miss.mark].sigma)).sum()
+}
+
+/// The same if all marks of a block are off by a common `offset` (a standard deviation) beside what each is off by itself.
+fn chi2_of_blocks(border: &Border, misses: &[Miss], offset: f64) -> f64 {
+    let of_block = |block: &[Miss]| {
+        let (mut squares, mut sum, mut precision) = (0.0, 0.0, 0.0);
+        for miss in block {
+            let sigma = border.marks[miss.mark].sigma;
+            let weight = weight(miss.gap / sigma) / (sigma * sigma);
+            squares += chi2_of(miss.gap / sigma);
+            sum += weight * miss.gap;
+            precision += weight;
+        }
+        // Woodbury's formula for the inverse of a diagonal covariance plus a constant.
+        squares - sum * sum / (precision + offset.powi(-2))
+    };
+    misses.chunks(BLOCK).map(of_block).sum()
 }
 
 fn numbers(ring: &PathRing<f64>) -> (Path<f64>, Vec<f64>) {

@@ -9,7 +9,7 @@ use num_traits::Float as _;
 
 use super::draw::MITER_LIMIT;
 use super::piece::{direction, move_tip, nearest, pieces, tip};
-use super::polyline::fit_open;
+use crate::outline::fit_open;
 use crate::ruler::Ruler;
 use crate::sample::Sample;
 
@@ -37,7 +37,7 @@ fn thin(thin: &[ThinSample], ruler: &Ruler) -> Option<Stroke<f64>> {
         return None;
     }
     let samples: Vec<_> = thin.iter().map(|thin| Sample { point: thin.point, axis: thin.axis, sigma: thin.sigma }).collect();
-    let mut ring = fit_open(&samples, ruler)?;
+    let mut ring = fit_open(&samples, ruler)?.path;
     let line = pieces(&ring);
     let (mut sum, mut weights) = (0.0, 0.0);
     for sample in thin {
