@@ -45,7 +45,8 @@ def spread(pictures):
 def number(value):
     if value is None:
         return "-"
-    return f"{value:.4f}" if abs(value) < 1 and value != 0 else f"{value:.3f}" if abs(value) < 100 else f"{value:.0f}"
+    digits = 5 if abs(value) < 0.01 else 4 if abs(value) < 1 else 3 if abs(value) < 10 else 1
+    return "0" if value == 0 else f"{value:.{digits}f}"
 
 
 def row(pictures):
@@ -58,7 +59,8 @@ def show(record):
     """A markdown table per kind of scores: means, of numbers, ms and bits medians."""
     kinds = {}
     for name, pictures in record["sets"].items():
-        kinds.setdefault(tuple(row(pictures)), []).append(name)
+        if pictures:
+            kinds.setdefault(tuple(row(pictures)), []).append(name)
     lines = []
     for scores, names in kinds.items():
         lines += ["", "| set | pictures | " + " | ".join(scores) + " |", "|---" * (len(scores) + 2) + "|"]
@@ -102,6 +104,8 @@ def compare(before, after):
             print(f"NOT COMPARED {name}: the records are about different pictures (--work must be the same folder)")
             continue
         both = sorted(set(old) & set(new))
+        if not before["quick"] and not after["quick"]:
+            worse += [f"{name}/{picture}: not in the second record" for picture in sorted(set(old) - set(new))]
         rows = [row({k: r[k] for k in both}) for r in (old, new)]
         print(f"{name} ({len(both)}): " + ", ".join(f"{s} {number(rows[0].get(s))} -> {number(rows[1].get(s))}" for s in rows[0] | rows[1]))
         for picture in both:
