@@ -265,7 +265,7 @@ def chart_sets(place):
             score.update({k: fit[k] for k in ("mae", "bits", "ms", "doubted") if fit.get(k) is not None})
             drawn = rendered.get("/".join([*group, stem]), {})
             score.update({k: drawn[k] for k in ("bad", "dE", "dist", "missed") if k in drawn})
-            score["destroyed"] = drawn.get("bad", 100.0) > 10
+            score["destroyed"] = charts.is_destroyed(drawn.get("bad", 100.0), drawn.get("missed", 100.0))
         yield name, scores
 
 
