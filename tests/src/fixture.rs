@@ -25,7 +25,7 @@ pub fn shared() -> Option<PathBuf> {
     // Where stderr is closed nobody reads it.
     let _ = writeln!(
         std::io::stderr(),
-        "SKIPPED {}:{}: no folder {}, only the committed numbers are compared",
+        "SKIPPED {}:{}: no folder {}, its numbers are not compared",
         place.file(),
         place.line(),
         folder.display()
