@@ -18,7 +18,8 @@
 **Nobody debugs on `fresh`, `holes`, `circles`, `charts` and `real`**: who looks at their pictures while changing the fit makes the
 figures worthless. What is missing is skipped, which is said and recorded.
 
-Pictures are made once and stay in --work (target/baseline), so that two records are about the same pictures; compare checks it.
+Pictures are made once and stay in --work (target/baseline), so that two records are about the same pictures; compare checks it. One
+record at a time in such a folder.
 Scores: right (number of objects or marks), ari and ari_objects (adjusted Rand index; of the pixels that truth gives to objects),
 whole_iou, mae (against the clean picture), bits, ms (processor time of the fit, one thread; of the whole program for `real`), bad,
 dE, dist, missed, numbers (as real.py), destroyed (charts.py), center, radius, axes (px), z_* (errors in stated standard
