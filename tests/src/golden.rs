@@ -13,10 +13,11 @@ pub fn committed<T: DeserializeOwned>(name: &str) -> Result<T, Box<dyn Error>> {
     read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("golden_data").join(name))
 }
 
-/// The JSON file `shared/<path>` beside the repository; none if that folder does not exist.
+/// The JSON file `shared/<path>` beside the repository; none if that folder does not exist, which is said on stderr.
 ///
 /// # Errors
 /// The folder is there, but the file is not or has other fields than `T`.
+#[track_caller]
 pub fn shared<T: DeserializeOwned>(path: &str) -> Result<Option<T>, Box<dyn Error>> {
     crate::fixture::shared().map(|folder| read(&folder.join(path))).transpose()
 }

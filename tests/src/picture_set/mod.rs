@@ -11,6 +11,7 @@
 //! | `random.rs` | crowds, MDS-HR, twins, cropped objects |
 //! | `cases.rs` | the cases with their thresholds, written as data sets |
 //! | `score.rs` | fits and scores them |
+//! | `shortfall.rs` | what known failures reach, as recorded |
 //!
 //! **Truth.** Every object is one SVG element with an `id`; the topmost element that holds a pixel's center owns the pixel,
 //! translucent or not. A ring is drawn as a disk of the background's color on a disk, and counts as these two: a picture
@@ -23,8 +24,10 @@ mod cases;
 mod drawn;
 mod random;
 mod score;
+mod shortfall;
 
 pub use cases::{CASES, Case, Finish, Source};
 pub use drawn::{Drawn, draw_enlarged, draw_with_labels};
 pub use random::{cropped, crowd, mds_hr, paint_mds_hr, twins};
 pub use score::{CaseScore, PictureScore, score_case, score_folder, table_head};
+pub use shortfall::{ARI_TOLERANCE, Shortfall};
