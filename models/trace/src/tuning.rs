@@ -104,3 +104,7 @@ pub const OUTLINE_CUBIC_SAMPLES: usize = 9;
 pub const OUTLINE_BRIDGE: f64 = 3.0;
 /// Bits for a line lying in front of what it touches: as much as a junction may speak for.
 pub const PEN_VOTE: f64 = 40.0;
+/// Most pixels of any face that an outline may get wrong, however large the face is: more can be seen.
+pub const MOST_WRONG_PIXELS: f64 = 3.0;
+/// Standard deviation (pixels) of an outline along the border of the picture: what lies beyond cannot be seen.
+pub const BORDER_SIGMA: f64 = 0.1;

@@ -24,6 +24,29 @@ pub(super) struct Completion<'a> {
     pub(super) ruler: Ruler,
 }
 
+/// Where a hidden outline may go.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Policy {
+    /// Anywhere, as long as it hides nothing.
+    Free,
+    /// Along the border of the picture; anywhere behind other layers.
+    Border,
+    /// Along the border and along the layers in front.
+    Pinned,
+}
+
+impl Policy {
+    /// What remains hidden of a step.
+    fn of(self, step: &Step, hidden: Hidden) -> Option<Hidden> {
+        let is_free = match self {
+            Self::Free => true,
+            Self::Border => step.other != OUTSIDE,
+            Self::Pinned => false,
+        };
+        (is_free || hidden != Hidden::Free).then_some(hidden)
+    }
+}
+
 /// Outlines, and bits of their numbers and misfits.
 pub(super) struct Completed {
     pub(super) outlines: Vec<Outline>,
@@ -56,8 +79,6 @@ impl Completion<'_> {
                 &walked
             }
         };
-        let hidden = |step: &Step| self.hidden(step, group, rank);
-        let is_own = |step: &Step| hidden(step).is_none();
         let wanted = |label: u32| {
             if group.contains(&label) {
                 Some(true)
@@ -67,18 +88,19 @@ impl Completion<'_> {
                 Some(false)
             }
         };
-        let mut whole = Vec::new();
-        for ring in rings {
+        for policy in [Policy::Free, Policy::Border, Policy::Pinned] {
+            let hidden = |step: &Step| self.hidden(step, group, rank);
             // A hole that is filled by what lies in front of it is none.
-            if ring.steps.iter().any(is_own) || ring.area > 0.0 {
-                whole.extend(fit_closed(&visible::samples(ring, hidden), &self.ruler));
+            let is_ring = |ring: &&Ring| ring.area > 0.0 || ring.steps.iter().any(|step| hidden(step).is_none());
+            let needed = |step: &Step| hidden(step).and_then(|hidden| policy.of(step, hidden));
+            let fits = rings.iter().filter(is_ring).filter_map(|ring| fit_closed(&visible::samples(ring, needed), &self.ruler));
+            let outlines: Vec<Outline> = fits.collect();
+            if self.agrees(&outlines, wanted) {
+                return Completed::new(outlines, true);
             }
         }
-        if self.agrees(&whole, wanted) {
-            return Completed::new(whole, true);
-        }
         if group.len() > 1 {
-            return Completed::new(whole, false);
+            return Completed::new(Vec::new(), false);
         }
         // Nothing is completed: all around what is seen.
         let seen: Vec<Outline> =

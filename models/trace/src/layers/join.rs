@@ -11,9 +11,9 @@ use crate::outline::Outline;
 use crate::partition::OUTSIDE;
 
 /// What is painted, from back to front: faces that are one thing, with their outlines (none for what a pen draws).
-pub(super) fn groups(completion: &Completion<'_>, background: u32) -> Vec<(Vec<u32>, Vec<Outline>)> {
+pub(super) fn groups(completion: &Completion<'_>) -> Vec<(Vec<u32>, Vec<Outline>)> {
     let mut painted: Vec<(usize, Vec<u32>, Vec<Outline>)> = Vec::new();
-    for candidates in candidates(completion, background) {
+    for candidates in candidates(completion) {
         if completion.pens[candidates[0] as usize].is_some() {
             for face in candidates {
                 painted.push((completion.rank(face), vec![face], Vec::new()));
@@ -43,26 +43,20 @@ fn cheapest(completion: &Completion<'_>, faces: Vec<u32>) -> Vec<(Vec<u32>, Vec<
     alone.into_iter().map(|(face, completed)| (vec![face], completed.outlines)).collect()
 }
 
-/// Faces that may be one thing: of one color, with a neighbor in common that lies in front of both. Without the background, and what
-/// shows it through holes.
-fn candidates(completion: &Completion<'_>, background: u32) -> Vec<Vec<u32>> {
-    let Completion { partition, rings, .. } = completion;
-    let back = partition.faces[background as usize].color;
+/// Faces that may be one thing: of one color, with a neighbor in common that lies in front of both.
+fn candidates(completion: &Completion<'_>) -> Vec<Vec<u32>> {
+    let Completion { partition, rings, order, .. } = completion;
     let mut sets = DisjointSets::default();
     sets.reset(partition.faces.len() as u32);
     let mut behind: BTreeMap<(u32, usize), u32> = BTreeMap::new();
     let mut painted = Vec::new();
-    for face in (0..partition.faces.len() as u32).filter(|&face| face != background) {
+    for face in (0..partition.faces.len() as u32).filter(|&face| !order.is_background(face)) {
         let color = partition.faces[face as usize].color;
         let steps = rings[face as usize].iter().flat_map(|ring| &ring.steps).filter(|step| step.other != OUTSIDE);
         let mut neighbors: Vec<u32> = steps.map(|step| step.other).collect();
         neighbors.sort_unstable();
         neighbors.dedup();
         let is_in_front = |other: &u32| completion.rank(*other) > completion.rank(face);
-        let is_back = |other: &u32| partition.faces[*other as usize].color == back;
-        if color == back && neighbors.iter().all(|other| is_in_front(other) || is_back(other)) {
-            continue;
-        }
         painted.push(face);
         if completion.pens[face as usize].is_some() {
             continue;

@@ -65,7 +65,7 @@ pub fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<Color>) 
     let order = Order::of(partition, rings, background, matte.is_some(), &pens);
     let completion = Completion { partition, rings, order: &order, pens: &pens, ruler };
     let mut layers = Vec::new();
-    for (group, outlines) in join::groups(&completion, background) {
+    for (group, outlines) in join::groups(&completion) {
         let color = partition.color(group[0]);
         match &pens[group[0] as usize] {
             Some(pen) => layers.extend(pen.strokes.iter().map(|stroke| Layer { color, form: Form::Stroked(stroke.clone()) })),

@@ -46,7 +46,27 @@ impl Order {
             let key = |face: &usize| (held[*face].max(0.0), core::cmp::Reverse(partition.faces[*face].area));
             next = open.min_by(|a, b| key(a).0.total_cmp(&key(b).0).then(key(a).1.cmp(&key(b).1))).map(|face| face as u32);
         }
+        order.sink_holes(partition, rings, background);
         order
+    }
+
+    /// What shows the background through holes lies as far back as the background itself: what lies between must not cover it either.
+    fn sink_holes(&mut self, partition: &Partition, rings: &[Vec<Ring>], background: u32) {
+        let color = |face: u32| partition.faces[face as usize].color;
+        let back = color(background);
+        let is_hole = |face: u32| {
+            let is_behind = |other: u32| color(other) == back || self.rank[other as usize] > self.rank[face as usize];
+            color(face) == back && neighbors_along(rings[face as usize].iter()).into_iter().all(is_behind)
+        };
+        let holes: Vec<u32> = (0..partition.faces.len() as u32).filter(|&face| is_hole(face)).collect();
+        for hole in holes {
+            self.rank[hole as usize] = 0;
+        }
+    }
+
+    /// Whether a face shows the background: it is not painted.
+    pub(super) fn is_background(&self, face: u32) -> bool {
+        self.rank[face as usize] == 0
     }
 }
 

@@ -4,7 +4,7 @@ use alloc::collections::BTreeMap;
 use alloc::vec::Vec;
 use core::ops::Range;
 
-use crate::partition::{Face, Partition};
+use crate::partition::Partition;
 use crate::tuning;
 
 /// Whether what polygons (pixels, even-odd) cover is what they should cover, but for few pixels: of all pixels that are `wanted`
@@ -44,11 +44,10 @@ pub(super) fn agrees(partition: &Partition, polygons: &[Vec<[f64; 2]>], wanted: 
             }
         }
     }
-    let few = |count: usize, face: &Face| count <= 1 || (count as f64) <= tuning::MOST_WRONG * face.area as f64;
+    let few = |count: usize, area: usize| (count as f64) <= (tuning::MOST_WRONG * area as f64).clamp(1.0, tuning::MOST_WRONG_PIXELS);
     let own = partition.faces.iter().enumerate().filter(|&(face, _)| wanted(face as u32) == Some(true));
     let area = own.map(|(_, face)| face.area).sum::<usize>();
-    missed as f64 <= (tuning::MOST_WRONG * area as f64).max(1.0)
-        && hidden.iter().all(|(&face, &count)| few(count, &partition.faces[face as usize]))
+    few(missed, area) && hidden.iter().all(|(&face, &count)| few(count, partition.faces[face as usize].area))
 }
 
 /// The rows that the polygons, or faces that are wanted, reach.

@@ -6,6 +6,7 @@ use dvp_core::Vec2;
 use dvp_core::contour::Heading;
 
 use crate::boundary::{Ring, Step};
+use crate::partition::OUTSIDE;
 use crate::sample::{RingSamples, Sample};
 use crate::tuning;
 
@@ -67,12 +68,13 @@ fn read(
         unread = if step.sample.is_some() { 0 } else { unread + 1 };
         match step.sample {
             Some(sample) => push(&mut run, moved(sample, step, hidden(step))),
-            None if unread > tuning::MOST_UNREAD => push(&mut run, of_crack(step)),
+            None if step.other == OUTSIDE => push(&mut run, of_crack(step, tuning::BORDER_SIGMA)),
+            None if unread > tuning::MOST_UNREAD => push(&mut run, of_crack(step, tuning::CRACK_SIGMA)),
             None => (),
         }
     }
     if closed && run.len() < 8 {
-        run = (0..length).map(|k| of_crack(&ring.steps[(start + k) % n])).collect();
+        run = (0..length).map(|k| of_crack(&ring.steps[(start + k) % n], tuning::CRACK_SIGMA)).collect();
     }
     run
 }
@@ -102,8 +104,8 @@ fn push(run: &mut Vec<Sample>, sample: Sample) {
 }
 
 /// A boundary known from a crack alone.
-fn of_crack(step: &Step) -> Sample {
+fn of_crack(step: &Step, sigma: f64) -> Sample {
     let [from, to] = [step.crack.start, step.crack.end()];
     let axis = if from[0] == to[0] { Vec2::new(1.0, 0.0) } else { Vec2::new(0.0, 1.0) };
-    Sample { point: Ring::middle(step.crack), axis, sigma: tuning::CRACK_SIGMA }
+    Sample { point: Ring::middle(step.crack), axis, sigma }
 }
