@@ -5,7 +5,6 @@ use alloc::vec::Vec;
 
 use dvp_core::shape::{FillRule, Outline as Polygons, Path, PathRing, Shape as _};
 
-use super::order::Order;
 use super::visible::{self, Hidden};
 use super::raster;
 use crate::boundary::{Ring, Step, walk_mask};
@@ -19,7 +18,8 @@ use crate::stroke::StrokeFit;
 pub(super) struct Completion<'a> {
     pub(super) partition: &'a Partition,
     pub(super) rings: &'a [Vec<Ring>],
-    pub(super) order: &'a Order,
+    /// Place of every face in the order of painting; 0 of what is not painted.
+    pub(super) rank: Vec<usize>,
     pub(super) pens: &'a [Option<StrokeFit>],
     pub(super) ruler: Ruler,
 }
@@ -65,7 +65,7 @@ impl Completed {
 impl Completion<'_> {
     /// Place of a face in the order of painting.
     pub(super) fn rank(&self, face: u32) -> usize {
-        self.order.rank[face as usize]
+        self.rank[face as usize]
     }
 
     /// The outlines of faces that are painted together, at the place of the hindmost of them.

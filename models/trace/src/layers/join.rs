@@ -6,51 +6,67 @@ use alloc::vec::Vec;
 
 use dvp_core::geometry::DisjointSets;
 
-use super::complete::{Completed, Completion};
+use super::complete::Completion;
 use crate::outline::Outline;
 use crate::partition::OUTSIDE;
 
 /// What is painted, from back to front: faces that are one thing, with their outlines (none for what a pen draws).
-pub(super) fn groups(completion: &Completion<'_>) -> Vec<(Vec<u32>, Vec<Outline>)> {
-    let mut painted: Vec<(usize, Vec<u32>, Vec<Outline>)> = Vec::new();
+pub(super) fn groups(completion: &mut Completion<'_>) -> Vec<(Vec<u32>, Vec<Outline>)> {
+    let mut groups: Vec<Vec<u32>> = Vec::new();
     for candidates in candidates(completion) {
-        if completion.pens[candidates[0] as usize].is_some() {
-            for face in candidates {
-                painted.push((completion.rank(face), vec![face], Vec::new()));
-            }
+        if candidates.len() > 1 && join(completion, &candidates) {
+            groups.push(candidates);
+        } else {
+            groups.extend(candidates.into_iter().map(|face| vec![face]));
+        }
+    }
+    let mut painted: Vec<(usize, Vec<u32>, Vec<Outline>)> = Vec::new();
+    for group in groups {
+        let rank = completion.rank(group[0]);
+        if completion.pens[group[0] as usize].is_some() {
+            painted.push((rank, group, Vec::new()));
             continue;
         }
-        for (group, outlines) in cheapest(completion, candidates) {
-            let rank = group.iter().map(|&face| completion.rank(face)).min().unwrap_or(0);
-            painted.push((rank, group, outlines));
+        let completed = completion.outlines(&group);
+        if completed.agrees || group.len() == 1 {
+            painted.push((rank, group, completed.outlines));
+        } else {
+            painted.extend(group.into_iter().map(|face| (rank, vec![face], completion.outlines(&[face]).outlines)));
         }
     }
     painted.sort_by_key(|&(rank, ..)| rank);
     painted.into_iter().map(|(_, group, outlines)| (group, outlines)).collect()
 }
 
-/// All of them together, or each alone: what takes fewer bits.
-fn cheapest(completion: &Completion<'_>, faces: Vec<u32>) -> Vec<(Vec<u32>, Vec<Outline>)> {
-    let alone: Vec<(u32, Completed)> = faces.iter().map(|&face| (face, completion.outlines(&[face]))).collect();
-    if faces.len() > 1 {
-        // A color of its own each: three numbers of 8 bits.
-        let bits: f64 = alone.iter().map(|(_, completed)| completed.bits + 24.0).sum();
-        let joined = completion.outlines(&faces);
-        if joined.agrees && joined.bits + 24.0 < bits {
-            return vec![(faces, joined.outlines)];
-        }
+/// Whether faces take fewer bits together than each alone; they have one place in the order then, that of the hindmost.
+fn join(completion: &mut Completion<'_>, faces: &[u32]) -> bool {
+    let alone: f64 = faces.iter().map(|&face| completion.outlines(&[face]).bits + COLOR_BITS).sum();
+    let ranks: Vec<usize> = faces.iter().map(|&face| completion.rank(face)).collect();
+    let hindmost = ranks.iter().copied().min().unwrap_or(0);
+    for &face in faces {
+        completion.rank[face as usize] = hindmost;
     }
-    alone.into_iter().map(|(face, completed)| (vec![face], completed.outlines)).collect()
+    let joined = completion.outlines(faces);
+    if joined.agrees && joined.bits + COLOR_BITS < alone {
+        return true;
+    }
+    for (&face, rank) in faces.iter().zip(ranks) {
+        completion.rank[face as usize] = rank;
+    }
+    false
 }
+
+/// What a color costs: three numbers of 8 bits.
+const COLOR_BITS: f64 = 24.0;
 
 /// Faces that may be one thing: of one color, with a neighbor in common that lies in front of both.
 fn candidates(completion: &Completion<'_>) -> Vec<Vec<u32>> {
-    let Completion { partition, rings, order, .. } = completion;
+    let Completion { partition, rings, .. } = completion;
     let mut sets = DisjointSets::default();
     sets.reset(partition.faces.len() as u32);
     let mut behind: BTreeMap<(u32, usize), u32> = BTreeMap::new();
     let mut painted = Vec::new();
-    for face in (0..partition.faces.len() as u32).filter(|&face| !order.is_background(face)) {
+    for face in (0..partition.faces.len() as u32).filter(|&face| completion.rank(face) > 0) {
         let color = partition.faces[face as usize].color;
         let steps = rings[face as usize].iter().flat_map(|ring| &ring.steps).filter(|step| step.other != OUTSIDE);
         let mut neighbors: Vec<u32> = steps.map(|step| step.other).collect();

@@ -63,9 +63,9 @@ pub fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<Color>) 
     let background = background(partition, rings, matte);
     let pens = pen::find(partition, rings, background, &ruler);
     let order = Order::of(partition, rings, background, matte.is_some(), &pens);
-    let completion = Completion { partition, rings, order: &order, pens: &pens, ruler };
+    let mut completion = Completion { partition, rings, rank: order.rank, pens: &pens, ruler };
     let mut layers = Vec::new();
-    for (group, outlines) in join::groups(&completion) {
+    for (group, outlines) in join::groups(&mut completion) {
         let color = partition.color(group[0]);
         match &pens[group[0] as usize] {
             Some(pen) => layers.extend(pen.strokes.iter().map(|stroke| Layer { color, form: Form::Stroked(stroke.clone()) })),

@@ -63,11 +63,6 @@ impl Order {
             self.rank[hole as usize] = 0;
         }
     }
-
-    /// Whether a face shows the background: it is not painted.
-    pub(super) fn is_background(&self, face: u32) -> bool {
-        self.rank[face as usize] == 0
-    }
 }
 
 /// Lines are drawn over what is filled.
