@@ -22,7 +22,7 @@ Pictures are made once and stay in --work (target/baseline), so that two records
 record at a time in such a folder.
 Scores: right (number of objects or marks), ari and ari_objects (adjusted Rand index; of the pixels that truth gives to objects),
 whole_iou, mae (against the clean picture), bits, ms (processor time of the fit, one thread; of the whole program for `real`), bad,
-dE, dist, missed, numbers (as real.py), destroyed (charts.py), center, radius, axes (px), z_* (errors in stated standard
+dE, dist, missed, numbers (as real.py), destroyed and half_missed (charts.py), center, radius, axes (px), z_* (errors in stated standard
 deviations; tables show their root mean square), doubted (whether the fit doubts something). Tolerances: compare.py.
 
 Makes an environment of its own in --work on first use (numpy, pillow, scikit-image, matplotlib).

@@ -11,6 +11,7 @@ SCORES = [
     ("whole_iou", True, 0, 0.005, "mean"),
     ("mae", False, 0.05, 2e-5, "mean"),
     ("destroyed", False, 0, 0, "mean"),
+    ("half_missed", False, 0, 0, "mean"),
     ("bad", False, 0.05, 0.05, "mean"),
     ("dE", False, 0.05, 0.02, "mean"),
     ("dist", False, 0.05, 0.01, "mean"),
@@ -107,7 +108,8 @@ def compare(before, after):
         if not before["quick"] and not after["quick"]:
             worse += [f"{name}/{picture}: not in the second record" for picture in sorted(set(old) - set(new))]
         rows = [row({k: r[k] for k in both}) for r in (old, new)]
-        print(f"{name} ({len(both)}): " + ", ".join(f"{s} {number(rows[0].get(s))} -> {number(rows[1].get(s))}" for s in rows[0] | rows[1]))
+        told = (f"{s} {number(rows[0].get(s))} -> {number(rows[1].get(s))}" for s in rows[0] | rows[1])
+        print(f"{name} ({len(both)}): " + ", ".join(told))
         for picture in both:
             lost, won = changes(old[picture], new[picture])
             worse += [f"{name}/{picture}: {', '.join(lost)}"] * bool(lost)

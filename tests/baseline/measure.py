@@ -38,7 +38,10 @@ def tiles(path, width):
 
 
 def whole_iou(truth, found):
-    """Mean over the true objects of the intersection over union of whole shapes, matched for the greatest sum; 0 where none is left."""
+    """Mean over the true objects of the intersection over union of whole shapes; 0 for those that have no partner.
+
+    Partners are those with the greatest sum.
+    """
     if len(truth) == 0:
         return 1.0 if len(found) == 0 else 0.0
     iou = np.zeros((len(truth), len(found)))

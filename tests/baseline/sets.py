@@ -96,7 +96,8 @@ def val(place):
     if not folder.is_dir():
         return place.skip("val", f"{folder} is not there")
     for known, options in [("", ()), (", bank", ("--bank", "mdshr"))]:
-        yield f"mdshr val{known}", place.evaluated(f"mdshr val{known}", place.some((folder / "val").glob("*.png")), folder / "val", options)
+        name, paths = f"mdshr val{known}", place.some((folder / "val").glob("*.png"))
+        yield name, place.evaluated(name, paths, folder / "val", options)
         floats = folder / "val_first32_f32.npy"
         if not place.is_quick:
             yield f"mdshr val, float{known}", place.evaluated(f"mdshr val, float{known}", [floats], folder / "val", options,
@@ -136,7 +137,8 @@ def pictures(place):
     """Our own SVGs and families of random pictures, as the suite `tests/pictures` draws them."""
     root = place.work / "pictures"
     if not root.is_dir():
-        return place.skip("pictures", f"{root} is not there; make it: cargo run --release -p dvp-tests --example any_picture -- --keep {root}")
+        command = f"cargo run --release -p dvp-tests --example any_picture -- --keep {root}"
+        return place.skip("pictures", f"{root} is not there; make it: {command}")
     for folder in sorted(root.iterdir()):
         data = folder / "data"
         paths = [p for p in data.iterdir() if p.suffix in (".png", ".gif") and not p.name.endswith(".labels.png")]
@@ -181,7 +183,8 @@ def real(place):
         path = cache / f"scores-{method}.json"
         found = scores if method == "dvp" else json.loads(path.read_text()) if path.exists() else {}
         for group in sorted({tuple(key.split("/")[:2]) for key in found}, key=lambda g: (g[1], g[0])):
-            rows = {key.split("/")[2]: {k: s[k] for k in keys if k in s} for key, s in found.items() if tuple(key.split("/")[:2]) == group}
+            of_group = {key.split("/")[2]: s for key, s in found.items() if tuple(key.split("/")[:2]) == group}
+            rows = {name: {k: s[k] for k in keys if k in s} for name, s in of_group.items()}
             yield f"real {group[0]} {group[1]}" + (f" ({method})" if method != "dvp" else ""), rows
 
 
@@ -265,7 +268,7 @@ def chart_sets(place):
             score.update({k: fit[k] for k in ("mae", "bits", "ms", "doubted") if fit.get(k) is not None})
             drawn = rendered.get("/".join([*group, stem]), {})
             score.update({k: drawn[k] for k in ("bad", "dE", "dist", "missed") if k in drawn})
-            score["destroyed"] = charts.is_destroyed(drawn.get("bad", 100.0), drawn.get("missed", 100.0))
+            score.update(charts.wrecks(drawn.get("bad", 100.0), drawn.get("missed", 100.0)))
         yield name, scores
 
 
