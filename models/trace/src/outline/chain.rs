@@ -27,6 +27,8 @@ pub(super) struct Chain {
     pub(super) curves: Vec<Curve>,
     /// Of each curve: its first sample; counted on past the last sample of the track, so that they rise.
     pub(super) firsts: Vec<usize>,
+    /// One past the last sample of an open chain.
+    pub(super) end: usize,
     pub(super) closed: bool,
 }
 
@@ -56,7 +58,7 @@ impl Slopes {
 }
 
 impl Curve {
-    fn number_count(self) -> usize {
+    pub(super) fn number_count(self) -> usize {
         match self {
             Self::Line => 0,
             Self::Arc(_) => 1,

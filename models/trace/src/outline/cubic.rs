@@ -42,14 +42,14 @@ pub(super) fn fit(track: &Track, range: Range<usize>) -> Option<([Vec2<f64>; 4],
     if looks < 7 {
         return None;
     }
-    let index = |k: usize| range.start + k * (count - 1) / (looks - 1);
+    let index = |k: usize| (range.start + k * (count - 1) / (looks - 1)) % track.len();
     let mut parameters = [0.0; MOST_LOOKS];
     for k in 1..looks {
         parameters[k] = parameters[k - 1] + (track.point(index(k)) - track.point(index(k - 1))).length();
     }
     let length = parameters[looks - 1];
     parameters[..looks].iter_mut().for_each(|t| *t /= length);
-    let ends = [track.point(range.start), track.point(range.end - 1)];
+    let ends = [track.point(index(0)), track.point(index(looks - 1))];
     let mut cubic = start(ends, (0..looks).map(|k| (track.point(index(k)), parameters[k])))?;
     let anchor = track.sigma.powi(-2);
     let damping = (8.0 / length).powi(2);
@@ -95,10 +95,11 @@ pub(super) fn fit(track: &Track, range: Range<usize>) -> Option<([Vec2<f64>; 4],
             *corner = *corner + Vec2::new(delta[0], delta[1]);
         }
     }
-    let reach = (cubic[1] - cubic[0]).length() + (cubic[3] - cubic[2]).length();
+    // A control polygon much longer than the walk belongs to a curve that turns back; of a half circle it is half as long again.
+    let reach: f64 = cubic.windows(2).map(|ends| (ends[1] - ends[0]).length()).sum();
     #[expect(clippy::cast_precision_loss, reason = "counts of samples are small")]
     let scale = count as f64 / looks as f64;
-    (chi2.is_finite() && reach < 2.0 * length).then_some((cubic, chi2 * scale))
+    (chi2.is_finite() && reach < 1.6 * length).then_some((cubic, chi2 * scale))
 }
 
 /// The cubic between `ends` whose control points fit best at given parameters.

@@ -3,8 +3,8 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use dvp_core::shape::{Path, PathRing, Piece, Shape};
 use dvp_core::Vec2;
+use dvp_core::shape::{Path, PathRing, Piece, Shape};
 
 use crate::sample::{RingSamples, Sample};
 
