@@ -262,9 +262,10 @@ fn is_plain(chain: &Chain, track: &Track) -> bool {
     })
 }
 
-/// What a sample counts whose window holds a corner, at most.
+/// What a sample counts whose window holds a corner, at most: half of what leaving out a sample costs where no corner is known
+/// yet, so that sharp corners stay sharp.
 pub(super) fn spoiled_chi2() -> f64 {
-    tuning::OUTLINE_SPOILED_BITS * 2.0 * core::f64::consts::LN_2
+    tuning::OUTLINE_SPOILED_BITS * core::f64::consts::LN_2
 }
 
 /// Samples of curve `k`, counted on past the last of the track.
