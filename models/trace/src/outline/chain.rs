@@ -90,11 +90,11 @@ impl Chain {
         let mut change = change.iter().copied();
         let mut next = || change.next().unwrap_or(0.0);
         for k in 0..self.points.len() {
-            self.points[k] = self.points[k] + Vec2::new(next(), next());
+            self.points[k] += Vec2::new(next(), next());
             match self.curves.get_mut(k) {
                 Some(Curve::Arc(bulge)) => *bulge += next(),
                 Some(Curve::Cubic(controls)) => {
-                    controls.iter_mut().for_each(|control| *control = *control + Vec2::new(next(), next()));
+                    controls.iter_mut().for_each(|control| *control += Vec2::new(next(), next()));
                 }
                 Some(Curve::Line) | None => {}
             }

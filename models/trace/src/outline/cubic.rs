@@ -92,7 +92,7 @@ pub(super) fn fit(track: &Track, range: Range<usize>) -> Option<([Vec2<f64>; 4],
         }
         let change = solve(&mut normal)?;
         for (corner, delta) in cubic.iter_mut().zip(change.chunks_exact(2)) {
-            *corner = *corner + Vec2::new(delta[0], delta[1]);
+            *corner += Vec2::new(delta[0], delta[1]);
         }
     }
     // A control polygon much longer than the walk belongs to a curve that turns back; of a half circle it is half as long again.
@@ -112,8 +112,8 @@ fn start(ends: [Vec2<f64>; 2], samples: impl Iterator<Item = (Vec2<f64>, f64)>) 
         aa += a * a;
         ab += a * b;
         bb += b * b;
-        ra = ra + rest * a;
-        rb = rb + rest * b;
+        ra += rest * a;
+        rb += rest * b;
     }
     let determinant = aa * bb - ab * ab;
     let controls = [(ra * bb - rb * ab) / determinant, (rb * aa - ra * ab) / determinant];

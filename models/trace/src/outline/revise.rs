@@ -60,6 +60,10 @@ impl Reviser<'_> {
     fn better(&self, chain: &Chain, k: usize) -> Option<Chain> {
         let count = chain.curves.len();
         let first = k - 1;
+        let one = chain.part(first, 1, self.track.len());
+        if let Some(better) = self.shorter(&one, self.simpler(&one)) {
+            return Some(chain.with_part(first, 1, &better));
+        }
         if count >= 2 {
             let pair = chain.part(first, 2, self.track.len());
             if let Some(better) = self.shorter(&pair, self.merged(&pair).into_iter().chain(self.rounded(&pair))) {
@@ -92,13 +96,32 @@ impl Reviser<'_> {
         Some((tied.fitted.chain, bits))
     }
 
+    /// A line or an arc in place of a curve of more numbers.
+    fn simpler(&self, one: &Chain) -> Vec<Chain> {
+        let range = self.between_corners(one);
+        let number = self.ruler.number(self.track.sigma);
+        let moments = self.track.moments(range.clone());
+        let middle = self.track.point(usize::midpoint(range.start, range.end) % self.track.len());
+        let arc = Curve::Arc(super::path::bulge_through(one.points[0], middle, one.points[1]));
+        let options = [(Curve::Line, moments.line_chi2()), (arc, moments.circle_chi2())];
+        let had = one.curves[0].number_count();
+        let worth = options.into_iter().filter(|(curve, chi2)| {
+            let saved = number * as_f64(had.saturating_sub(curve.number_count()));
+            self.ruler.misfit((chi2 - as_f64(range.len())).max(0.0)) < saved
+        });
+        worth.map(|(curve, _)| Chain { curves: [curve].into(), ..one.clone() }).collect()
+    }
+
+    /// The samples of a part, without those that corners at its outer ends may spoil, if there are many.
+    fn between_corners(&self, part: &Chain) -> core::ops::Range<usize> {
+        let (first, end, spoiled) = (part.firsts[0], part.end, tuning::OUTLINE_SPOILED);
+        let enough = end - first > 4 * spoiled + tuning::OUTLINE_CUBIC_SAMPLES;
+        if enough { first + spoiled..end - spoiled } else { first..end }
+    }
+
     /// One curve in place of two.
     fn merged(&self, pair: &Chain) -> Vec<Chain> {
-        let mut range = pair.firsts[0]..pair.end;
-        if range.len() > 4 * tuning::OUTLINE_SPOILED + tuning::OUTLINE_CUBIC_SAMPLES {
-            // Corners at the outer ends spoil samples.
-            range = range.start + tuning::OUTLINE_SPOILED..range.end - tuning::OUTLINE_SPOILED;
-        }
+        let range = self.between_corners(pair);
         let [from, joint, to] = [pair.points[0], pair.points[1], pair.points[2]];
         let number = self.ruler.number(self.track.sigma);
         let saved = |curve: Curve| {

@@ -189,13 +189,14 @@ impl Judge<'_> {
             value -= share * violation;
         }
         let variance: f64 = direction.iter().map(|x| x * x).sum();
-        if !(variance > free * 1e-2) {
+        if variance.is_nan() || variance <= free * 1e-2 {
             // The ties before hold this number already.
             return None;
         }
         let sigma = variance.sqrt();
         let price = tie.price(self.ruler, sigma);
-        if !(self.ruler.misfit(value * value / variance) < price) {
+        let misfit = self.ruler.misfit(value * value / variance);
+        if misfit.is_nan() || misfit >= price {
             return None;
         }
         direction.iter_mut().for_each(|x| *x /= sigma);

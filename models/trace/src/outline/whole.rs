@@ -127,7 +127,7 @@ fn polygons(ring: &PathRing<f64>, starts: &mut Vec<Start>) {
         }
     };
     push(Figure::Polygon { sides: count }, &[mean(1, 0)], 0, 2.0 * PI / as_f64(count));
-    if count >= 6 && count % 2 == 0 {
+    if count >= 6 && count.is_multiple_of(2) {
         let first = usize::from(mean(2, 0) < mean(2, 1));
         push(
             Figure::Star { points: count / 2 },
