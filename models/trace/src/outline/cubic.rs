@@ -6,12 +6,16 @@ use dvp_core::Vec2;
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
+use super::figure::as_f64;
 use super::track::{LEAST_COSINE, Track};
 
 /// Most samples that a trial of a cubic looks at: two for each of its numbers.
 const MOST_LOOKS: usize = 16;
 /// Steps of the fit, each with the samples' parameters found anew.
 const STEPS: usize = 6;
+
+/// Mean squared misfit, in variances, that is not met any more after two steps: 20 sigmas.
+const HOPELESS: f64 = 400.0;
 
 /// Bernstein polynomials of degree 3.
 pub(super) fn basis(t: f64) -> [f64; 4] {
@@ -87,7 +91,8 @@ pub(super) fn fit(track: &Track, range: Range<usize>) -> Option<([Vec2<f64>; 4],
                 normal[i][8] += row[i] * misfit;
             }
         }
-        if step == STEPS || chi2 > 0.9 * before {
+        let hopeless = step >= 2 && chi2 > HOPELESS * as_f64(looks);
+        if step == STEPS || chi2 > 0.9 * before || hopeless {
             break;
         }
         let change = solve(&mut normal)?;
@@ -97,8 +102,7 @@ pub(super) fn fit(track: &Track, range: Range<usize>) -> Option<([Vec2<f64>; 4],
     }
     // A control polygon much longer than the walk belongs to a curve that turns back; of a half circle it is half as long again.
     let reach: f64 = cubic.windows(2).map(|ends| (ends[1] - ends[0]).length()).sum();
-    #[expect(clippy::cast_precision_loss, reason = "counts of samples are small")]
-    let scale = count as f64 / looks as f64;
+    let scale = as_f64(count) / as_f64(looks);
     (chi2.is_finite() && reach < 1.6 * length).then_some((cubic, chi2 * scale))
 }
 
