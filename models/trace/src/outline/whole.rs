@@ -72,8 +72,8 @@ fn rectangles(track: &Track, ring: &PathRing<f64>, starts: &mut Vec<Start>) {
     if !round && ring.segments.len() > 8 {
         return;
     }
-    let quarter = longest.angle().rem_euclid(0.5 * PI);
-    let angle = if quarter > 0.25 * PI { quarter - 0.5 * PI } else { quarter };
+    let quarters = (longest.angle() / (0.5 * PI)).round();
+    let angle = longest.angle() - quarters * 0.5 * PI;
     for (angle, turns) in [(0.0, false), (angle, true)] {
         let turn = Vec2::from_angle(-angle);
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
