@@ -3,8 +3,6 @@
 use alloc::vec::Vec;
 
 use dvp_core::Vec2;
-#[cfg(not(feature = "std"))]
-use num_traits::Float as _;
 
 use super::cubic::{at, basis, nearer};
 use super::track::LEAST_COSINE;
