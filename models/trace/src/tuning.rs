@@ -108,3 +108,6 @@ pub const PEN_VOTE: f64 = 40.0;
 pub const MOST_WRONG_PIXELS: f64 = 3.0;
 /// Standard deviation (pixels) of an outline along the border of the picture: what lies beyond cannot be seen.
 pub const BORDER_SIGMA: f64 = 0.1;
+
+/// By how much a curve may be longer than the walk along its samples, pixels: corners lie beyond the last samples beside them.
+pub const OUTLINE_SLACK: f64 = 6.0;

@@ -5,6 +5,8 @@ use alloc::vec::Vec;
 
 use dvp_core::Vec2;
 use dvp_core::shape::{PathRing, Segment};
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
 
 use super::OutlineShape;
 

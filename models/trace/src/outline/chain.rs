@@ -3,8 +3,6 @@
 use alloc::vec::Vec;
 
 use dvp_core::Vec2;
-#[cfg(not(feature = "std"))]
-use num_traits::Float as _;
 
 use super::cubic::{at, basis, nearer};
 use super::track::LEAST_COSINE;
@@ -27,6 +25,8 @@ pub(super) struct Chain {
     pub(super) curves: Vec<Curve>,
     /// Of each curve: its first sample; counted on past the last sample of the track, so that they rise.
     pub(super) firsts: Vec<usize>,
+    /// One past the last sample of an open chain.
+    pub(super) end: usize,
     pub(super) closed: bool,
 }
 
@@ -56,7 +56,7 @@ impl Slopes {
 }
 
 impl Curve {
-    fn number_count(self) -> usize {
+    pub(super) fn number_count(self) -> usize {
         match self {
             Self::Line => 0,
             Self::Arc(_) => 1,
@@ -88,11 +88,11 @@ impl Chain {
         let mut change = change.iter().copied();
         let mut next = || change.next().unwrap_or(0.0);
         for k in 0..self.points.len() {
-            self.points[k] = self.points[k] + Vec2::new(next(), next());
+            self.points[k] += Vec2::new(next(), next());
             match self.curves.get_mut(k) {
                 Some(Curve::Arc(bulge)) => *bulge += next(),
                 Some(Curve::Cubic(controls)) => {
-                    controls.iter_mut().for_each(|control| *control = *control + Vec2::new(next(), next()));
+                    controls.iter_mut().for_each(|control| *control += Vec2::new(next(), next()));
                 }
                 Some(Curve::Line) | None => {}
             }

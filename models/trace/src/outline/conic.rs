@@ -33,7 +33,8 @@ pub(super) fn ellipse(track: &Track) -> Option<[f64; 5]> {
     let level = 1.0 - 0.5 * (d * x + e * y);
     let angle = 0.5 * b.atan2(a - c);
     let (half_sum, half_difference) = (0.5 * (a + c), 0.5 * (a - c).hypot(b));
-    let radii = [level / (half_sum + half_difference), level / (half_sum - half_difference)].map(|square| square.sqrt() * scale);
+    let radii = [level / (half_sum + half_difference), level / (half_sum - half_difference)]
+        .map(|square| square.sqrt() * scale);
     let center = mean + Vec2::new(x, y) * scale;
     let found = [center.x, center.y, radii[0], radii[1], angle];
     found.iter().all(|number| number.is_finite()).then_some(found)

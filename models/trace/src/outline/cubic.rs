@@ -6,12 +6,16 @@ use dvp_core::Vec2;
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
+use super::figure::as_f64;
 use super::track::{LEAST_COSINE, Track};
 
 /// Most samples that a trial of a cubic looks at: two for each of its numbers.
 const MOST_LOOKS: usize = 16;
 /// Steps of the fit, each with the samples' parameters found anew.
 const STEPS: usize = 6;
+
+/// Mean squared misfit, in variances, that is not met any more after two steps: 20 sigmas.
+const HOPELESS: f64 = 400.0;
 
 /// Bernstein polynomials of degree 3.
 pub(super) fn basis(t: f64) -> [f64; 4] {
@@ -42,14 +46,14 @@ pub(super) fn fit(track: &Track, range: Range<usize>) -> Option<([Vec2<f64>; 4],
     if looks < 7 {
         return None;
     }
-    let index = |k: usize| range.start + k * (count - 1) / (looks - 1);
+    let index = |k: usize| (range.start + k * (count - 1) / (looks - 1)) % track.len();
     let mut parameters = [0.0; MOST_LOOKS];
     for k in 1..looks {
         parameters[k] = parameters[k - 1] + (track.point(index(k)) - track.point(index(k - 1))).length();
     }
     let length = parameters[looks - 1];
     parameters[..looks].iter_mut().for_each(|t| *t /= length);
-    let ends = [track.point(range.start), track.point(range.end - 1)];
+    let ends = [track.point(index(0)), track.point(index(looks - 1))];
     let mut cubic = start(ends, (0..looks).map(|k| (track.point(index(k)), parameters[k])))?;
     let anchor = track.sigma.powi(-2);
     let damping = (8.0 / length).powi(2);
@@ -87,18 +91,19 @@ pub(super) fn fit(track: &Track, range: Range<usize>) -> Option<([Vec2<f64>; 4],
                 normal[i][8] += row[i] * misfit;
             }
         }
-        if step == STEPS || chi2 > 0.9 * before {
+        let hopeless = step >= 2 && chi2 > HOPELESS * as_f64(looks);
+        if step == STEPS || chi2 > 0.9 * before || hopeless {
             break;
         }
         let change = solve(&mut normal)?;
         for (corner, delta) in cubic.iter_mut().zip(change.chunks_exact(2)) {
-            *corner = *corner + Vec2::new(delta[0], delta[1]);
+            *corner += Vec2::new(delta[0], delta[1]);
         }
     }
-    let reach = (cubic[1] - cubic[0]).length() + (cubic[3] - cubic[2]).length();
-    #[expect(clippy::cast_precision_loss, reason = "counts of samples are small")]
-    let scale = count as f64 / looks as f64;
-    (chi2.is_finite() && reach < 2.0 * length).then_some((cubic, chi2 * scale))
+    // A control polygon much longer than the walk belongs to a curve that turns back; of a half circle it is half as long again.
+    let reach: f64 = cubic.windows(2).map(|ends| (ends[1] - ends[0]).length()).sum();
+    let scale = as_f64(count) / as_f64(looks);
+    (chi2.is_finite() && reach < 1.6 * length).then_some((cubic, chi2 * scale))
 }
 
 /// The cubic between `ends` whose control points fit best at given parameters.
@@ -111,8 +116,8 @@ fn start(ends: [Vec2<f64>; 2], samples: impl Iterator<Item = (Vec2<f64>, f64)>) 
         aa += a * a;
         ab += a * b;
         bb += b * b;
-        ra = ra + rest * a;
-        rb = rb + rest * b;
+        ra += rest * a;
+        rb += rest * b;
     }
     let determinant = aa * bb - ab * ab;
     let controls = [(ra * bb - rb * ab) / determinant, (rb * aa - ra * ab) / determinant];

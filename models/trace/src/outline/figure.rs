@@ -95,7 +95,9 @@ impl Figure {
                 (0..sides).map(|k| center + Vec2::from_angle(b + 2.0 * PI * as_f64(k) / as_f64(sides)) * a).collect()
             }
             Self::Star { points } => (0..2 * points)
-                .map(|k| center + Vec2::from_angle(c + PI * as_f64(k) / as_f64(points)) * if k % 2 == 0 { a } else { b })
+                .map(|k| {
+                    center + Vec2::from_angle(c + PI * as_f64(k) / as_f64(points)) * if k % 2 == 0 { a } else { b }
+                })
                 .collect(),
             Self::Circle | Self::Ellipse | Self::Rectangle => Vec::new(),
         }

@@ -10,6 +10,7 @@
 //! | `programme` | the cheapest row of pieces: a dynamic programme |
 //! | `chain`, `skyline`, `solve` | all numbers of a row of pieces together, by least squares |
 //! | `ties` | lines along the axes, smooth joins, equal radii, where they make the description shorter |
+//! | `revise` | curves joined, left out, put in at corners |
 //! | `path` | from samples to a path |
 //! | `as_ring` | outlines of any kind as rings of lines, arcs and cubics |
 //! | `figure`, `conic`, `whole` | circles, ellipses, rectangles, regular polygons and stars, fitted to all samples |
@@ -23,6 +24,7 @@ mod moments;
 mod nodes;
 mod path;
 mod programme;
+mod revise;
 mod skyline;
 pub(crate) use skyline::Skyline;
 mod solve;

@@ -4,10 +4,13 @@ use alloc::vec::Vec;
 
 use dvp_core::Vec2;
 use dvp_core::shape::{PathRing, Segment};
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
 
 use super::chain::{Chain, Curve};
 use super::nodes::Nodes;
 use super::programme::{Kind, Span, cut};
+use super::revise::revise;
 use super::solve::Fitted;
 use super::ties::{Tie, Tied, tie};
 use super::track::Track;
@@ -43,8 +46,20 @@ pub(super) fn fit_line(track: &Track, ruler: &Ruler) -> Option<FittedPath> {
 }
 
 fn fit_spans(spans: &[Span], track: &Track, ruler: &Ruler) -> Option<FittedPath> {
-    let chain = chain_of(spans, track)?;
-    let fitted = bridge(Fitted::of(chain, track, ruler, &[])?, track, ruler);
+    let mut chain = chain_of(spans, track)?;
+    if chain.closed && super::solve::samples_of(&chain, track.len(), 0).is_empty() {
+        // A bridge comes last rather than first: it goes from one curve to the next.
+        chain = chain.rotated(track.len());
+    }
+    // Arcs in corners are paid for by their ties, which come last.
+    let slack = 2.0 * ruler.number(track.sigma) * super::figure::as_f64(spans.len());
+    let mut fitted = bridge(Fitted::of(chain, track, ruler, &[])?, track, ruler);
+    if let Some(chain) = revise(&fitted.chain, track, ruler)
+        && let Some(revised) = Fitted::of(chain, track, ruler, &[])
+        && revised.misfit(ruler) + revised.number_bits(ruler) < fitted.misfit(ruler) + fitted.number_bits(ruler) + slack
+    {
+        fitted = revised;
+    }
     Some(finish(tie(fitted, track, ruler), ruler))
 }
 
@@ -52,14 +67,15 @@ fn fit_spans(spans: &[Span], track: &Track, ruler: &Ruler) -> Option<FittedPath>
 /// line leads over.
 fn chain_of(spans: &[Span], track: &Track) -> Option<Chain> {
     let count = track.len();
-    let mut chain = Chain { points: Vec::new(), curves: Vec::new(), firsts: Vec::new(), closed: track.closed };
+    let mut chain =
+        Chain { points: Vec::new(), curves: Vec::new(), firsts: Vec::new(), end: 2 * count, closed: track.closed };
     let (first, last) = (spans.first()?, spans.last()?);
     let mut before = track.closed.then_some(last);
     for span in spans {
         let start = track.point(span.samples.start);
         let came_from = before.map(|before| (before.samples.end - 1, track.point(before.samples.end - 1)));
         match came_from {
-            Some((sample, point)) if is_hidden(track, sample, span.samples.start) => {
+            Some((sample, point)) if track.is_hidden(sample, span.samples.start) => {
                 chain.push(point, Curve::Line, count + span.samples.start);
                 chain.push(start, Curve::Line, count + span.samples.start);
             }
@@ -94,14 +110,8 @@ impl Chain {
     }
 }
 
-/// Whether the boundary is hidden somewhere between two samples.
-fn is_hidden(track: &Track, before: usize, after: usize) -> bool {
-    let after = if after <= before { after + track.len() } else { after };
-    (before + 1..=after).any(|k| track.hidden[k % track.len()])
-}
-
 /// tan(sweep / 4) of the arc between `from` and `to` through `middle`.
-fn bulge_through(from: Vec2<f64>, middle: Vec2<f64>, to: Vec2<f64>) -> f64 {
+pub(super) fn bulge_through(from: Vec2<f64>, middle: Vec2<f64>, to: Vec2<f64>) -> f64 {
     let chord = to - from;
     let q = middle - (from + to) * 0.5;
     let (quarter, cross) = (q.length_squared() - 0.25 * chord.length_squared(), chord.cross(q));
@@ -145,6 +155,8 @@ fn without_bridge(chain: &Chain, track: &Track, k: usize) -> Option<Chain> {
     }
     let mut shorter = chain.clone();
     let corner = chain.points[k] + arrive * on;
+    shorter.stretch(k - 1, corner, true);
+    shorter.stretch(next, corner, false);
     shorter.points[next] = corner;
     shorter.points.remove(k);
     shorter.curves.remove(k);

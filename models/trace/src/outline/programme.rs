@@ -100,7 +100,8 @@ impl<'a> Programme<'a> {
             return (bits_left_out(place), 0);
         }
         let near = (0..=node).rev().take_while(|&other| place - self.nodes.places[other] <= tuning::OUTLINE_SPOILED);
-        let options = near.map(|other| (self.ends[other].bits + bits_left_out(place - self.nodes.places[other]), other));
+        let options =
+            near.map(|other| (self.ends[other].bits + bits_left_out(place - self.nodes.places[other]), other));
         options.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((f64::INFINITY, node))
     }
 

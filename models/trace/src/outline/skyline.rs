@@ -57,7 +57,8 @@ impl Skyline {
             for column in row_first..row {
                 let first = self.first[column].max(row_first);
                 let other = &done[self.start[column] + first - self.first[column]..][..column - first];
-                let sum: f64 = entries[first - row_first..column - row_first].iter().zip(other).map(|(a, b)| a * b).sum();
+                let sum: f64 =
+                    entries[first - row_first..column - row_first].iter().zip(other).map(|(a, b)| a * b).sum();
                 let diagonal = done[self.start[column] + column - self.first[column]];
                 entries[column - row_first] = (entries[column - row_first] - sum) / diagonal;
             }

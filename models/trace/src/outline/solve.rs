@@ -17,7 +17,7 @@ use crate::tuning;
 /// Most steps of a fit.
 const MOST_STEPS: usize = 15;
 /// A step that lowers the sum of squares by less ends the fit.
-const LEAST_GAIN: f64 = 0.02;
+const LEAST_GAIN: f64 = 0.1;
 /// How hard ends of open lines are held: to half a pixel.
 const END_WEIGHT: f64 = 4.0;
 /// Samples beside a corner that may be moved from one curve to the next at once.
@@ -64,7 +64,8 @@ impl Fitted {
             let mut next = chain.clone();
             next.shift(&change);
             problem.assign(&mut next);
-            let Some(then) = problem.equations(&next).filter(|then| then.cost() < now.cost()) else {
+            let Some(then) = problem.equations(&next).filter(|then| then.cost() < now.cost() && is_plain(&next, track))
+            else {
                 damping *= 10.0;
                 if damping > 1e3 {
                     break;
@@ -80,6 +81,13 @@ impl Fitted {
         // Damping only where rounding makes the equations indefinite.
         let factor = [0.0, 1e-9, 1e-6].into_iter().find_map(|damping| now.normal.factor(damping, ridge))?;
         Some(Self { chain, chi2: now.chi2, factor })
+    }
+
+    /// Sum of squared misfits of a chain as it is, without fitting.
+    pub(super) fn chi2_of(mut chain: Chain, track: &Track) -> Option<f64> {
+        let mut problem = Problem { track, ties: &[], parameters: vec![f64::NAN; track.len()] };
+        problem.assign(&mut chain);
+        Some(problem.equations(&chain)?.chi2)
     }
 
     /// Bits of the misfit.
@@ -130,9 +138,8 @@ impl Problem<'_> {
                 continue;
             }
             let forward = arrive + leave;
-            let ahead = |sample: usize| {
-                (self.track.point(sample % self.track.len()) - chain.points[k]).dot(forward) > 0.0
-            };
+            let ahead =
+                |sample: usize| (self.track.point(sample % self.track.len()) - chain.points[k]).dot(forward) > 0.0;
             let start = first;
             while first > low + 1 && first + REACH > start && ahead(first - 1) {
                 first -= 1;
@@ -163,12 +170,7 @@ impl Problem<'_> {
                 let index = sample_number % self.track.len();
                 let sample = &self.track.samples[index];
                 let at_ends = [sample_number - range.start < 4, range.end - sample_number <= 4];
-                let near = sharp.iter().zip(at_ends).filter_map(|(&point, near)| point.filter(|_| near));
-                if near.into_iter().any(|point| sample.holds(chain.points[point])) {
-                    // As much as an honest sample is expected to miss by.
-                    equations.chi2 += 1.0;
-                    continue;
-                }
+                let mut near = sharp.iter().zip(at_ends).filter_map(|(&point, near)| point.filter(|_| near));
                 let t = &mut self.parameters[index];
                 if t.is_nan() {
                     #[expect(clippy::cast_precision_loss, reason = "counts of samples are small")]
@@ -179,6 +181,11 @@ impl Problem<'_> {
                     }
                 }
                 let (misfit, slopes) = chain.misfit(k, sample, &places, t)?;
+                if near.any(|point| sample.holds(chain.points[point])) {
+                    // It tells of both sides, or by chance of this one.
+                    equations.chi2 += (misfit * misfit).min(spoiled_chi2());
+                    continue;
+                }
                 let far = misfit.abs() / tuning::OUTLINE_HUBER;
                 let weight = 1.0 / far.max(1.0);
                 equations.chi2 += misfit * misfit * weight * (2.0 - weight);
@@ -187,8 +194,8 @@ impl Problem<'_> {
         }
         if !chain.closed {
             // No sample says how far an open line goes: it ends about where they do.
-            for (point, sample) in [(0, 0), (chain.points.len() - 1, self.track.len() - 1)] {
-                let off = chain.points[point] - self.track.point(sample);
+            for (point, sample) in [(0, chain.firsts[0]), (chain.points.len() - 1, chain.end - 1)] {
+                let off = chain.points[point] - self.track.point(sample % self.track.len());
                 for (axis, off) in [off.x, off.y].into_iter().enumerate() {
                     equations.strain += END_WEIGHT * off * off;
                     equations.add(&[(places[point] + axis, 1.0)], off, END_WEIGHT);
@@ -235,12 +242,38 @@ impl Equations {
     }
 }
 
+/// Whether each curve is about as long as the walk along its samples: no loop, no spike.
+fn is_plain(chain: &Chain, track: &Track) -> bool {
+    (0..chain.curves.len()).all(|k| {
+        let range = samples_of(chain, track.len(), k);
+        if range.is_empty() || track.is_hidden(range.start + track.len() - 1, range.end + track.len()) {
+            return true;
+        }
+        let [from, to] = [k, chain.next(k)].map(|point| chain.points[point]);
+        let chord = (to - from).length();
+        let length = match chain.curves[k] {
+            Curve::Line => chord,
+            Curve::Arc(bulge) if bulge.abs() < 1e-6 => chord,
+            Curve::Arc(bulge) => chord * bulge.abs().atan() * (1.0 + bulge * bulge) / bulge.abs(),
+            // The control polygon is longer than the curve.
+            Curve::Cubic([a, b]) => 0.7 * ((a - from).length() + (b - a).length() + (to - b).length()),
+        };
+        length < 1.1 * track.length(&range) + tuning::OUTLINE_SLACK
+    })
+}
+
+/// What a sample counts whose window holds a corner, at most: half of what leaving out a sample costs where no corner is known
+/// yet, so that sharp corners stay sharp.
+pub(super) fn spoiled_chi2() -> f64 {
+    tuning::OUTLINE_SPOILED_BITS * core::f64::consts::LN_2
+}
+
 /// Samples of curve `k`, counted on past the last of the track.
 pub(super) fn samples_of(chain: &Chain, track_len: usize, k: usize) -> Range<usize> {
     let end = match chain.firsts.get(k + 1) {
         Some(&end) => end,
         None if chain.closed => chain.firsts[0] + track_len,
-        None => 2 * track_len,
+        None => chain.end,
     };
     chain.firsts[k]..end
 }

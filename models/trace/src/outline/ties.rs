@@ -121,11 +121,7 @@ impl Chain {
             if axis == 0 { &mut point.x } else { &mut point.y }
         }
         let next = self.next(k);
-        let own = match self.curves.get(k)? {
-            Curve::Line => 0,
-            Curve::Arc(_) => 1,
-            Curve::Cubic(_) => 4,
-        };
+        let own = self.curves.get(k)?.number_count();
         if local < 2 {
             return self.points.get_mut(k).map(|point| coordinate(point, local));
         }
@@ -140,50 +136,73 @@ impl Chain {
     }
 }
 
-/// Accepts the ties that make the description of a chain shorter, kind by kind.
+/// Accepts the ties that make the description of a chain shorter.
 pub(super) fn tie(fitted: Fitted, track: &Track, ruler: &Ruler) -> Tied {
     let number_bits = fitted.number_bits(ruler);
-    let mut tied = Tied { fitted, ties: Vec::new(), number_bits };
-    for propose in [axis_ties, smooth_ties, radius_ties] {
-        let accepted: Vec<_> = propose(&tied.fitted.chain)
-            .into_iter()
-            .filter_map(|tie| judge(tie, &tied.fitted, ruler).filter(|verdict| verdict.gain > 0.0))
-            .collect();
-        if accepted.is_empty() {
-            continue;
-        }
-        let ties: Vec<_> = tied.ties.iter().copied().chain(accepted.iter().map(|verdict| (verdict.tie, verdict.weight))).collect();
-        let saved: f64 = accepted.iter().map(|verdict| verdict.price).sum();
-        let Some(next) = Fitted::of(tied.fitted.chain.clone(), track, ruler, &ties) else {
-            continue;
-        };
-        // Together they may pull harder than each alone.
-        if next.misfit(ruler) - tied.fitted.misfit(ruler) < saved {
-            tied = Tied { fitted: next, ties, number_bits: tied.number_bits - saved };
+    let mut judge = Judge { fitted: &fitted, ruler, places: fitted.chain.places(), held: Vec::new() };
+    let proposed = [axis_ties, smooth_ties, radius_ties].into_iter().flat_map(|propose| propose(&fitted.chain));
+    let accepted: Vec<Verdict> = proposed.filter_map(|tie| judge.verdict(tie)).collect();
+    // All of them or, if together they pull harder than expected, those along the axes alone.
+    let plain = |verdict: &&Verdict| matches!(verdict.tie, Tie::Horizontal { .. } | Tie::Vertical { .. });
+    let sets = [accepted.iter().collect::<Vec<_>>(), accepted.iter().filter(plain).collect()];
+    for set in sets.into_iter().filter(|set| !set.is_empty()) {
+        let ties: Vec<_> = set.iter().map(|verdict| (verdict.tie, verdict.weight)).collect();
+        let saved: f64 = set.iter().map(|verdict| verdict.price).sum();
+        if let Some(next) = Fitted::of(fitted.chain.clone(), track, ruler, &ties)
+            && next.misfit(ruler) - fitted.misfit(ruler) < saved
+        {
+            return Tied { fitted: next, ties, number_bits: number_bits - saved };
         }
     }
-    tied
+    Tied { fitted, ties: Vec::new(), number_bits }
 }
 
-/// What a tie would save and cost.
+/// A tie that is accepted.
 struct Verdict {
     tie: Tie,
     weight: f64,
+    /// Bits that it saves.
     price: f64,
-    gain: f64,
 }
 
-/// *Source*: the ratio of Savage and Dickey: the density at 0 of what should be 0, after over before the samples were seen.
-fn judge(tie: Tie, fitted: &Fitted, ruler: &Ruler) -> Option<Verdict> {
-    let places = fitted.chain.places();
-    let (value, slopes) = tie.violation(&fitted.chain, &places)?;
-    let mut spread = vec![0.0; places.last().copied().unwrap_or(0)];
-    slopes.entries().iter().for_each(|&(place, slope)| spread[place] = slope);
-    fitted.factor.solve_lower(&mut spread);
-    let variance: f64 = spread.iter().map(|x| x * x).sum();
-    let price = tie.price(ruler, variance.sqrt());
-    let gain = price - ruler.misfit(value * value / variance);
-    (variance > 0.0 && gain.is_finite()).then_some(Verdict { tie, weight: HOLD / variance, price, gain })
+/// What ties do to a Gaussian of all numbers, tie after tie.
+struct Judge<'a> {
+    fitted: &'a Fitted,
+    ruler: &'a Ruler,
+    places: Vec<usize>,
+    /// Of each tie accepted: its direction among all numbers in units of their doubt, at right angles to those before and of
+    /// length 1, and by how much it is violated along it.
+    held: Vec<(Vec<f64>, f64)>,
+}
+
+impl Judge<'_> {
+    /// *Source*: the ratio of Savage and Dickey: the density at 0 of what should be 0, after over before the samples were seen.
+    fn verdict(&mut self, tie: Tie) -> Option<Verdict> {
+        let (mut value, slopes) = tie.violation(&self.fitted.chain, &self.places)?;
+        let mut direction = vec![0.0; self.places.last().copied().unwrap_or(0)];
+        slopes.entries().iter().for_each(|&(place, slope)| direction[place] = slope);
+        self.fitted.factor.solve_lower(&mut direction);
+        let free: f64 = direction.iter().map(|x| x * x).sum();
+        for (other, violation) in &self.held {
+            let share: f64 = direction.iter().zip(other).map(|(a, b)| a * b).sum();
+            direction.iter_mut().zip(other).for_each(|(a, b)| *a -= share * b);
+            value -= share * violation;
+        }
+        let variance: f64 = direction.iter().map(|x| x * x).sum();
+        if variance.is_nan() || variance <= free * 1e-2 {
+            // The ties before hold this number already.
+            return None;
+        }
+        let sigma = variance.sqrt();
+        let price = tie.price(self.ruler, sigma);
+        let misfit = self.ruler.misfit(value * value / variance);
+        if misfit.is_nan() || misfit >= price {
+            return None;
+        }
+        direction.iter_mut().for_each(|x| *x /= sigma);
+        self.held.push((direction, value / sigma));
+        Some(Verdict { tie, weight: HOLD / variance, price })
+    }
 }
 
 fn axis_ties(chain: &Chain) -> Vec<Tie> {
@@ -211,7 +230,9 @@ fn radius_ties(chain: &Chain) -> Vec<Tie> {
     let arcs: Vec<(usize, f64)> = (0..chain.curves.len()).filter_map(radius).collect();
     let near = |a: f64, b: f64| (a - b).abs() < 0.2 * a.abs();
     let twin = |&(k, radius): &(usize, f64)| {
-        let first = arcs.iter().find(|&&(other, value)| other < k && near(value, radius))?;
+        // Arcs that join smoothly have one radius if they are one arc.
+        let apart = |other: usize| chain.next(other) != k && chain.next(k) != other;
+        let first = arcs.iter().find(|&&(other, value)| other < k && apart(other) && near(value, radius))?;
         Some(Tie::EqualRadius { arcs: [first.0, k] })
     };
     arcs.iter().filter_map(twin).collect()

@@ -7,6 +7,7 @@ use dvp_core::Vec2;
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
+use super::moments::Moments;
 use crate::sample::{RingSamples, Sample};
 use crate::tuning;
 
@@ -24,6 +25,8 @@ pub(super) struct Track {
     pub(super) samples: Vec<Sample>,
     /// 1 / variance of the distance between the outline and each sample, 1/px^2.
     pub(super) weights: Vec<f64>,
+    /// Length of the walk from the first sample to each, pixels.
+    pub(super) lengths: Vec<f64>,
     /// Whether the boundary is hidden between the sample before (of the first: the last) and this one.
     pub(super) hidden: Vec<bool>,
     /// Whether the outline leads back to its start.
@@ -59,8 +62,9 @@ impl Track {
             return None;
         }
         let (_, &mut sigma, _) = sigmas.select_nth_unstable_by(samples.len() / 2, f64::total_cmp);
-        let mut track = Self { samples, weights: Vec::new(), hidden, closed, sigma };
-        track.weights = (0..track.samples.len()).map(|k| track.weight(k)).collect();
+        let mut track = Self { samples, weights: Vec::new(), lengths: Vec::new(), hidden, closed, sigma };
+        track.weights = (0..track.len()).map(|k| track.weight(k)).collect();
+        track.measure();
         Some(track)
     }
 
@@ -74,11 +78,46 @@ impl Track {
         self.samples[k].point
     }
 
+    /// Whether the boundary is hidden somewhere between two samples.
+    pub(super) fn is_hidden(&self, before: usize, after: usize) -> bool {
+        let after = if after <= before { after + self.len() } else { after };
+        (before + 1..=after).any(|k| self.hidden[k % self.len()])
+    }
+
+    /// The moments of the samples `range`, counted on past the last, around the first of them.
+    pub(super) fn moments(&self, range: Range<usize>) -> Moments {
+        let origin = self.point(range.start % self.len());
+        let mut moments = Moments::default();
+        for k in range.map(|k| k % self.len()) {
+            moments.add(self.point(k) - origin, self.weights[k]);
+        }
+        moments
+    }
+
     /// The same boundary walked from sample `start` on.
     pub(super) fn rotate(&mut self, start: usize) {
         self.samples.rotate_left(start);
         self.weights.rotate_left(start);
         self.hidden.rotate_left(start);
+        self.measure();
+    }
+
+    fn measure(&mut self) {
+        let mut length = 0.0;
+        self.lengths = (0..self.len())
+            .map(|k| {
+                length += (self.point(k) - self.point(k.saturating_sub(1))).length();
+                length
+            })
+            .collect();
+    }
+
+    /// Length of the walk along the samples `range`, counted on past the last.
+    pub(super) fn length(&self, range: &Range<usize>) -> f64 {
+        let count = self.len();
+        let whole = (self.point(0) - self.point(count - 1)).length() + self.lengths[count - 1];
+        let at = |k: usize| self.lengths[k % count] + if k / count > range.start / count { whole } else { 0.0 };
+        at(range.end.saturating_sub(1).max(range.start)) - at(range.start)
     }
 
     /// The samples up to `reach` before and after sample `k` that are seen in one stretch with it.

@@ -10,8 +10,8 @@ use num_traits::Float as _;
 
 use super::conic;
 use super::figure::{Figure, MOST_NUMBERS, as_f64};
-use super::moments::Moments;
 use super::path::FittedPath;
+use super::solve::spoiled_chi2;
 use super::track::{LEAST_COSINE, Track};
 use super::{Outline, OutlineShape};
 use crate::ruler::Ruler;
@@ -43,16 +43,17 @@ fn starts(track: &Track, ring: &PathRing<f64>) -> Vec<Start> {
     let all = [true; MOST_NUMBERS];
     let mut starts = Vec::new();
     if ring.segments.iter().any(|segment| !matches!(segment, Segment::Line)) {
-        let mut moments = Moments::default();
-        let origin = track.point(0);
-        (0..track.len()).for_each(|k| moments.add(track.point(k) - origin, track.weights[k]));
-        if let Some(circle) = moments.circle() {
-            let center = circle.center + origin;
+        if let Some(circle) = track.moments(0..track.len()).circle() {
+            let center = circle.center + track.point(0);
             starts.push((Figure::Circle, [center.x, center.y, circle.radius, 0.0, 0.0, 0.0], all));
         }
         if let Some([x, y, a, b, angle]) = conic::ellipse(track) {
             let upright = if angle.sin().abs() < 0.5f64.sqrt() { [a, b] } else { [b, a] };
-            starts.push((Figure::Ellipse, [x, y, upright[0], upright[1], 0.0, 0.0], [true, true, true, true, false, false]));
+            starts.push((
+                Figure::Ellipse,
+                [x, y, upright[0], upright[1], 0.0, 0.0],
+                [true, true, true, true, false, false],
+            ));
             starts.push((Figure::Ellipse, [x, y, a, b, angle, 0.0], all));
         }
     }
@@ -71,8 +72,8 @@ fn rectangles(track: &Track, ring: &PathRing<f64>, starts: &mut Vec<Start>) {
     if !round && ring.segments.len() > 8 {
         return;
     }
-    let quarter = longest.angle().rem_euclid(0.5 * PI);
-    let angle = if quarter > 0.25 * PI { quarter - 0.5 * PI } else { quarter };
+    let quarters = (longest.angle() / (0.5 * PI)).round();
+    let angle = longest.angle() - quarters * 0.5 * PI;
     for (angle, turns) in [(0.0, false), (angle, true)] {
         let turn = Vec2::from_angle(-angle);
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
@@ -87,10 +88,16 @@ fn rectangles(track: &Track, ring: &PathRing<f64>, starts: &mut Vec<Start>) {
         let missing = (width * height - area(track).abs()) / (4.0 - PI);
         let most = 0.5 * width.min(height);
         let radius = if missing > 0.0 { missing.sqrt().min(0.98 * most) } else { 0.0 };
-        if round {
-            starts.push((Figure::Rectangle, [center.x, center.y, width, height, radius, angle], [true, true, true, true, true, turns]));
-        }
-        starts.push((Figure::Rectangle, [center.x, center.y, width, height, 0.0, angle], [true, true, true, true, false, turns]));
+        starts.push((
+            Figure::Rectangle,
+            [center.x, center.y, width, height, radius, angle],
+            [true, true, true, true, true, turns],
+        ));
+        starts.push((
+            Figure::Rectangle,
+            [center.x, center.y, width, height, 0.0, angle],
+            [true, true, true, true, false, turns],
+        ));
     }
 }
 
@@ -120,9 +127,14 @@ fn polygons(ring: &PathRing<f64>, starts: &mut Vec<Start>) {
         }
     };
     push(Figure::Polygon { sides: count }, &[mean(1, 0)], 0, 2.0 * PI / as_f64(count));
-    if count >= 6 && count % 2 == 0 {
+    if count >= 6 && count.is_multiple_of(2) {
         let first = usize::from(mean(2, 0) < mean(2, 1));
-        push(Figure::Star { points: count / 2 }, &[mean(2, first), mean(2, 1 - first)], first, 4.0 * PI / as_f64(count));
+        push(
+            Figure::Star { points: count / 2 },
+            &[mean(2, first), mean(2, 1 - first)],
+            first,
+            4.0 * PI / as_f64(count),
+        );
     }
 }
 
@@ -159,9 +171,11 @@ impl Trial<'_> {
     /// The outline if it costs less than `most` bits.
     fn run(&self, start: [f64; MOST_NUMBERS], most: f64) -> Option<Outline> {
         let few = self.track.len().div_ceil(FIRST_LOOKS);
+        // A few samples tell whether all can be met; with much room before the fit, and some after.
+        let bits = |equations: &Equations| self.ruler.misfit(equations.chi2) * as_f64(few);
+        self.equations(&start, few).filter(|first| bits(first) < 20.0 * most)?;
         let (numbers, first) = self.descend(start, few)?;
-        // Samples of a few columns tell whether all can be met; with some room for what is not found yet.
-        if self.ruler.misfit(first.chi2) * as_f64(few) > 2.0 * most {
+        if bits(&first) > 2.0 * most {
             return None;
         }
         let (numbers, equations) = if few > 1 { self.descend(numbers, 1)? } else { (numbers, first) };
@@ -197,11 +211,12 @@ impl Trial<'_> {
                 Some(then) => {
                     let gain = now.chi2 - then.chi2;
                     (numbers, now, damping) = (next, then, damping * 0.1);
-                    if gain < 0.01 {
+                    if gain < 0.1 {
                         break;
                     }
                 }
-                None => damping = (damping * 100.0).max(1e-4),
+                None if damping > 1.0 => break,
+                None => damping = (damping * 1e3).max(1e-3),
             }
         }
         Some((numbers, now))
@@ -210,15 +225,16 @@ impl Trial<'_> {
     fn equations(&self, numbers: &[f64; MOST_NUMBERS], every: usize) -> Option<Equations> {
         let count = self.figure.number_count();
         let corners = self.figure.corners(numbers);
-        let mut equations = Equations { normal: [[0.0; MOST_NUMBERS]; MOST_NUMBERS], right: [0.0; MOST_NUMBERS], chi2: 0.0 };
+        let mut equations =
+            Equations { normal: [[0.0; MOST_NUMBERS]; MOST_NUMBERS], right: [0.0; MOST_NUMBERS], chi2: 0.0 };
         for sample in self.track.samples.iter().step_by(every) {
-            if corners.iter().any(|&corner| sample.holds(corner)) {
-                equations.chi2 += 1.0;
-                continue;
-            }
             let (distance, normal) = self.figure.distance(numbers, sample.point);
             let scale = 1.0 / (normal.dot(sample.axis).abs().max(LEAST_COSINE) * sample.sigma);
             let misfit = distance * scale;
+            if corners.iter().any(|&corner| sample.holds(corner)) {
+                equations.chi2 += (misfit * misfit).min(spoiled_chi2());
+                continue;
+            }
             let far = misfit.abs() / tuning::OUTLINE_HUBER;
             let weight = 1.0 / far.max(1.0);
             equations.chi2 += misfit * misfit * weight * (2.0 - weight);

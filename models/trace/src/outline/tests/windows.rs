@@ -3,8 +3,8 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use dvp_core::shape::{Path, PathRing, Piece, Shape};
 use dvp_core::Vec2;
+use dvp_core::shape::{Path, PathRing, Piece, Shape};
 
 use crate::sample::{RingSamples, Sample};
 
@@ -41,6 +41,7 @@ pub(super) fn pieces(ring: &PathRing<f64>) -> Vec<Piece<f64>> {
 fn dense(pieces: &[Piece<f64>], step: f64) -> Vec<(Vec2<f64>, usize)> {
     let mut points = Vec::new();
     for (k, piece) in pieces.iter().enumerate() {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a positive count")]
         let count = (piece.length() / step).ceil().max(1.0) as usize;
         points.extend((0..count).map(|i| (piece.point(i as f64 / count as f64), k)));
     }

@@ -1,2 +1,0 @@
-mod windows;
-mod report;
