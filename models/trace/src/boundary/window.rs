@@ -2,6 +2,9 @@
 //!
 //! Windows lie along columns where the boundary is flat and along rows where it is steep, one per pixel of its length.
 
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
+
 use dvp_core::Vec2;
 use dvp_core::contour::Heading;
 

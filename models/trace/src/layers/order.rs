@@ -86,7 +86,7 @@ fn add_enclosures(partition: &Partition, rings: &[Vec<Ring>], background: u32, c
         let around: Vec<u32> = neighbors_along(rings.iter().take(1));
         let lies_on_back = |other: &u32| neighbors[*other as usize].iter().any(|&next| next == background);
         if is_back(face as u32) && (clear || around.iter().all(lies_on_back)) {
-            let bits = if clear { f64::MAX.sqrt() } else { tuning::ENCLOSED_VOTE };
+            let bits = if clear { 1e9 } else { tuning::ENCLOSED_VOTE };
             for neighbor in around {
                 *votes.entry((neighbor, face as u32)).or_default() += bits;
             }
