@@ -232,18 +232,19 @@ fn index(end: End) -> u32 {
 const LEAST_MARKS: usize = 3;
 
 impl Branch {
-    /// Where the branch ends, and which way it points there, out of the branch.
-    pub(super) fn tip(&self, end: End) -> (Vec2<f64>, Vec2<f64>) {
+    /// Where the branch ends, which way it points there, out of the branch, and by how much it turns per pixel, toward that end.
+    pub(super) fn tip(&self, end: End) -> (Vec2<f64>, Vec2<f64>, f64) {
         let count = self.centers.len();
         let nth = |k: usize| {
             let k = k.min(count.saturating_sub(1));
             self.centers.get(if end % 2 == 1 { count - 1 - k } else { k })
         };
-        let (Some(tip), Some(inner), Some(far)) = (nth(0), nth(1), nth(4)) else { return Default::default() };
-        let chord = tip.point - far.point;
-        // Across the windows' normals, which the bend of the line turns less than a chord, but for the side of the chord.
-        let along = -(inner.axis + nth(2).unwrap_or(inner).axis).perp();
-        let along = if along.dot(chord) < 0.0 { -along } else { along };
-        (tip.point, along.normalized().or_else(|| chord.normalized()).unwrap_or_default())
+        let (Some(tip), Some(inner), Some(far)) = (nth(0), nth(2), nth(10)) else { return Default::default() };
+        // Across the axes: bends turn them less than chords; out of the branch.
+        let out = |at: &Sample, chord: Vec2<f64>| at.axis.perp() * 1f64.copysign(at.axis.perp().dot(chord));
+        let [near, away] = [inner, far].map(|at| out(at, tip.point - nth(4).unwrap_or(at).point));
+        let length = (inner.point - far.point).length();
+        let bend = if length > 3.0 { away.cross(near).atan2(away.dot(near)) / length } else { 0.0 };
+        (tip.point, near, bend)
     }
 }

@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 
 use dvp_core::Vec2;
-use dvp_core::shape::{Cap, PathRing};
+use dvp_core::shape::{Cap, PathRing, Piece, Segment};
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
@@ -115,24 +115,43 @@ fn ends([from, out]: [Vec2<f64>; 2], marks: &[&Mark], half: f64) -> [(Vec2<f64>,
 
 /// Lets a line that ends at a junction go on, or end earlier, on the center line of another.
 fn run_into(drawing: &mut Drawing, line: usize, at_finish: bool) -> Option<()> {
-    const PLACES: u8 = 24;
     let own = drawing.lines.get(line)?;
     let [from, out] = tip(&own.ring, at_finish)?;
-    let skipped = (line, if at_finish { own.pieces.len() - 1 } else { 0 });
-    let place = |reach: f64| from + out * (reach * drawing.half_width);
-    let distance = |reach: f64| drawing.distance(place(reach), skipped);
-    let reaches = (0..=PLACES).map(|k| f64::from(k) * 3.0 / f64::from(PLACES));
-    let mut reach = reaches.min_by(|&a, &b| distance(a).total_cmp(&distance(b)))?;
-    // Toward a line the distance falls in proportion: bisection on the sign of its change, down to a hundredth of a pixel.
-    let mut step = 1.5 / f64::from(PLACES);
-    while step * drawing.half_width > 0.005 {
+    let skipped = if at_finish { own.pieces.len() - 1 } else { 0 };
+    let piece = *own.pieces.get(skipped)?;
+    let length = piece.length();
+    let straight = |reach: f64| from + out * reach;
+    let around = |reach: f64| piece.point(if at_finish { 1.0 + reach / length } else { -reach / length });
+    let distance = |point: Vec2<f64>| drawing.distance(point, (line, skipped));
+    let mut ring = own.ring.clone();
+    let to = nearest_ahead(&straight, &distance, drawing.half_width);
+    // Arcs go on as arcs if that leads there.
+    let bent = matches!(piece, Piece::Arc { .. }).then(|| nearest_ahead(&around, &distance, drawing.half_width));
+    match bent {
+        Some(bent) if distance(bent) < 0.1 * drawing.half_width => move_tip(&mut ring, at_finish, bent),
+        Some(_) if (to - from).dot(out) > 0.0 => {
+            let end = if at_finish { ring.points.len() } else { 0 };
+            ring.points.insert(end, to.to_array());
+            ring.segments.insert(if at_finish { end - 1 } else { 0 }, Segment::Line);
+        }
+        _ => move_tip(&mut ring, at_finish, to),
+    }
+    *drawing.lines.get_mut(line)? = own.with_ring(ring)?;
+    Some(())
+}
+
+/// The place along a way from an end that is nearest to something: from half a width back to one and a half ahead.
+fn nearest_ahead(place: &dyn Fn(f64) -> Vec2<f64>, distance: &dyn Fn(Vec2<f64>) -> f64, half: f64) -> Vec2<f64> {
+    const PLACES: u8 = 24;
+    let distance = |reach: f64| distance(place(reach));
+    let reaches = (0..=PLACES).map(|k| (f64::from(k) * 4.0 / f64::from(PLACES) - 1.0) * half);
+    let mut reach = reaches.min_by(|&a, &b| distance(a).total_cmp(&distance(b))).unwrap_or_default();
+    // Toward a line the distance falls in proportion: halving steps, down to a hundredth of a pixel.
+    let mut step = half * 2.0 / f64::from(PLACES);
+    while step > 0.005 {
         let [ahead, behind, here] = [reach + step, reach - step, reach].map(distance);
         reach = if ahead < here { reach + step } else if behind < here { reach - step } else { reach };
         step *= 0.5;
     }
-    let to = place(reach);
-    let mut ring = own.ring.clone();
-    move_tip(&mut ring, at_finish, to);
-    *drawing.lines.get_mut(line)? = own.with_ring(ring)?;
-    Some(())
+    place(reach)
 }

@@ -28,13 +28,13 @@ mod thin;
 
 use alloc::vec::Vec;
 
-use dvp_core::shape::{Cap, Join, Stroke};
+use dvp_core::shape::{Cap, Join, Segment, Stroke};
 
 use crate::ruler::Ruler;
 use crate::sample::RingSamples;
 use crate::tuning;
 use border::Border;
-use draw::{Drawing, MITER_LIMIT};
+use draw::{Drawing, Line, MITER_LIMIT};
 
 pub use thin::{ThinSample, fit_thin};
 
@@ -50,7 +50,10 @@ pub struct StrokeFit {
 }
 
 /// The strokes that drew a face, given the samples of its outer boundary and of its holes; none if the face is not that wide
-/// everywhere, or its boundary is not that of such strokes.
+/// everywhere, or its boundary is not that of such strokes, or they are one bar, which a rectangle says as well.
+///
+/// How far samples are off is measured on the face itself: the width of a pen does not change. Both prices are by that noise,
+/// which may be more than what the samples say of themselves.
 #[must_use]
 pub fn fit_strokes(rings: &[RingSamples], ruler: &Ruler) -> Option<StrokeFit> {
     let mut border = Border::new(rings);
@@ -59,7 +62,9 @@ pub fn fit_strokes(rings: &[RingSamples], ruler: &Ruler) -> Option<StrokeFit> {
     border.marks.iter_mut().for_each(|mark| mark.sigma = mark.sigma.max(skeleton.noise.single));
     let chains = chain::chains(&border, &skeleton);
     let mut drawing = center::lines(&border, &chains, skeleton.width, ruler)?;
-    if drawing.lines.is_empty() {
+    // A straight line with straight ends is a rectangle.
+    let is_bar = |line: &Line| line.cap == Cap::Butt && matches!(line.ring.segments[..], [Segment::Line]);
+    if matches!(&drawing.lines[..], []) || matches!(&drawing.lines[..], [line] if is_bar(line)) {
         return None;
     }
     refine::choose_join(&mut drawing, &border);

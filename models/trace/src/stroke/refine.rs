@@ -42,6 +42,22 @@ struct Miss {
     gap: f64,
     line: usize,
     foot: Foot,
+    /// Whether the window of the mark holds a corner: it tells of neither side.
+    is_spoiled: bool,
+}
+
+impl Miss {
+    /// In sigmas of the mark, and the weight of its square in a robust sum: none where it tells nothing.
+    fn sigmas(&self, border: &Border) -> (f64, f64) {
+        let sigmas = self.gap / border.marks[self.mark].sigma;
+        let weight = if self.is_spoiled { 0.0 } else { (tuning::OUTLINE_HUBER / sigmas.abs()).min(1.0) };
+        (sigmas, weight)
+    }
+
+    /// Its share of the robust sum of squares; as much as a good one is expected to miss by where it tells nothing.
+    fn chi2(&self, border: &Border) -> f64 {
+        if self.is_spoiled { 1.0 } else { huber(self.gap / border.marks[self.mark].sigma) }
+    }
 }
 
 /// The drawing near this one that misses the marks least; none if nothing can be computed.
@@ -86,40 +102,36 @@ pub(super) fn refine(mut drawing: Drawing, border: &Border, offset: f64, ruler: 
 
 fn misses(drawing: &Drawing, border: &Border) -> Option<Vec<Miss>> {
     let miss = |(mark, place): (usize, Vec2<f64>)| {
-        drawing.gap(place).map(|(gap, line, foot)| Miss { mark, gap, line, foot })
+        let (line, reading) = drawing.reading(place)?;
+        Some(Miss { mark, gap: reading.gap, line, foot: reading.foot, is_spoiled: reading.is_spoiled() })
     };
     border.marks.iter().map(|mark| mark.point).enumerate().map(miss).collect()
 }
 
-/// The weight that a robust sum of squares gives to a misfit of so many sigmas.
-fn weight(sigmas: f64) -> f64 {
-    (tuning::OUTLINE_HUBER / sigmas.abs()).min(1.0)
-}
-
-pub(super) fn chi2_of(sigmas: f64) -> f64 {
-    let weight = weight(sigmas);
-    sigmas * sigmas * weight * (2.0 - weight)
-}
-
 fn chi2(border: &Border, misses: &[Miss]) -> f64 {
-    misses.iter().map(|miss| chi2_of(miss.gap / border.marks[miss.mark].sigma)).sum()
+    misses.iter().map(|miss| miss.chi2(border)).sum()
 }
 
-/// The same if all marks of a block are off by a common `offset` (a standard deviation) beside what each is off by itself.
+/// The same if marks side by side are off by something in common, of standard deviation `offset`, beside what each is off by itself.
 fn chi2_of_blocks(border: &Border, misses: &[Miss], offset: f64) -> f64 {
+    let stretches = misses.chunk_by(|a, b| a.line == b.line && a.foot.is_beside(b.foot));
+    let blocks = stretches.flat_map(|stretch| stretch.chunks(BLOCK));
     let of_block = |block: &[Miss]| {
-        let (mut squares, mut sum, mut precision) = (0.0, 0.0, 0.0);
-        for miss in block {
-            let sigma = border.marks[miss.mark].sigma;
-            let weight = weight(miss.gap / sigma) / (sigma * sigma);
-            squares += chi2_of(miss.gap / sigma);
-            sum += weight * miss.gap;
-            precision += weight;
-        }
-        // Woodbury's formula for the inverse of a diagonal covariance plus a constant.
-        squares - sum * sum / (precision + offset.powi(-2))
+        let mut gaps: Vec<_> = block.iter().filter(|miss| !miss.is_spoiled).map(|miss| miss.gap).collect();
+        let middle = gaps.len() / 2;
+        let sigma = border.marks[block[block.len() / 2].mark].sigma;
+        let share = gaps.len() as f64 * offset * offset / (gaps.len() as f64 * offset * offset + sigma * sigma);
+        let common = if gaps.is_empty() { 0.0 } else { share * *gaps.select_nth_unstable_by(middle, f64::total_cmp).1 };
+        let singles = block.iter().map(|miss| Miss { gap: miss.gap - common, ..*miss }.chi2(border));
+        singles.sum::<f64>() + huber(common / offset)
     };
-    misses.chunks(BLOCK).map(of_block).sum()
+    blocks.map(of_block).sum()
+}
+
+/// The share of a misfit of so many sigmas in a robust sum of squares.
+fn huber(sigmas: f64) -> f64 {
+    let weight = (tuning::OUTLINE_HUBER / sigmas.abs()).min(1.0);
+    sigmas * sigmas * weight * (2.0 - weight)
 }
 
 fn numbers(ring: &PathRing<f64>) -> (Path<f64>, Vec<f64>) {
@@ -170,9 +182,9 @@ fn equations(drawing: &Drawing, border: &Border, misses: &[Miss]) -> Option<(Sky
             if !matches!(miss.foot, Foot::Face { .. }) {
                 slopes.push((count - 1, -1.0 / sigma));
             }
-            let weight = weight(miss.gap / sigma);
+            let (sigmas, weight) = miss.sigmas(border);
             normal.add_outer(&slopes, weight);
-            slopes.iter().for_each(|&(place, slope)| right[place] -= weight * slope * miss.gap / sigma);
+            slopes.iter().for_each(|&(place, slope)| right[place] -= weight * slope * sigmas);
         }
         first += counts[index];
     }
