@@ -113,7 +113,7 @@ fn measure(hits: &[Option<Hit>], width: f64) -> (f64, Noise) {
     // Blocks at ends of bends have jumps: the median.
     let mut singles: Vec<_> = blocks.iter().map(|block| (0.5 * block.1).sqrt()).collect();
     let single = median(&mut singles).unwrap_or(0.0);
-    (width, Noise { single: single.min(tuning::STROKE_OFFSET), block: block.min(tuning::STROKE_OFFSET) })
+    (width, Noise { single: single.min(tuning::STROKE_OFFSET), block: block.clamp(0.5 * tuning::STROKE_OFFSET, tuning::STROKE_OFFSET) })
 }
 
 /// Branches on the way.
