@@ -68,8 +68,11 @@ pub fn fit_strokes(rings: &[RingSamples], ruler: &Ruler) -> Option<StrokeFit> {
         return None;
     }
     refine::choose_join(&mut drawing, &border);
+    if refine::strays(&drawing, &border, 2.0 * tuning::STROKE_STRAY) > tuning::STROKE_MOST_LOOSE {
+        return None;
+    }
     let refined = refine::refine(drawing, &border, skeleton.noise.block, ruler)?;
-    if refined.strays > tuning::STROKE_MOST_STRAYS {
+    if refine::strays(&refined.drawing, &border, tuning::STROKE_STRAY) > tuning::STROKE_MOST_STRAYS {
         return None;
     }
     Some(StrokeFit { strokes: strokes(&refined.drawing), bits: refined.bits, misfit: ruler.misfit(refined.chi2) })

@@ -30,8 +30,6 @@ pub(super) struct Refined {
     pub(super) drawing: Drawing,
     /// Sum of squared misfits of the marks by their covariance; beyond [`tuning::OUTLINE_HUBER`] sigmas it grows linearly.
     pub(super) chi2: f64,
-    /// Share of the marks that are off by more than [`tuning::STROKE_STRAY`].
-    pub(super) strays: f64,
     /// Bits of the numbers, each given those before it.
     pub(super) bits: f64,
 }
@@ -91,13 +89,18 @@ pub(super) fn refine(mut drawing: Drawing, border: &Border, offset: f64, ruler: 
     run_together(&mut drawing);
     drawing.lines.iter_mut().for_each(|line| line.is_covered = [false; 2]);
     let misses = self::misses(&drawing, border)?;
-    let strays = misses.iter().filter(|miss| miss.gap.abs() > tuning::STROKE_STRAY).count() as f64;
     Some(Refined {
         chi2: chi2_of_blocks(border, &misses, offset),
-        strays: strays / border.marks.len() as f64,
         bits,
         drawing,
     })
+}
+
+/// Share of the marks that are further than `far` from what is drawn.
+pub(super) fn strays(drawing: &Drawing, border: &Border, far: f64) -> f64 {
+    let misses = misses(drawing, border).unwrap_or_default();
+    let strays = misses.iter().filter(|miss| miss.gap.abs() > far).count();
+    if misses.is_empty() { 1.0 } else { strays as f64 / misses.len() as f64 }
 }
 
 fn misses(drawing: &Drawing, border: &Border) -> Option<Vec<Miss>> {
