@@ -178,6 +178,12 @@ pub(super) fn gap(pieces: &[Piece<f64>], foot: Foot, point: Vec2<f64>, half: f64
 }
 
 impl Drawing {
+    /// The same with all that is drawn of its ends to be measured.
+    pub(super) fn uncovered(&self) -> Self {
+        let lines = self.lines.iter().map(|line| Line { is_covered: [false; 2], ..line.clone() }).collect();
+        Self { lines, ..*self }
+    }
+
     /// Where the outline of everything that is drawn is nearest to a point, and on which line.
     pub(super) fn reading(&self, point: Vec2<f64>) -> Option<(usize, Reading)> {
         let mut least: Option<(usize, Reading)> = None;

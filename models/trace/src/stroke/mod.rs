@@ -7,6 +7,7 @@
 //! | `branch` | marks that face each other a width apart | branches, and the nodes where they end |
 //! | `chain` | branches, nodes | chains through junctions and around corners |
 //! | `center` | chains of center points | lines of lines, arcs and cubics, with their ends |
+//! | `bend` | lines with corners | arcs where the outer side of the boundary cuts past them |
 //! | `piece`, `draw` | lines, a width | how far a point is outside of what they draw |
 //! | `refine` | lines, marks | all numbers at once, what they miss and what they cost |
 //! | `thin` | positions across lines without pure pixels | strokes |
@@ -15,6 +16,7 @@
 //! its right, going, and once more, coming back. What follows what on the boundary is the order of lines around their junctions;
 //! no skeleton of pixels is needed, and every position keeps the precision of the samples.
 
+mod bend;
 mod border;
 mod branch;
 mod center;
@@ -34,6 +36,7 @@ use crate::ruler::Ruler;
 use crate::sample::RingSamples;
 use crate::tuning;
 use border::Border;
+use refine::Refined;
 use draw::{Drawing, Line, MITER_LIMIT};
 
 pub use thin::{ThinSample, fit_thin};
@@ -71,7 +74,13 @@ pub fn fit_strokes(rings: &[RingSamples], ruler: &Ruler) -> Option<StrokeFit> {
     if refine::strays(&drawing, &border, 2.0 * tuning::STROKE_STRAY) > tuning::STROKE_MOST_LOOSE {
         return None;
     }
-    let refined = refine::refine(drawing, &border, skeleton.noise.block, ruler)?;
+    let price = |refined: &Refined| refined.bits + ruler.misfit(refined.chi2);
+    let mut refined = refine::refine(drawing, &border, skeleton.noise.block, ruler)?;
+    let bent = bend::round_corners(&refined.drawing, &border);
+    let bent = bent.and_then(|bent| refine::refine(bent, &border, skeleton.noise.block, ruler));
+    if let Some(bent) = bent.filter(|bent| price(bent) < price(&refined)) {
+        refined = bent;
+    }
     if refine::strays(&refined.drawing, &border, tuning::STROKE_STRAY) > tuning::STROKE_MOST_STRAYS {
         return None;
     }

@@ -87,8 +87,7 @@ pub(super) fn refine(mut drawing: Drawing, border: &Border, offset: f64, ruler: 
     let bits = number_bits(&drawing, &equations.0.factor(0.0, ridge)?, ruler);
     // What is drawn in the end is measured whole, ends that other lines hide included.
     run_together(&mut drawing);
-    drawing.lines.iter_mut().for_each(|line| line.is_covered = [false; 2]);
-    let misses = self::misses(&drawing, border)?;
+    let misses = self::misses(&drawing.uncovered(), border)?;
     Some(Refined {
         chi2: chi2_of_blocks(border, &misses, offset),
         bits,
@@ -98,7 +97,7 @@ pub(super) fn refine(mut drawing: Drawing, border: &Border, offset: f64, ruler: 
 
 /// Share of the marks that are further than `far` from what is drawn.
 pub(super) fn strays(drawing: &Drawing, border: &Border, far: f64) -> f64 {
-    let misses = misses(drawing, border).unwrap_or_default();
+    let misses = misses(&drawing.uncovered(), border).unwrap_or_default();
     let strays = misses.iter().filter(|miss| miss.gap.abs() > far).count();
     if misses.is_empty() { 1.0 } else { strays as f64 / misses.len() as f64 }
 }
