@@ -87,7 +87,8 @@ pub(super) fn skeleton(border: &Border, width: f64) -> Skeleton {
         .map(|mark| border.across(mark, limit).filter(|hit| is_as_wide(hit.distance, width)))
         .collect();
     let (width, noise) = measure(&hits, width);
-    let mut sides = Sides { border, hits: &hits, labels: vec![None; hits.len()], branches: Vec::new(), lasts: Vec::new() };
+    let mut sides =
+        Sides { border, hits: &hits, labels: vec![None; hits.len()], branches: Vec::new(), lasts: Vec::new() };
     let mut start = 0;
     while start < hits.len() {
         start = sides.take(start);
@@ -105,7 +106,8 @@ fn measure(hits: &[Option<Hit>], width: f64) -> (f64, Noise) {
         let squares: f64 = block.iter().flatten().map(|hit| (hit.distance - mean).powi(2)).sum();
         block.iter().all(Option::is_some).then_some((mean, squares / (count - 1.0)))
     };
-    let blocks: Vec<_> = hits.chunks_exact(BLOCK).filter_map(spread).filter(|block| (block.0 - width).abs() < 0.5).collect();
+    let blocks: Vec<_> =
+        hits.chunks_exact(BLOCK).filter_map(spread).filter(|block| (block.0 - width).abs() < 0.5).collect();
     let count = blocks.len() as f64;
     let width = if blocks.is_empty() { width } else { blocks.iter().map(|block| block.0).sum::<f64>() / count };
     let squares: f64 = blocks.iter().map(|block| 0.5 * (block.0 - width).powi(2)).sum();
@@ -113,7 +115,13 @@ fn measure(hits: &[Option<Hit>], width: f64) -> (f64, Noise) {
     // Blocks at ends of bends have jumps: the median.
     let mut singles: Vec<_> = blocks.iter().map(|block| (0.5 * block.1).sqrt()).collect();
     let single = median(&mut singles).unwrap_or(0.0);
-    (width, Noise { single: single.min(tuning::STROKE_OFFSET), block: block.clamp(0.5 * tuning::STROKE_OFFSET, tuning::STROKE_OFFSET) })
+    (
+        width,
+        Noise {
+            single: single.min(tuning::STROKE_OFFSET),
+            block: block.clamp(0.5 * tuning::STROKE_OFFSET, tuning::STROKE_OFFSET),
+        },
+    )
 }
 
 /// Branches on the way.
@@ -142,19 +150,18 @@ impl Sides<'_> {
         let (mut last, mut hit) = (start, first);
         let mut back = 0.0;
         while let Some(next) = self.free(last + 1).copied() {
-            let Some(steps) = self.border.steps_back(&hit, &next).filter(|&steps| self.goes_on(last, &hit, &next, steps)) else {
+            let Some(steps) =
+                self.border.steps_back(&hit, &next).filter(|&steps| self.goes_on(last, &hit, &next, steps))
+            else {
                 break;
             };
             (last, hit, back) = (last + 1, next, back + steps);
         }
-        // Marks on the far side, all between the first and the last hit.
-        let far = (first.place() - back).ceil() as isize;
-        let far_count = first.place().floor() as isize - far + 1;
-        if last < start + LEAST_MARKS - 1 || far_count < 1 {
+        let far = self.border.before(&first, back);
+        if last < start + LEAST_MARKS - 1 || far.is_empty() {
             return last + 1;
         }
         let end = 2 * self.branches.len();
-        let far: Vec<_> = self.border.span(first.mark, far, far_count.unsigned_abs()).collect();
         for mark in start..=last {
             self.labels[mark] = Some(end + 1);
         }

@@ -68,7 +68,8 @@ fn center_line(chain: &Chain, width: f64, ruler: &Ruler) -> Option<PathRing<f64>
         let samples = RingSamples { runs: alloc::vec![chain.stretches.first()?.clone()], closed: true };
         return Some(fit_closed(&samples, ruler)?.shape.ring());
     }
-    let mut stretches = chain.stretches.iter().map(|samples| Some(fit_open(samples, ruler)?.path)).collect::<Option<Vec<_>>>()?;
+    let mut stretches =
+        chain.stretches.iter().map(|samples| Some(fit_open(samples, ruler)?.path)).collect::<Option<Vec<_>>>()?;
     let count = stretches.len();
     let corners = if chain.is_closed { count } else { count - 1 };
     for i in 0..corners {
@@ -95,9 +96,13 @@ fn center_line(chain: &Chain, width: f64, ruler: &Ruler) -> Option<PathRing<f64>
 /// Where a round and a butt end would be, given the end of the line so far and the marks beyond it, and what these miss them by:
 /// the sum of squares.
 fn ends([from, out]: [Vec2<f64>; 2], marks: &[&Mark], half: f64) -> [(Vec2<f64>, f64); 2] {
-    let places: Vec<_> = marks.iter().map(|mark| ((mark.point - from).dot(out), (mark.point - from).cross(out).abs())).collect();
+    let places: Vec<_> =
+        marks.iter().map(|mark| ((mark.point - from).dot(out), (mark.point - from).cross(out).abs())).collect();
     // The reach of the disk of each mark that is on its front.
-    let fronts = places.iter().filter(|place| place.1 < 0.8 * half).map(|place| place.0 - (half * half - place.1 * place.1).sqrt());
+    let fronts = places
+        .iter()
+        .filter(|place| place.1 < 0.8 * half)
+        .map(|place| place.0 - (half * half - place.1 * place.1).sqrt());
     let faces = places.iter().filter(|place| place.1 < half - 1.0).map(|place| place.0);
     let reach = |of: Vec<f64>, tip: f64| {
         if of.is_empty() { tip } else { of.iter().sum::<f64>() / of.len() as f64 }
@@ -108,7 +113,8 @@ fn ends([from, out]: [Vec2<f64>; 2], marks: &[&Mark], half: f64) -> [(Vec2<f64>,
     let misses = |gap: &dyn Fn(f64, f64) -> f64| -> f64 {
         places.iter().zip(marks).map(|(place, mark)| (gap(place.0, place.1) / mark.sigma).powi(2)).sum()
     };
-    let miss_round = misses(&|along, aside| if along > round { (along - round).hypot(aside) - half } else { aside - half });
+    let miss_round =
+        misses(&|along, aside| if along > round { (along - round).hypot(aside) - half } else { aside - half });
     let miss_butt = misses(&|along, aside| (along - butt).max(aside - half));
     [(from + out * round, miss_round), (from + out * butt, miss_butt)]
 }
@@ -150,7 +156,13 @@ fn nearest_ahead(place: &dyn Fn(f64) -> Vec2<f64>, distance: &dyn Fn(Vec2<f64>) 
     let mut step = half * 2.0 / f64::from(PLACES);
     while step > 0.005 {
         let [ahead, behind, here] = [reach + step, reach - step, reach].map(distance);
-        reach = if ahead < here { reach + step } else if behind < here { reach - step } else { reach };
+        reach = if ahead < here {
+            reach + step
+        } else if behind < here {
+            reach - step
+        } else {
+            reach
+        };
         step *= 0.5;
     }
     place(reach)

@@ -166,7 +166,8 @@ fn link(border: &Border, branches: &[Branch], node: &Node, passage: Passage, wid
             let steps = bend.iter().zip(bend.iter().skip(1));
             let passes = steps.map(|(a, b)| LineSegment::new(a.point, b.point).nearest(corner).distance());
             let rounded = 0.5 * (to - from).length() * (0.25 * passage.turn).tan();
-            is_corner = passes.fold(f64::INFINITY, f64::min) < 0.1 * rounded + 2.0 * tuning::STROKE_OFFSET || bend.is_empty();
+            is_corner =
+                passes.fold(f64::INFINITY, f64::min) < 0.1 * rounded + 2.0 * tuning::STROKE_OFFSET || bend.is_empty();
         }
         if is_corner {
             bend.clear();
@@ -201,7 +202,11 @@ impl Walk<'_> {
         while !core::mem::replace(self.is_used.get_mut(at / 2)?, true) {
             let centers = &self.branches.get(at / 2)?.centers;
             let stretch = stretches.last_mut()?;
-            if at % 2 == 0 { stretch.extend(centers) } else { stretch.extend(centers.iter().rev()) }
+            if at % 2 == 0 {
+                stretch.extend(centers)
+            } else {
+                stretch.extend(centers.iter().rev())
+            }
             at ^= 1;
             let Some(link) = self.links.get(at)?.as_ref() else { break };
             stretch.extend(&link.bend);

@@ -82,7 +82,13 @@ impl Line {
     pub(super) fn new(ring: PathRing<f64>, cap: Cap) -> Option<Self> {
         let pieces = pieces(&ring);
         let disks = pieces.iter().map(disk).collect();
-        (!pieces.is_empty() && pieces.len() == ring.segments.len()).then_some(Self { ring, cap, is_covered: [false; 2], pieces, disks })
+        (!pieces.is_empty() && pieces.len() == ring.segments.len()).then_some(Self {
+            ring,
+            cap,
+            is_covered: [false; 2],
+            pieces,
+            disks,
+        })
     }
 
     /// The same line with another center line of as many pieces.
@@ -111,7 +117,10 @@ impl Line {
             return Some(match self.cap {
                 Cap::Butt if !self.is_covered[usize::from(at_finish)] => {
                     let side = if is_end { Foot::Tangent { piece, t } } else { body.foot };
-                    other(Foot::Face { at_finish }, Reading { gap: gap(&self.pieces, side, point, half), foot: side, ..body })
+                    other(
+                        Foot::Face { at_finish },
+                        Reading { gap: gap(&self.pieces, side, point, half), foot: side, ..body },
+                    )
                 }
                 _ => body,
             });
@@ -126,7 +135,8 @@ impl Line {
         let next = near.iter().skip(1).find(|&&(_, other, at)| {
             let joins = [false, true].into_iter().filter(|&finish| self.neighbor(piece, finish) == Some(other));
             let ends = joins.map(|finish| (f64::from(u8::from(finish)), f64::from(u8::from(!finish))));
-            let mut ends = ends.filter(|&(own, end)| at == end || !self.is_corner([(piece, own), (other, end)]));
+            let mut ends = ends
+                .filter(|&(own, end)| (at - end).abs() < f64::EPSILON || !self.is_corner([(piece, own), (other, end)]));
             ends.next().is_none()
         });
         Some(Reading { next: next.map_or(f64::INFINITY, |next| next.0 - half), ..body })
@@ -159,7 +169,7 @@ impl Reading {
 
     /// Whether a corner of the outline is so near that a window there shows both of its sides.
     pub(super) fn is_spoiled(&self) -> bool {
-        (self.next - self.gap).abs() < WINDOW && self.gap.abs() < 2.0 * WINDOW
+        (self.next - self.gap).abs() < WINDOW && self.gap.abs() < 0.5 * WINDOW
     }
 }
 
@@ -167,9 +177,9 @@ impl Reading {
 pub(super) fn gap(pieces: &[Piece<f64>], foot: Foot, point: Vec2<f64>, half: f64) -> f64 {
     match foot {
         Foot::Body { piece, t } => pieces.get(piece).map_or(0.0, |piece| (point - piece.point(t)).length() - half),
-        Foot::Tangent { piece, t } => pieces
-            .get(piece)
-            .map_or(0.0, |piece| (point - piece.point(t)).cross(direction(piece, t)).abs() - half),
+        Foot::Tangent { piece, t } => {
+            pieces.get(piece).map_or(0.0, |piece| (point - piece.point(t)).cross(direction(piece, t)).abs() - half)
+        }
         Foot::Face { at_finish } => {
             let (piece, t, sign) = if at_finish { (pieces.last(), 1.0, 1.0) } else { (pieces.first(), 0.0, -1.0) };
             piece.map_or(0.0, |piece| (point - piece.point(t)).dot(direction(piece, t)) * sign)
@@ -201,7 +211,11 @@ impl Drawing {
 
     /// The distance from a point to the nearest center line; `skipped` is a line and a piece of it that do not count.
     pub(super) fn distance(&self, point: Vec2<f64>, skipped: (usize, usize)) -> f64 {
-        let all = self.lines.iter().enumerate().flat_map(|(i, line)| line.pieces.iter().enumerate().map(move |(k, piece)| ((i, k), piece)));
+        let all = self
+            .lines
+            .iter()
+            .enumerate()
+            .flat_map(|(i, line)| line.pieces.iter().enumerate().map(move |(k, piece)| ((i, k), piece)));
         let others = all.filter(|&(place, _)| place != skipped);
         others.map(|(_, piece)| (point - piece.point(nearest(piece, point))).length()).fold(f64::INFINITY, f64::min)
     }

@@ -36,8 +36,8 @@ use crate::ruler::Ruler;
 use crate::sample::RingSamples;
 use crate::tuning;
 use border::Border;
-use refine::Refined;
 use draw::{Drawing, Line, MITER_LIMIT};
+use refine::Refined;
 
 pub use thin::{ThinSample, fit_thin};
 
@@ -70,16 +70,19 @@ pub fn fit_strokes(rings: &[RingSamples], ruler: &Ruler) -> Option<StrokeFit> {
     if matches!(&drawing.lines[..], []) || matches!(&drawing.lines[..], [line] if is_bar(line)) {
         return None;
     }
-    refine::choose_join(&mut drawing, &border);
+    // Without corners and ends to go by, lines with straight ends have mitered corners.
+    drawing.is_mitered = drawing.lines.iter().any(|line| line.cap == Cap::Butt);
     if refine::strays(&drawing, &border, 2.0 * tuning::STROKE_STRAY) > tuning::STROKE_MOST_LOOSE {
         return None;
     }
     let price = |refined: &Refined| refined.bits + ruler.misfit(refined.chi2);
-    let mut refined = refine::refine(drawing, &border, skeleton.noise.block, ruler)?;
-    let bent = bend::round_corners(&refined.drawing, &border);
-    let bent = bent.and_then(|bent| refine::refine(bent, &border, skeleton.noise.block, ruler));
-    if let Some(bent) = bent.filter(|bent| price(bent) < price(&refined)) {
-        refined = bent;
+    let refine = |drawing: Drawing| refine::refine(drawing, &border, skeleton.noise.block, ruler);
+    let mut refined = refine(drawing)?;
+    for propose in [refine::other_join, bend::round_corners] {
+        let other = propose(&refined.drawing, &border).and_then(refine);
+        if let Some(other) = other.filter(|other| price(other) < price(&refined)) {
+            refined = other;
+        }
     }
     if refine::strays(&refined.drawing, &border, tuning::STROKE_STRAY) > tuning::STROKE_MOST_STRAYS {
         return None;

@@ -21,6 +21,8 @@ use crate::tuning;
 const MOST_STEPS: usize = 8;
 /// A step that lowers the sum of squares by less, per mark, ends it.
 const LEAST_GAIN: f64 = 1e-3;
+/// Price of ends and corners that do not go together, one drawing in sixteen.
+const RARE_BITS: f64 = 5.0;
 /// Step of differences, pixels.
 const STEP: f64 = 1e-6;
 
@@ -88,11 +90,7 @@ pub(super) fn refine(mut drawing: Drawing, border: &Border, offset: f64, ruler: 
     // What is drawn in the end is measured whole, ends that other lines hide included.
     run_together(&mut drawing);
     let misses = self::misses(&drawing.uncovered(), border)?;
-    Some(Refined {
-        chi2: chi2_of_blocks(border, &misses, offset),
-        bits,
-        drawing,
-    })
+    Some(Refined { chi2: chi2_of_blocks(border, &misses, offset), bits, drawing })
 }
 
 /// Share of the marks that are further than `far` from what is drawn.
@@ -207,7 +205,13 @@ fn slopes(line: &Line, half: f64, border: &Border, misses: &[&Miss]) -> Vec<Vec<
         for (slopes, miss) in slopes.iter_mut().zip(misses) {
             let piece = match miss.foot {
                 Foot::Body { piece, .. } | Foot::Tangent { piece, .. } => piece,
-                Foot::Face { at_finish } => if at_finish { is_moved.len() - 1 } else { 0 },
+                Foot::Face { at_finish } => {
+                    if at_finish {
+                        is_moved.len() - 1
+                    } else {
+                        0
+                    }
+                }
             };
             if is_moved.get(piece) == Some(&true) {
                 let point = border.marks[miss.mark].point;
@@ -237,17 +241,15 @@ fn number_bits(drawing: &Drawing, factor: &Skyline, ruler: &Ruler) -> f64 {
             };
         }
     }
-    // The width itself, which is twice the half; the cap and the join are one of two each.
-    bits + price(2.0) + 2.0
+    // The width itself, which is twice the half; the cap is one of two, and round ends rarely come with sharp corners.
+    let is_rare = drawing.lines.iter().all(|line| (line.cap == Cap::Round) == drawing.is_mitered);
+    bits + price(2.0) + if is_rare { RARE_BITS } else { 1.0 }
 }
 
-/// Whether corners go on until their sides meet, by what the marks miss either way.
-pub(super) fn choose_join(drawing: &mut Drawing, border: &Border) {
+/// The same drawing with the other kind of corners, if there are such and they do not speak clearly against it.
+pub(super) fn other_join(drawing: &Drawing, border: &Border) -> Option<Drawing> {
     let sum = |drawing: &Drawing| misses(drawing, border).map_or(f64::INFINITY, |misses| chi2(border, &misses));
-    let round = sum(drawing);
-    drawing.is_mitered = true;
-    let miter = sum(drawing);
-    // Without corners both are the same, and ends say which is likelier.
-    let is_butt = drawing.lines.iter().any(|line| line.cap == Cap::Butt);
-    drawing.is_mitered = if (miter - round).abs() < 1e-6 { is_butt } else { miter < round };
+    let other = Drawing { is_mitered: !drawing.is_mitered, ..drawing.clone() };
+    let (own, others) = (sum(drawing), sum(&other));
+    ((own - others).abs() > 1e-6 && others < 2.0 * own).then_some(other)
 }

@@ -1,9 +1,9 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use dvp_core::shape::{Cap, Flattening, Join, Outline, OutlineBasis, PathRing, Segment, Shape as _, Stroke};
 use dvp_core::Vec2;
 use dvp_core::geometry::LineSegment;
+use dvp_core::shape::{Cap, Flattening, Join, Outline, OutlineBasis, PathRing, Segment, Shape as _, Stroke};
 use proptest::collection::vec;
 use proptest::prelude::{ProptestConfig, prop_assert, prop_assert_eq, prop_assume, proptest};
 
@@ -46,8 +46,10 @@ fn samples_of(shapes: &[&dyn dvp_core::Shape<f64>], sigma: f64, seed: u64) -> Ve
             let (low, high) = (start.min(end).ceil() as i64, start.max(end).ceil() as i64);
             let mut places: Vec<_> = (low..high).map(|k| (k as f64 - start) / (end - start)).collect();
             places.sort_by(f64::total_cmp);
-            run.extend(places.into_iter().map(|share| {
-                Sample { point: from.lerp(to, share) + axis * (sigma * noise.normal()), axis, sigma: sigma.max(0.005) }
+            run.extend(places.into_iter().map(|share| Sample {
+                point: from.lerp(to, share) + axis * (sigma * noise.normal()),
+                axis,
+                sigma: sigma.max(0.005),
             }));
         }
         rings.push(RingSamples { runs: vec![run], closed: true });
@@ -229,7 +231,7 @@ fn thin_lines() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 48, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn polylines_come_back(
@@ -260,9 +262,17 @@ proptest! {
         let fit = fit.unwrap();
         prop_assert_eq!(fit.strokes.len(), 1);
         prop_assert!((fit.strokes[0].width - width).abs() < 0.02, "width {}", fit.strokes[0].width);
-        prop_assert_eq!((fit.strokes[0].cap, fit.strokes[0].join), (cap, join));
+        prop_assert_eq!(fit.strokes[0].cap, cap);
+        // How far the tip of the sharpest corner is from a round one.
+        let tip = |pair: &[Vec2<f64>]| {
+            let cosine = pair[0].dot(pair[1]) / (pair[0].length() * pair[1].length());
+            0.5 * width * ((0.5 * (1.0 + cosine)).sqrt().recip() - 1.0)
+        };
+        let tip = steps.windows(2).map(tip).fold(0.0, f64::max);
+        prop_assert!(fit.strokes[0].join == join || tip < 0.3, "a tip of {} px", tip);
         prop_assert_eq!(fit.strokes[0].rings.len(), 1);
         prop_assert_eq!(fit.strokes[0].rings[0].points.len(), points.len());
-        prop_assert!(apart(&[stroke], &fit.strokes) < 0.08);
+        let unseen = if fit.strokes[0].join == join { 0.0 } else { tip };
+        prop_assert!(apart(&[stroke], &fit.strokes) < 0.08 + unseen);
     }
 }
