@@ -3,8 +3,8 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use dvp_core::Vec2;
 use dvp_core::geometry::DisjointSets;
+use dvp_core::{Real, Vec2};
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
@@ -87,8 +87,15 @@ pub(super) fn skeleton(border: &Border, width: f64) -> Skeleton {
         .map(|mark| border.across(mark, limit).filter(|hit| is_as_wide(hit.distance, width)))
         .collect();
     let (width, noise) = measure(&hits, width);
-    let mut sides =
-        Sides { border, hits: &hits, labels: vec![None; hits.len()], branches: Vec::new(), lasts: Vec::new() };
+    let least_marks = Real::to_count(width / 6.0).max(3);
+    let mut sides = Sides {
+        border,
+        hits: &hits,
+        labels: vec![None; hits.len()],
+        branches: Vec::new(),
+        lasts: Vec::new(),
+        least_marks,
+    };
     let mut start = 0;
     while start < hits.len() {
         start = sides.take(start);
@@ -134,6 +141,8 @@ struct Sides<'a> {
     branches: Vec<Branch>,
     /// The last mark of each side, in the order of ends.
     lasts: Vec<usize>,
+    /// Fewer marks side by side are chance, as at the base of a round end.
+    least_marks: usize,
 }
 
 impl Sides<'_> {
@@ -158,7 +167,7 @@ impl Sides<'_> {
             (last, hit, back) = (last + 1, next, back + steps);
         }
         let far = self.border.before(&first, back);
-        if last < start + LEAST_MARKS - 1 || far.is_empty() {
+        if last + 1 < start + self.least_marks || far.is_empty() {
             return last + 1;
         }
         let end = 2 * self.branches.len();
@@ -234,9 +243,6 @@ impl Sides<'_> {
 fn index(end: End) -> u32 {
     u32::try_from(end).unwrap_or(u32::MAX)
 }
-
-/// Fewer marks side by side are chance.
-const LEAST_MARKS: usize = 3;
 
 impl Branch {
     /// Where the branch ends, which way it points there, out of the branch, and by how much it turns per pixel, toward that end.

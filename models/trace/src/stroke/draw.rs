@@ -169,7 +169,7 @@ impl Reading {
 
     /// Whether a corner of the outline is so near that a window there shows both of its sides.
     pub(super) fn is_spoiled(&self) -> bool {
-        (self.next - self.gap).abs() < WINDOW && self.gap.abs() < 0.5 * WINDOW
+        (self.next - self.gap).abs() < WINDOW && self.gap.abs() < WINDOW
     }
 }
 
