@@ -26,6 +26,9 @@ pub const STROKE_STRAY: f64 = 0.5;
 /// Strokes that leave a larger share of the samples as strays are none.
 pub const STROKE_MOST_STRAYS: f64 = 0.02;
 
+/// The same for samples twice as far from the first guess, which the refinement brings closer.
+pub const STROKE_MOST_LOOSE: f64 = 0.15;
+
 /// Positions that a renderer with quarters of pixels gives are off by this, pixels, the same along a straight edge: a quarter over the
 /// square root of 12. Only the constant width of a pen shows it.
 pub const STROKE_OFFSET: f64 = 0.072;

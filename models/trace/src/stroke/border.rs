@@ -90,7 +90,7 @@ impl Border {
                     for k in 1..=REACH {
                         let step = k.cast_signed();
                         if let (Some(before), Some(after)) = (at(i, -step), at(i, step)) {
-                            along = along + (after - before) * step as f64;
+                            along += (after - before) * step as f64;
                         }
                     }
                     if along == Vec2::default() {
@@ -144,11 +144,13 @@ impl Border {
         Some(back - turns * count)
     }
 
-    /// `count` marks from `first` on, which may lie outside of the run of the mark `anchor`: closed runs go on.
-    pub(super) fn span(&self, anchor: usize, first: isize, count: usize) -> impl Iterator<Item = usize> + use<> {
-        let range = self.marks.get(anchor).and_then(|mark| self.runs.get(mark.run)).map_or(0..1, |(range, _)| range.clone());
-        let (start, len) = (range.start.cast_signed(), range.len().cast_signed());
-        (0..count.min(range.len()).cast_signed()).map(move |k| (start + (first + k - start).rem_euclid(len)).cast_unsigned())
+    /// The marks from `back` marks before a hit up to it, in their order; closed runs go on before their start.
+    pub(super) fn before(&self, hit: &Hit, back: f64) -> Vec<usize> {
+        let range =
+            self.marks.get(hit.mark).and_then(|mark| self.runs.get(mark.run)).map_or(0..1, |(range, _)| range.clone());
+        let count = Real::to_count(hit.share + back + 1.0).min(range.len());
+        let last = hit.mark - range.start + range.len();
+        (0..count).rev().map(|k| range.start + (last - k) % range.len()).collect()
     }
 
     /// Where the ray from a mark into the face leaves it, no further than `limit`, if it meets the boundary there about at right
@@ -191,7 +193,7 @@ impl Border {
         let distance = (start + along * share).dot(mark.inward);
         // The noise of the marks beside it may put the boundary before the mark itself.
         let is_beside = from.abs_diff(step) <= REACH + 1 && distance < 0.7;
-        (share >= 0.0 && share <= 1.0 && distance > 1e-9 && !is_beside).then_some(Hit { mark: step, share, distance })
+        ((0.0..=1.0).contains(&share) && distance > 1e-9 && !is_beside).then_some(Hit { mark: step, share, distance })
     }
 }
 

@@ -3,8 +3,8 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use dvp_core::Vec2;
 use dvp_core::geometry::DisjointSets;
+use dvp_core::{Real, Vec2};
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
@@ -87,7 +87,15 @@ pub(super) fn skeleton(border: &Border, width: f64) -> Skeleton {
         .map(|mark| border.across(mark, limit).filter(|hit| is_as_wide(hit.distance, width)))
         .collect();
     let (width, noise) = measure(&hits, width);
-    let mut sides = Sides { border, hits: &hits, labels: vec![None; hits.len()], branches: Vec::new(), lasts: Vec::new() };
+    let least_marks = Real::to_count(width / 6.0).max(3);
+    let mut sides = Sides {
+        border,
+        hits: &hits,
+        labels: vec![None; hits.len()],
+        branches: Vec::new(),
+        lasts: Vec::new(),
+        least_marks,
+    };
     let mut start = 0;
     while start < hits.len() {
         start = sides.take(start);
@@ -105,7 +113,8 @@ fn measure(hits: &[Option<Hit>], width: f64) -> (f64, Noise) {
         let squares: f64 = block.iter().flatten().map(|hit| (hit.distance - mean).powi(2)).sum();
         block.iter().all(Option::is_some).then_some((mean, squares / (count - 1.0)))
     };
-    let blocks: Vec<_> = hits.chunks_exact(BLOCK).filter_map(spread).filter(|block| (block.0 - width).abs() < 0.5).collect();
+    let blocks: Vec<_> =
+        hits.chunks_exact(BLOCK).filter_map(spread).filter(|block| (block.0 - width).abs() < 0.5).collect();
     let count = blocks.len() as f64;
     let width = if blocks.is_empty() { width } else { blocks.iter().map(|block| block.0).sum::<f64>() / count };
     let squares: f64 = blocks.iter().map(|block| 0.5 * (block.0 - width).powi(2)).sum();
@@ -113,7 +122,13 @@ fn measure(hits: &[Option<Hit>], width: f64) -> (f64, Noise) {
     // Blocks at ends of bends have jumps: the median.
     let mut singles: Vec<_> = blocks.iter().map(|block| (0.5 * block.1).sqrt()).collect();
     let single = median(&mut singles).unwrap_or(0.0);
-    (width, Noise { single: single.min(tuning::STROKE_OFFSET), block: block.min(tuning::STROKE_OFFSET) })
+    (
+        width,
+        Noise {
+            single: single.min(tuning::STROKE_OFFSET),
+            block: block.clamp(0.5 * tuning::STROKE_OFFSET, tuning::STROKE_OFFSET),
+        },
+    )
 }
 
 /// Branches on the way.
@@ -126,6 +141,8 @@ struct Sides<'a> {
     branches: Vec<Branch>,
     /// The last mark of each side, in the order of ends.
     lasts: Vec<usize>,
+    /// Fewer marks side by side are chance, as at the base of a round end.
+    least_marks: usize,
 }
 
 impl Sides<'_> {
@@ -142,19 +159,18 @@ impl Sides<'_> {
         let (mut last, mut hit) = (start, first);
         let mut back = 0.0;
         while let Some(next) = self.free(last + 1).copied() {
-            let Some(steps) = self.border.steps_back(&hit, &next).filter(|&steps| self.goes_on(last, &hit, &next, steps)) else {
+            let Some(steps) =
+                self.border.steps_back(&hit, &next).filter(|&steps| self.goes_on(last, &hit, &next, steps))
+            else {
                 break;
             };
             (last, hit, back) = (last + 1, next, back + steps);
         }
-        // Marks on the far side, all between the first and the last hit.
-        let far = (first.place() - back).ceil() as isize;
-        let far_count = first.place().floor() as isize - far + 1;
-        if last < start + LEAST_MARKS - 1 || far_count < 1 {
+        let far = self.border.before(&first, back);
+        if last + 1 < start + self.least_marks || far.is_empty() {
             return last + 1;
         }
         let end = 2 * self.branches.len();
-        let far: Vec<_> = self.border.span(first.mark, far, far_count.unsigned_abs()).collect();
         for mark in start..=last {
             self.labels[mark] = Some(end + 1);
         }
@@ -228,22 +244,20 @@ fn index(end: End) -> u32 {
     u32::try_from(end).unwrap_or(u32::MAX)
 }
 
-/// Fewer marks side by side are chance.
-const LEAST_MARKS: usize = 3;
-
 impl Branch {
-    /// Where the branch ends, and which way it points there, out of the branch.
-    pub(super) fn tip(&self, end: End) -> (Vec2<f64>, Vec2<f64>) {
+    /// Where the branch ends, which way it points there, out of the branch, and by how much it turns per pixel, toward that end.
+    pub(super) fn tip(&self, end: End) -> (Vec2<f64>, Vec2<f64>, f64) {
         let count = self.centers.len();
         let nth = |k: usize| {
             let k = k.min(count.saturating_sub(1));
             self.centers.get(if end % 2 == 1 { count - 1 - k } else { k })
         };
-        let (Some(tip), Some(inner), Some(far)) = (nth(0), nth(1), nth(4)) else { return Default::default() };
-        let chord = tip.point - far.point;
-        // Across the windows' normals, which the bend of the line turns less than a chord, but for the side of the chord.
-        let along = -(inner.axis + nth(2).unwrap_or(inner).axis).perp();
-        let along = if along.dot(chord) < 0.0 { -along } else { along };
-        (tip.point, along.normalized().or_else(|| chord.normalized()).unwrap_or_default())
+        let (Some(tip), Some(inner), Some(far)) = (nth(0), nth(2), nth(10)) else { return Default::default() };
+        // Across the axes: bends turn them less than chords; out of the branch.
+        let out = |at: &Sample, chord: Vec2<f64>| at.axis.perp() * 1f64.copysign(at.axis.perp().dot(chord));
+        let [near, away] = [inner, far].map(|at| out(at, tip.point - nth(4).unwrap_or(at).point));
+        let length = (inner.point - far.point).length();
+        let bend = if length > 3.0 { away.cross(near).atan2(away.dot(near)) / length } else { 0.0 };
+        (tip.point, near, bend)
     }
 }

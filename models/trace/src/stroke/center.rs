@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 
 use dvp_core::Vec2;
-use dvp_core::shape::{Cap, PathRing};
+use dvp_core::shape::{Cap, PathRing, Piece, Segment};
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
@@ -68,7 +68,8 @@ fn center_line(chain: &Chain, width: f64, ruler: &Ruler) -> Option<PathRing<f64>
         let samples = RingSamples { runs: alloc::vec![chain.stretches.first()?.clone()], closed: true };
         return Some(fit_closed(&samples, ruler)?.shape.ring());
     }
-    let mut stretches = chain.stretches.iter().map(|samples| Some(fit_open(samples, ruler)?.path)).collect::<Option<Vec<_>>>()?;
+    let mut stretches =
+        chain.stretches.iter().map(|samples| Some(fit_open(samples, ruler)?.path)).collect::<Option<Vec<_>>>()?;
     let count = stretches.len();
     let corners = if chain.is_closed { count } else { count - 1 };
     for i in 0..corners {
@@ -95,9 +96,13 @@ fn center_line(chain: &Chain, width: f64, ruler: &Ruler) -> Option<PathRing<f64>
 /// Where a round and a butt end would be, given the end of the line so far and the marks beyond it, and what these miss them by:
 /// the sum of squares.
 fn ends([from, out]: [Vec2<f64>; 2], marks: &[&Mark], half: f64) -> [(Vec2<f64>, f64); 2] {
-    let places: Vec<_> = marks.iter().map(|mark| ((mark.point - from).dot(out), (mark.point - from).cross(out).abs())).collect();
+    let places: Vec<_> =
+        marks.iter().map(|mark| ((mark.point - from).dot(out), (mark.point - from).cross(out).abs())).collect();
     // The reach of the disk of each mark that is on its front.
-    let fronts = places.iter().filter(|place| place.1 < 0.8 * half).map(|place| place.0 - (half * half - place.1 * place.1).sqrt());
+    let fronts = places
+        .iter()
+        .filter(|place| place.1 < 0.8 * half)
+        .map(|place| place.0 - (half * half - place.1 * place.1).sqrt());
     let faces = places.iter().filter(|place| place.1 < half - 1.0).map(|place| place.0);
     let reach = |of: Vec<f64>, tip: f64| {
         if of.is_empty() { tip } else { of.iter().sum::<f64>() / of.len() as f64 }
@@ -108,31 +113,57 @@ fn ends([from, out]: [Vec2<f64>; 2], marks: &[&Mark], half: f64) -> [(Vec2<f64>,
     let misses = |gap: &dyn Fn(f64, f64) -> f64| -> f64 {
         places.iter().zip(marks).map(|(place, mark)| (gap(place.0, place.1) / mark.sigma).powi(2)).sum()
     };
-    let miss_round = misses(&|along, aside| if along > round { (along - round).hypot(aside) - half } else { aside - half });
+    let miss_round =
+        misses(&|along, aside| if along > round { (along - round).hypot(aside) - half } else { aside - half });
     let miss_butt = misses(&|along, aside| (along - butt).max(aside - half));
     [(from + out * round, miss_round), (from + out * butt, miss_butt)]
 }
 
 /// Lets a line that ends at a junction go on, or end earlier, on the center line of another.
 fn run_into(drawing: &mut Drawing, line: usize, at_finish: bool) -> Option<()> {
-    const PLACES: u8 = 24;
     let own = drawing.lines.get(line)?;
     let [from, out] = tip(&own.ring, at_finish)?;
-    let skipped = (line, if at_finish { own.pieces.len() - 1 } else { 0 });
-    let place = |reach: f64| from + out * (reach * drawing.half_width);
-    let distance = |reach: f64| drawing.distance(place(reach), skipped);
-    let reaches = (0..=PLACES).map(|k| f64::from(k) * 3.0 / f64::from(PLACES));
-    let mut reach = reaches.min_by(|&a, &b| distance(a).total_cmp(&distance(b)))?;
-    // Toward a line the distance falls in proportion: bisection on the sign of its change, down to a hundredth of a pixel.
-    let mut step = 1.5 / f64::from(PLACES);
-    while step * drawing.half_width > 0.005 {
-        let [ahead, behind, here] = [reach + step, reach - step, reach].map(distance);
-        reach = if ahead < here { reach + step } else if behind < here { reach - step } else { reach };
-        step *= 0.5;
-    }
-    let to = place(reach);
+    let skipped = if at_finish { own.pieces.len() - 1 } else { 0 };
+    let piece = *own.pieces.get(skipped)?;
+    let length = piece.length();
+    let straight = |reach: f64| from + out * reach;
+    let around = |reach: f64| piece.point(if at_finish { 1.0 + reach / length } else { -reach / length });
+    let distance = |point: Vec2<f64>| drawing.distance(point, (line, skipped));
     let mut ring = own.ring.clone();
-    move_tip(&mut ring, at_finish, to);
+    let to = nearest_ahead(&straight, &distance, drawing.half_width);
+    // Arcs go on as arcs if that leads there.
+    let bent = matches!(piece, Piece::Arc { .. }).then(|| nearest_ahead(&around, &distance, drawing.half_width));
+    match bent {
+        Some(bent) if distance(bent) < 0.1 * drawing.half_width => move_tip(&mut ring, at_finish, bent),
+        Some(_) if (to - from).dot(out) > 0.0 => {
+            let end = if at_finish { ring.points.len() } else { 0 };
+            ring.points.insert(end, to.to_array());
+            ring.segments.insert(if at_finish { end - 1 } else { 0 }, Segment::Line);
+        }
+        _ => move_tip(&mut ring, at_finish, to),
+    }
     *drawing.lines.get_mut(line)? = own.with_ring(ring)?;
     Some(())
+}
+
+/// The place along a way from an end that is nearest to something: from half a width back to one and a half ahead.
+fn nearest_ahead(place: &dyn Fn(f64) -> Vec2<f64>, distance: &dyn Fn(Vec2<f64>) -> f64, half: f64) -> Vec2<f64> {
+    const PLACES: u8 = 24;
+    let distance = |reach: f64| distance(place(reach));
+    let reaches = (0..=PLACES).map(|k| (f64::from(k) * 4.0 / f64::from(PLACES) - 1.0) * half);
+    let mut reach = reaches.min_by(|&a, &b| distance(a).total_cmp(&distance(b))).unwrap_or_default();
+    // Toward a line the distance falls in proportion: halving steps, down to a hundredth of a pixel.
+    let mut step = half * 2.0 / f64::from(PLACES);
+    while step > 0.005 {
+        let [ahead, behind, here] = [reach + step, reach - step, reach].map(distance);
+        reach = if ahead < here {
+            reach + step
+        } else if behind < here {
+            reach - step
+        } else {
+            reach
+        };
+        step *= 0.5;
+    }
+    place(reach)
 }

@@ -4,6 +4,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use dvp_core::Vec2;
+use dvp_core::geometry::LineSegment;
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
@@ -57,16 +58,21 @@ struct Passage {
 
 impl Passage {
     fn new(branches: &[Branch], ends: [End; 2], width: f64) -> Self {
-        let [(from, out), (to, back)] = ends.map(|end| tip(branches, end));
-        let turn = out.cross(-back).atan2(-out.dot(back)).abs();
-        let mean = (out - back).normalized().unwrap_or(out);
-        let aside = (to - from).cross(mean).abs();
-        let is_straight = turn <= tuning::STROKE_STRAIGHT_TURN && aside <= 0.3 * width;
-        Self { ends, turn: turn + aside / width, is_straight }
+        let [(from, out, bend), (to, back, other_bend)] = ends.map(|end| tip(branches, end));
+        let gap = to - from;
+        let turn = out.cross(-back).atan2(-out.dot(back));
+        // What both sides would turn by on the way if they bend on as they do; the second is walked the other way.
+        let expected = 0.5 * (bend - other_bend) * gap.length();
+        // On a circle the chord points half the turn away.
+        let middle = out.turned(Vec2::from_angle(0.5 * turn));
+        let aside = gap.cross(middle).abs();
+        let is_straight = (turn - expected).abs() <= tuning::STROKE_STRAIGHT_TURN && aside <= 0.3 * width;
+        Self { ends, turn: (turn - expected).abs() + aside / width, is_straight }
     }
 }
 
-fn tip(branches: &[Branch], end: End) -> (Vec2<f64>, Vec2<f64>) {
+/// Where a branch ends, which way it points there, and by how much it turns per pixel, toward that end.
+fn tip(branches: &[Branch], end: End) -> (Vec2<f64>, Vec2<f64>, f64) {
     branches.get(end / 2).map(|branch| branch.tip(end)).unwrap_or_default()
 }
 
@@ -102,8 +108,8 @@ pub(super) fn chains(border: &Border, skeleton: &Skeleton) -> Vec<Chain> {
 /// Keeps what a pen of that width can show of its center line, each with the doubt of the whole block that it stands for.
 fn thin_out(stretch: &mut Vec<Sample>, skeleton: &Skeleton) {
     // Short ones keep some all the same.
-    let reach = stretch.first().zip(stretch.last()).map_or(0.0, |(first, last)| (last.point - first.point).length());
-    let pace = (skeleton.width / 8.0).min(reach / 8.0);
+    let steps = stretch.iter().zip(stretch.iter().skip(1));
+    let pace = (skeleton.width / 8.0).min(steps.map(|(a, b)| (b.point - a.point).length()).sum::<f64>() / 10.0);
     let last = stretch.last().map(|sample| sample.point);
     let mut kept: Option<Vec2<f64>> = None;
     stretch.retain_mut(|sample| {
@@ -140,27 +146,31 @@ fn passages(branches: &[Branch], node: &Node, width: f64) -> Vec<Passage> {
 /// Joins two ends: smoothly, by a bend through what is seen of the outer side, or around a corner.
 fn link(border: &Border, branches: &[Branch], node: &Node, passage: Passage, width: f64, links: &mut [Option<Link>]) {
     let ends = passage.ends;
-    let [(from, out), (to, back)] = ends.map(|end| tip(branches, end));
+    let [(from, out, _), (to, back, _)] = ends.map(|end| tip(branches, end));
     let between = |ends: [End; 2]| node.between.iter().find(|link| link.0 == ends[0] && link.1 == ends[1]);
     // The outer side of a bend is the longer one.
     let sides = [between(ends), between([ends[1], ends[0]])];
     let is_second = sides.map(|side| side.map_or(0, |side| side.2.len()));
     let is_second = is_second[1] > is_second[0];
     let outer: &[usize] = sides[usize::from(is_second)].map_or(&[], |side| &side.2);
-    let mut bend = Vec::new();
+    let mut bend: Vec<Sample> = Vec::new();
     let mut is_corner = !passage.is_straight;
     if node.ends.len() == 2 {
-        if let (false, Some(corner)) = (passage.is_straight, meeting([from, out], [to, back])) {
-            let reach = outer.iter().filter_map(|&mark| border.marks.get(mark)).map(|mark| (mark.point - corner).length());
-            let least = reach.fold(f64::INFINITY, f64::min);
-            is_corner = least > 0.45 * width - 0.15;
+        bend.extend(outer.iter().filter_map(|&mark| border.marks.get(mark)).map(|mark| Sample {
+            point: mark.point + mark.inward * (0.5 * width),
+            axis: mark.inward,
+            sigma: mark.sigma,
+        }));
+        if let (true, Some(corner)) = (is_corner, meeting([from, out], [to, back])) {
+            // The pen has been in a corner, but cuts past it in a bend, by the more the rounder that is.
+            let steps = bend.iter().zip(bend.iter().skip(1));
+            let passes = steps.map(|(a, b)| LineSegment::new(a.point, b.point).nearest(corner).distance());
+            let rounded = 0.5 * (to - from).length() * (0.25 * passage.turn).tan();
+            is_corner =
+                passes.fold(f64::INFINITY, f64::min) < 0.1 * rounded + 2.0 * tuning::STROKE_OFFSET || bend.is_empty();
         }
-        if !is_corner {
-            bend.extend(outer.iter().filter_map(|&mark| border.marks.get(mark)).map(|mark| Sample {
-                point: mark.point + mark.inward * (0.5 * width),
-                axis: mark.inward,
-                sigma: mark.sigma,
-            }));
+        if is_corner {
+            bend.clear();
         }
     }
     let mut reversed = bend.clone();
@@ -192,7 +202,11 @@ impl Walk<'_> {
         while !core::mem::replace(self.is_used.get_mut(at / 2)?, true) {
             let centers = &self.branches.get(at / 2)?.centers;
             let stretch = stretches.last_mut()?;
-            if at % 2 == 0 { stretch.extend(centers) } else { stretch.extend(centers.iter().rev()) }
+            if at % 2 == 0 {
+                stretch.extend(centers)
+            } else {
+                stretch.extend(centers.iter().rev())
+            }
             at ^= 1;
             let Some(link) = self.links.get(at)?.as_ref() else { break };
             stretch.extend(&link.bend);

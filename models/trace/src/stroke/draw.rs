@@ -42,8 +42,37 @@ pub(super) enum Foot {
     Face { at_finish: bool },
 }
 
+impl Foot {
+    /// Whether another one is on the same straight or smooth stretch of the outline, as far as its number tells.
+    pub(super) fn is_beside(self, other: Self) -> bool {
+        match (self, other) {
+            (Self::Body { piece, t }, Self::Body { piece: other, t: at }) => {
+                let part = |t: f64| (t <= 0.0, t >= 1.0);
+                piece == other && part(t) == part(at)
+            }
+            (Self::Tangent { piece, .. }, Self::Tangent { piece: other, .. }) => piece == other,
+            (Self::Face { at_finish }, Self::Face { at_finish: other }) => at_finish == other,
+            _ => false,
+        }
+    }
+}
+
+/// The outline as a point sees it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Reading {
+    /// How far the point is outside.
+    pub(super) gap: f64,
+    /// The part of the outline that this is measured to.
+    pub(super) foot: Foot,
+    /// How far the point is outside of what the outline goes on with at the nearest corner.
+    next: f64,
+}
+
+/// Half the width of a window and a little, pixels.
+const WINDOW: f64 = 0.6;
+
 /// Least turn at which a corner is one, sine.
-const LEAST_CORNER: f64 = 0.02;
+const LEAST_CORNER: f64 = 0.1;
 
 /// Longest tip of a corner per width that SVG draws unless said otherwise.
 pub(super) const MITER_LIMIT: f64 = 4.0;
@@ -53,7 +82,13 @@ impl Line {
     pub(super) fn new(ring: PathRing<f64>, cap: Cap) -> Option<Self> {
         let pieces = pieces(&ring);
         let disks = pieces.iter().map(disk).collect();
-        (!pieces.is_empty() && pieces.len() == ring.segments.len()).then_some(Self { ring, cap, is_covered: [false; 2], pieces, disks })
+        (!pieces.is_empty() && pieces.len() == ring.segments.len()).then_some(Self {
+            ring,
+            cap,
+            is_covered: [false; 2],
+            pieces,
+            disks,
+        })
     }
 
     /// The same line with another center line of as many pieces.
@@ -61,51 +96,80 @@ impl Line {
         Some(Self { is_covered: self.is_covered, ..Self::new(ring, self.cap)? })
     }
 
-    /// How far a point is outside of the line's strip, and which part of the outline that is measured to; none if that is
-    /// more than `limit`.
-    fn gap(&self, point: Vec2<f64>, half: f64, is_mitered: bool, limit: f64) -> Option<(f64, Foot)> {
-        let mut least = limit + half;
-        let mut body = None;
-        for (piece, (shape, &(center, radius))) in self.pieces.iter().zip(&self.disks).enumerate() {
-            if (point - center).length() - radius >= least {
-                continue;
-            }
-            let t = nearest(shape, point);
+    /// Where the outline of the line's strip is nearest to a point; none if that is more than `limit` away.
+    fn reading(&self, point: Vec2<f64>, half: f64, is_mitered: bool, limit: f64) -> Option<Reading> {
+        let near = self.pieces.iter().zip(&self.disks).enumerate().filter_map(|(piece, (shape, &(center, radius)))| {
+            let is_near = (point - center).length() - radius < limit + half;
+            let t = if is_near { nearest(shape, point) } else { return None };
             let is_covered = !self.ring.is_closed()
                 && (t <= 0.0 && piece == 0 && self.is_covered[0]
                     || t >= 1.0 && piece + 1 == self.pieces.len() && self.is_covered[1]);
-            if is_covered {
-                continue;
-            }
-            let distance = (point - shape.point(t)).length();
-            if distance < least {
-                (least, body) = (distance, Some((piece, t)));
-            }
-        }
-        let (piece, t) = body?;
-        let mut feet = [Some(Foot::Body { piece, t }), None];
-        let is_end = t <= 0.0 || t >= 1.0;
-        let (count, at_finish) = (self.pieces.len(), t > 0.5);
-        let neighbor = if at_finish { piece + 1 } else { piece.wrapping_sub(1) };
-        let neighbor = if self.ring.is_closed() { (neighbor.wrapping_add(count)) % count } else { neighbor };
-        if neighbor >= count {
+            (!is_covered).then(|| ((point - shape.point(t)).length(), piece, t))
+        });
+        let mut near: Vec<_> = near.filter(|near| near.0 < limit + half).collect();
+        near.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        let &(distance, piece, t) = near.first()?;
+        let body = Reading { gap: distance - half, foot: Foot::Body { piece, t }, next: f64::INFINITY };
+        let other = |foot: Foot, reading: Reading| reading.against(gap(&self.pieces, foot, point, half), foot);
+        let (is_end, at_finish) = (t <= 0.0 || t >= 1.0, t > 0.5);
+        let Some(neighbor) = self.neighbor(piece, at_finish) else {
             // Beside a straight end the nearest point is not always the end itself.
-            if self.cap == Cap::Butt && !self.is_covered[usize::from(at_finish)] {
-                feet[1] = Some(Foot::Face { at_finish });
-                if is_end {
-                    feet[0] = Some(Foot::Tangent { piece, t });
+            return Some(match self.cap {
+                Cap::Butt if !self.is_covered[usize::from(at_finish)] => {
+                    let side = if is_end { Foot::Tangent { piece, t } } else { body.foot };
+                    other(
+                        Foot::Face { at_finish },
+                        Reading { gap: gap(&self.pieces, side, point, half), foot: side, ..body },
+                    )
                 }
-            }
-        } else if is_end && is_mitered {
-            let other = 1.0 - t;
-            let [own, next] = [(piece, t), (neighbor, other)].map(|(piece, t)| direction(&self.pieces[piece], t));
-            let half_turn = (0.5 * (1.0 + own.dot(next))).max(0.0).sqrt();
-            if own.cross(next).abs() > LEAST_CORNER && half_turn * MITER_LIMIT > 1.0 {
-                feet = [Some(Foot::Tangent { piece, t }), Some(Foot::Tangent { piece: neighbor, t: other })];
-            }
+                _ => body,
+            });
+        };
+        let opposite = if at_finish { 0.0 } else { 1.0 };
+        if is_end && is_mitered && self.is_corner([(piece, t), (neighbor, opposite)]) {
+            let side = Foot::Tangent { piece, t };
+            let side = Reading { gap: gap(&self.pieces, side, point, half), foot: side, ..body };
+            return Some(other(Foot::Tangent { piece: neighbor, t: opposite }, side));
         }
-        let gaps = feet.into_iter().flatten().map(|foot| (gap(&self.pieces, foot, point, half), foot));
-        gaps.max_by(|a, b| a.0.total_cmp(&b.0))
+        // At the inner side of a corner two pieces are near; at smooth joins and around the outer side it is one and the same place.
+        let next = near.iter().skip(1).find(|&&(_, other, at)| {
+            let joins = [false, true].into_iter().filter(|&finish| self.neighbor(piece, finish) == Some(other));
+            let ends = joins.map(|finish| (f64::from(u8::from(finish)), f64::from(u8::from(!finish))));
+            let mut ends = ends
+                .filter(|&(own, end)| (at - end).abs() < f64::EPSILON || !self.is_corner([(piece, own), (other, end)]));
+            ends.next().is_none()
+        });
+        Some(Reading { next: next.map_or(f64::INFINITY, |next| next.0 - half), ..body })
+    }
+
+    /// The piece before or after another one.
+    fn neighbor(&self, piece: usize, at_finish: bool) -> Option<usize> {
+        let (count, is_closed) = (self.pieces.len(), self.ring.is_closed());
+        match (at_finish, piece) {
+            (true, _) if piece + 1 < count => Some(piece + 1),
+            (true, _) => is_closed.then_some(0),
+            (false, 0) => is_closed.then(|| count - 1),
+            (false, _) => Some(piece - 1),
+        }
+    }
+
+    /// Whether two pieces meet in a corner whose tip is drawn if it is mitered; of each, its number and the end there.
+    fn is_corner(&self, ends: [(usize, f64); 2]) -> bool {
+        let [own, next] = ends.map(|(piece, t)| direction(&self.pieces[piece], t));
+        let half_turn = (0.5 * (1.0 + own.dot(next))).max(0.0).sqrt();
+        own.cross(next).abs() > LEAST_CORNER && half_turn * MITER_LIMIT > 1.0
+    }
+}
+
+impl Reading {
+    /// Of two parts that a convex corner lies between the one that the point is further outside of.
+    fn against(self, gap: f64, foot: Foot) -> Self {
+        if gap > self.gap { Self { gap, foot, next: self.gap } } else { Self { next: gap, ..self } }
+    }
+
+    /// Whether a corner of the outline is so near that a window there shows both of its sides.
+    pub(super) fn is_spoiled(&self) -> bool {
+        (self.next - self.gap).abs() < WINDOW && self.gap.abs() < WINDOW
     }
 }
 
@@ -113,9 +177,9 @@ impl Line {
 pub(super) fn gap(pieces: &[Piece<f64>], foot: Foot, point: Vec2<f64>, half: f64) -> f64 {
     match foot {
         Foot::Body { piece, t } => pieces.get(piece).map_or(0.0, |piece| (point - piece.point(t)).length() - half),
-        Foot::Tangent { piece, t } => pieces
-            .get(piece)
-            .map_or(0.0, |piece| (point - piece.point(t)).cross(direction(piece, t)).abs() - half),
+        Foot::Tangent { piece, t } => {
+            pieces.get(piece).map_or(0.0, |piece| (point - piece.point(t)).cross(direction(piece, t)).abs() - half)
+        }
         Foot::Face { at_finish } => {
             let (piece, t, sign) = if at_finish { (pieces.last(), 1.0, 1.0) } else { (pieces.first(), 0.0, -1.0) };
             piece.map_or(0.0, |piece| (point - piece.point(t)).dot(direction(piece, t)) * sign)
@@ -124,23 +188,34 @@ pub(super) fn gap(pieces: &[Piece<f64>], foot: Foot, point: Vec2<f64>, half: f64
 }
 
 impl Drawing {
-    /// How far a point is outside of everything that is drawn, the line that is nearest and the part of its outline.
-    pub(super) fn gap(&self, point: Vec2<f64>) -> Option<(f64, usize, Foot)> {
-        let mut least: Option<(f64, usize, Foot)> = None;
+    /// The same with all that is drawn of its ends to be measured.
+    pub(super) fn uncovered(&self) -> Self {
+        let lines = self.lines.iter().map(|line| Line { is_covered: [false; 2], ..line.clone() }).collect();
+        Self { lines, ..*self }
+    }
+
+    /// Where the outline of everything that is drawn is nearest to a point, and on which line.
+    pub(super) fn reading(&self, point: Vec2<f64>) -> Option<(usize, Reading)> {
+        let mut least: Option<(usize, Reading)> = None;
         for (i, line) in self.lines.iter().enumerate() {
-            let limit = least.map_or(f64::INFINITY, |least| least.0);
-            if let Some((gap, foot)) = line.gap(point, self.half_width, self.is_mitered, limit) {
-                if gap < limit {
-                    least = Some((gap, i, foot));
-                }
-            }
+            let limit = least.map_or(f64::INFINITY, |least| least.1.gap + WINDOW);
+            let Some(reading) = line.reading(point, self.half_width, self.is_mitered, limit) else { continue };
+            least = Some(match least {
+                Some((_, old)) if reading.gap < old.gap => (i, Reading { next: reading.next.min(old.gap), ..reading }),
+                Some((line, old)) => (line, Reading { next: old.next.min(reading.gap), ..old }),
+                None => (i, reading),
+            });
         }
         least
     }
 
     /// The distance from a point to the nearest center line; `skipped` is a line and a piece of it that do not count.
     pub(super) fn distance(&self, point: Vec2<f64>, skipped: (usize, usize)) -> f64 {
-        let all = self.lines.iter().enumerate().flat_map(|(i, line)| line.pieces.iter().enumerate().map(move |(k, piece)| ((i, k), piece)));
+        let all = self
+            .lines
+            .iter()
+            .enumerate()
+            .flat_map(|(i, line)| line.pieces.iter().enumerate().map(move |(k, piece)| ((i, k), piece)));
         let others = all.filter(|&(place, _)| place != skipped);
         others.map(|(_, piece)| (point - piece.point(nearest(piece, point))).length()).fold(f64::INFINITY, f64::min)
     }

@@ -7,6 +7,7 @@
 //! | `branch` | marks that face each other a width apart | branches, and the nodes where they end |
 //! | `chain` | branches, nodes | chains through junctions and around corners |
 //! | `center` | chains of center points | lines of lines, arcs and cubics, with their ends |
+//! | `bend` | lines with corners | arcs where the outer side of the boundary cuts past them |
 //! | `piece`, `draw` | lines, a width | how far a point is outside of what they draw |
 //! | `refine` | lines, marks | all numbers at once, what they miss and what they cost |
 //! | `thin` | positions across lines without pure pixels | strokes |
@@ -15,6 +16,7 @@
 //! its right, going, and once more, coming back. What follows what on the boundary is the order of lines around their junctions;
 //! no skeleton of pixels is needed, and every position keeps the precision of the samples.
 
+mod bend;
 mod border;
 mod branch;
 mod center;
@@ -28,13 +30,14 @@ mod thin;
 
 use alloc::vec::Vec;
 
-use dvp_core::shape::{Cap, Join, Stroke};
+use dvp_core::shape::{Cap, Join, Segment, Stroke};
 
 use crate::ruler::Ruler;
 use crate::sample::RingSamples;
 use crate::tuning;
 use border::Border;
-use draw::{Drawing, MITER_LIMIT};
+use draw::{Drawing, Line, MITER_LIMIT};
+use refine::Refined;
 
 pub use thin::{ThinSample, fit_thin};
 
@@ -50,7 +53,10 @@ pub struct StrokeFit {
 }
 
 /// The strokes that drew a face, given the samples of its outer boundary and of its holes; none if the face is not that wide
-/// everywhere, or its boundary is not that of such strokes.
+/// everywhere, or its boundary is not that of such strokes, or they are one bar, which a rectangle says as well.
+///
+/// How far samples are off is measured on the face itself: the width of a pen does not change. Both prices are by that noise,
+/// which may be more than what the samples say of themselves.
 #[must_use]
 pub fn fit_strokes(rings: &[RingSamples], ruler: &Ruler) -> Option<StrokeFit> {
     let mut border = Border::new(rings);
@@ -59,12 +65,26 @@ pub fn fit_strokes(rings: &[RingSamples], ruler: &Ruler) -> Option<StrokeFit> {
     border.marks.iter_mut().for_each(|mark| mark.sigma = mark.sigma.max(skeleton.noise.single));
     let chains = chain::chains(&border, &skeleton);
     let mut drawing = center::lines(&border, &chains, skeleton.width, ruler)?;
-    if drawing.lines.is_empty() {
+    // A straight line with straight ends is a rectangle.
+    let is_bar = |line: &Line| line.cap == Cap::Butt && matches!(line.ring.segments[..], [Segment::Line]);
+    if matches!(&drawing.lines[..], []) || matches!(&drawing.lines[..], [line] if is_bar(line)) {
         return None;
     }
-    refine::choose_join(&mut drawing, &border);
-    let refined = refine::refine(drawing, &border, skeleton.noise.block, ruler)?;
-    if refined.strays > tuning::STROKE_MOST_STRAYS {
+    // Without corners and ends to go by, lines with straight ends have mitered corners.
+    drawing.is_mitered = drawing.lines.iter().any(|line| line.cap == Cap::Butt);
+    if refine::strays(&drawing, &border, 2.0 * tuning::STROKE_STRAY) > tuning::STROKE_MOST_LOOSE {
+        return None;
+    }
+    let price = |refined: &Refined| refined.bits + ruler.misfit(refined.chi2);
+    let refine = |drawing: Drawing| refine::refine(drawing, &border, skeleton.noise.block, ruler);
+    let mut refined = refine(drawing)?;
+    for propose in [refine::other_join, bend::round_corners] {
+        let other = propose(&refined.drawing, &border).and_then(refine);
+        if let Some(other) = other.filter(|other| price(other) < price(&refined)) {
+            refined = other;
+        }
+    }
+    if refine::strays(&refined.drawing, &border, tuning::STROKE_STRAY) > tuning::STROKE_MOST_STRAYS {
         return None;
     }
     Some(StrokeFit { strokes: strokes(&refined.drawing), bits: refined.bits, misfit: ruler.misfit(refined.chi2) })

@@ -80,7 +80,11 @@ pub(super) fn tip(ring: &PathRing<f64>, at_finish: bool) -> Option<[Vec2<f64>; 2
 /// Moves an end of an open line: arcs keep their direction at the other end, cubics the one at this end.
 pub(super) fn move_tip(ring: &mut PathRing<f64>, at_finish: bool, to: Vec2<f64>) {
     let pieces = pieces(ring);
-    let ends = if at_finish { (ring.points.last_mut(), ring.segments.last_mut()) } else { (ring.points.first_mut(), ring.segments.first_mut()) };
+    let ends = if at_finish {
+        (ring.points.last_mut(), ring.segments.last_mut())
+    } else {
+        (ring.points.first_mut(), ring.segments.first_mut())
+    };
     let piece = if at_finish { pieces.last() } else { pieces.first() };
     let (Some(point), Some(segment), Some(piece)) = (ends.0, ends.1, piece) else { return };
     let shift = to - Vec2::from(*point);

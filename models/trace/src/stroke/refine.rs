@@ -21,6 +21,8 @@ use crate::tuning;
 const MOST_STEPS: usize = 8;
 /// A step that lowers the sum of squares by less, per mark, ends it.
 const LEAST_GAIN: f64 = 1e-3;
+/// Price of ends and corners that do not go together, one drawing in sixteen.
+const RARE_BITS: f64 = 5.0;
 /// Step of differences, pixels.
 const STEP: f64 = 1e-6;
 
@@ -30,8 +32,6 @@ pub(super) struct Refined {
     pub(super) drawing: Drawing,
     /// Sum of squared misfits of the marks by their covariance; beyond [`tuning::OUTLINE_HUBER`] sigmas it grows linearly.
     pub(super) chi2: f64,
-    /// Share of the marks that are off by more than [`tuning::STROKE_STRAY`].
-    pub(super) strays: f64,
     /// Bits of the numbers, each given those before it.
     pub(super) bits: f64,
 }
@@ -42,6 +42,22 @@ struct Miss {
     gap: f64,
     line: usize,
     foot: Foot,
+    /// Whether the window of the mark holds a corner: it tells of neither side.
+    is_spoiled: bool,
+}
+
+impl Miss {
+    /// In sigmas of the mark, and the weight of its square in a robust sum: none where it tells nothing.
+    fn sigmas(&self, border: &Border) -> (f64, f64) {
+        let sigmas = self.gap / border.marks[self.mark].sigma;
+        let weight = if self.is_spoiled { 0.0 } else { (tuning::OUTLINE_HUBER / sigmas.abs()).min(1.0) };
+        (sigmas, weight)
+    }
+
+    /// Its share of the robust sum of squares; as much as a good one is expected to miss by where it tells nothing.
+    fn chi2(&self, border: &Border) -> f64 {
+        if self.is_spoiled { 1.0 } else { huber(self.gap / border.marks[self.mark].sigma) }
+    }
 }
 
 /// The drawing near this one that misses the marks least; none if nothing can be computed.
@@ -73,53 +89,49 @@ pub(super) fn refine(mut drawing: Drawing, border: &Border, offset: f64, ruler: 
     let bits = number_bits(&drawing, &equations.0.factor(0.0, ridge)?, ruler);
     // What is drawn in the end is measured whole, ends that other lines hide included.
     run_together(&mut drawing);
-    drawing.lines.iter_mut().for_each(|line| line.is_covered = [false; 2]);
-    let misses = self::misses(&drawing, border)?;
-    let strays = misses.iter().filter(|miss| miss.gap.abs() > tuning::STROKE_STRAY).count() as f64;
-    Some(Refined {
-        chi2: chi2_of_blocks(border, &misses, offset),
-        strays: strays / border.marks.len() as f64,
-        bits,
-        drawing,
-    })
+    let misses = self::misses(&drawing.uncovered(), border)?;
+    Some(Refined { chi2: chi2_of_blocks(border, &misses, offset), bits, drawing })
+}
+
+/// Share of the marks that are further than `far` from what is drawn.
+pub(super) fn strays(drawing: &Drawing, border: &Border, far: f64) -> f64 {
+    let misses = misses(&drawing.uncovered(), border).unwrap_or_default();
+    let strays = misses.iter().filter(|miss| miss.gap.abs() > far).count();
+    if misses.is_empty() { 1.0 } else { strays as f64 / misses.len() as f64 }
 }
 
 fn misses(drawing: &Drawing, border: &Border) -> Option<Vec<Miss>> {
     let miss = |(mark, place): (usize, Vec2<f64>)| {
-        drawing.gap(place).map(|(gap, line, foot)| Miss { mark, gap, line, foot })
+        let (line, reading) = drawing.reading(place)?;
+        Some(Miss { mark, gap: reading.gap, line, foot: reading.foot, is_spoiled: reading.is_spoiled() })
     };
     border.marks.iter().map(|mark| mark.point).enumerate().map(miss).collect()
 }
 
-/// The weight that a robust sum of squares gives to a misfit of so many sigmas.
-fn weight(sigmas: f64) -> f64 {
-    (tuning::OUTLINE_HUBER / sigmas.abs()).min(1.0)
-}
-
-pub(super) fn chi2_of(sigmas: f64) -> f64 {
-    let weight = weight(sigmas);
-    sigmas * sigmas * weight * (2.0 - weight)
-}
-
 fn chi2(border: &Border, misses: &[Miss]) -> f64 {
-    misses.iter().map(|miss| chi2_of(miss.gap / border.marks[miss.mark].sigma)).sum()
+    misses.iter().map(|miss| miss.chi2(border)).sum()
 }
 
-/// The same if all marks of a block are off by a common `offset` (a standard deviation) beside what each is off by itself.
+/// The same if marks side by side are off by something in common, of standard deviation `offset`, beside what each is off by itself.
 fn chi2_of_blocks(border: &Border, misses: &[Miss], offset: f64) -> f64 {
+    let stretches = misses.chunk_by(|a, b| a.line == b.line && a.foot.is_beside(b.foot));
+    let blocks = stretches.flat_map(|stretch| stretch.chunks(BLOCK));
     let of_block = |block: &[Miss]| {
-        let (mut squares, mut sum, mut precision) = (0.0, 0.0, 0.0);
-        for miss in block {
-            let sigma = border.marks[miss.mark].sigma;
-            let weight = weight(miss.gap / sigma) / (sigma * sigma);
-            squares += chi2_of(miss.gap / sigma);
-            sum += weight * miss.gap;
-            precision += weight;
-        }
-        // Woodbury's formula for the inverse of a diagonal covariance plus a constant.
-        squares - sum * sum / (precision + offset.powi(-2))
+        let mut gaps: Vec<_> = block.iter().filter(|miss| !miss.is_spoiled).map(|miss| miss.gap).collect();
+        let middle = gaps.len() / 2;
+        let sigma = border.marks[block[block.len() / 2].mark].sigma;
+        let share = gaps.len() as f64 * offset * offset / (gaps.len() as f64 * offset * offset + sigma * sigma);
+        let common = if gaps.is_empty() { 0.0 } else { share * *gaps.select_nth_unstable_by(middle, f64::total_cmp).1 };
+        let singles = block.iter().map(|miss| Miss { gap: miss.gap - common, ..*miss }.chi2(border));
+        singles.sum::<f64>() + huber(common / offset)
     };
-    misses.chunks(BLOCK).map(of_block).sum()
+    blocks.map(of_block).sum()
+}
+
+/// The share of a misfit of so many sigmas in a robust sum of squares.
+fn huber(sigmas: f64) -> f64 {
+    let weight = (tuning::OUTLINE_HUBER / sigmas.abs()).min(1.0);
+    sigmas * sigmas * weight * (2.0 - weight)
 }
 
 fn numbers(ring: &PathRing<f64>) -> (Path<f64>, Vec<f64>) {
@@ -170,9 +182,9 @@ fn equations(drawing: &Drawing, border: &Border, misses: &[Miss]) -> Option<(Sky
             if !matches!(miss.foot, Foot::Face { .. }) {
                 slopes.push((count - 1, -1.0 / sigma));
             }
-            let weight = weight(miss.gap / sigma);
+            let (sigmas, weight) = miss.sigmas(border);
             normal.add_outer(&slopes, weight);
-            slopes.iter().for_each(|&(place, slope)| right[place] -= weight * slope * miss.gap / sigma);
+            slopes.iter().for_each(|&(place, slope)| right[place] -= weight * slope * sigmas);
         }
         first += counts[index];
     }
@@ -193,7 +205,13 @@ fn slopes(line: &Line, half: f64, border: &Border, misses: &[&Miss]) -> Vec<Vec<
         for (slopes, miss) in slopes.iter_mut().zip(misses) {
             let piece = match miss.foot {
                 Foot::Body { piece, .. } | Foot::Tangent { piece, .. } => piece,
-                Foot::Face { at_finish } => if at_finish { is_moved.len() - 1 } else { 0 },
+                Foot::Face { at_finish } => {
+                    if at_finish {
+                        is_moved.len() - 1
+                    } else {
+                        0
+                    }
+                }
             };
             if is_moved.get(piece) == Some(&true) {
                 let point = border.marks[miss.mark].point;
@@ -223,17 +241,15 @@ fn number_bits(drawing: &Drawing, factor: &Skyline, ruler: &Ruler) -> f64 {
             };
         }
     }
-    // The width itself, which is twice the half; the cap and the join are one of two each.
-    bits + price(2.0) + 2.0
+    // The width itself, which is twice the half; the cap is one of two, and round ends rarely come with sharp corners.
+    let is_rare = drawing.lines.iter().all(|line| (line.cap == Cap::Round) == drawing.is_mitered);
+    bits + price(2.0) + if is_rare { RARE_BITS } else { 1.0 }
 }
 
-/// Whether corners go on until their sides meet, by what the marks miss either way.
-pub(super) fn choose_join(drawing: &mut Drawing, border: &Border) {
+/// The same drawing with the other kind of corners, if there are such and they do not speak clearly against it.
+pub(super) fn other_join(drawing: &Drawing, border: &Border) -> Option<Drawing> {
     let sum = |drawing: &Drawing| misses(drawing, border).map_or(f64::INFINITY, |misses| chi2(border, &misses));
-    let round = sum(drawing);
-    drawing.is_mitered = true;
-    let miter = sum(drawing);
-    // Without corners both are the same, and ends say which is likelier.
-    let is_butt = drawing.lines.iter().any(|line| line.cap == Cap::Butt);
-    drawing.is_mitered = if (miter - round).abs() < 1e-6 { is_butt } else { miter < round };
+    let other = Drawing { is_mitered: !drawing.is_mitered, ..drawing.clone() };
+    let (own, others) = (sum(drawing), sum(&other));
+    ((own - others).abs() > 1e-6 && others < 2.0 * own).then_some(other)
 }

@@ -2,8 +2,8 @@
 
 use alloc::vec::Vec;
 
-use dvp_core::shape::{Cap, Join, Stroke};
 use dvp_core::Vec2;
+use dvp_core::shape::{Cap, Join, Stroke};
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
@@ -36,7 +36,8 @@ fn thin(thin: &[ThinSample], ruler: &Ruler) -> Option<Stroke<f64>> {
     if thin.len() < 3 {
         return None;
     }
-    let samples: Vec<_> = thin.iter().map(|thin| Sample { point: thin.point, axis: thin.axis, sigma: thin.sigma }).collect();
+    let samples: Vec<_> =
+        thin.iter().map(|thin| Sample { point: thin.point, axis: thin.axis, sigma: thin.sigma }).collect();
     let mut ring = fit_open(&samples, ruler)?.path;
     let line = pieces(&ring);
     let (mut sum, mut weights) = (0.0, 0.0);
