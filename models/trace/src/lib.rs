@@ -37,13 +37,61 @@ use dvp_core::{ImageView, Scene};
 
 use crate::partition::{NoPartition, Partition};
 
+/// A picture as a drawing.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Traced {
+    /// The drawing.
+    pub scene: Scene<f32>,
+    /// Description length of its outlines, and of what they miss, bits.
+    pub bits: f64,
+    /// Share of the pixels just beyond edges that still show the other side, [0, 1]: near 0 if edges are of area coverage, as the
+    /// drawing's are.
+    pub stained: f64,
+}
+
+/// Why a picture is no drawing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum NoDrawing {
+    /// It was not cut into faces.
+    Partition(NoPartition),
+    /// Its edges are soft: it was blurred, or painted with another profile than area coverage.
+    Soft {
+        /// Share of the pixels just beyond edges that still show the other side.
+        stained: f64,
+    },
+}
+
 /// The drawing that a picture is. `matte`: the color that transparent parts are shown on, if it has such.
 ///
 /// # Errors
-/// [`NoPartition`] if the picture is no drawing of flat colors with clear edges.
-pub fn trace(image: &ImageView<'_, f32>, matte: Option<[f32; 3]>) -> Result<Scene<f32>, NoPartition> {
-    let partition = Partition::of(image)?;
+/// [`NoDrawing`] if the picture is no drawing of flat colors with clear edges.
+pub fn trace(image: &ImageView<'_, f32>, matte: Option<[f32; 3]>) -> Result<Traced, NoDrawing> {
+    let partition = Partition::of(image).map_err(NoDrawing::Partition)?;
     let rings = boundary::rings(&partition);
+    // Coders of photographs stain what is beside an edge, whatever its profile is.
+    let stained = if partition.coded { 0.0 } else { boundary::stained(&partition, &rings).unwrap_or(0.0) };
+    if stained > tuning::SOFT_STAINED {
+        return Err(NoDrawing::Soft { stained });
+    }
     let layers = layers::layers(&partition, &rings, matte.map(|matte| matte.map(f64::from)));
-    Ok(scene::scene(&layers, image.size(), matte.is_some()))
+    let bits = layers.bits();
+    Ok(Traced { scene: scene::scene(&layers, image.size(), matte.is_some()), bits, stained })
 }
+
+impl core::fmt::Display for NoDrawing {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Partition(NoPartition::NotFlat { flat }) => {
+                write!(f, "only {:.0} % of the picture are of flat colors", 100.0 * flat)
+            }
+            Self::Partition(NoPartition::TooManyColors) => {
+                write!(f, "the picture has more than {} flat colors", tuning::MOST_COLORS)
+            }
+            Self::Soft { stained } => write!(f, "edges are soft: {:.0} % of the pixels beside them are stained", 100.0 * stained),
+        }
+    }
+}
+
+impl core::error::Error for NoDrawing {}

@@ -1,7 +1,8 @@
 //! Where two faces meet, to a few hundredths of a pixel or better.
 //!
-//! `ring` walks around faces along the cracks between pixels, `window` reads at every crack where the boundary passes.
+//! `profile` tells whether edges are clear, `ring` walks around faces along the cracks between pixels, `window` reads at every crack where the boundary passes.
 
+mod profile;
 mod ring;
 mod window;
 
@@ -12,6 +13,8 @@ use dvp_core::contour::Crack;
 
 use crate::partition::Partition;
 use crate::sample::Sample;
+
+pub use profile::stained;
 
 /// A step along the boundary of a face.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -36,6 +36,8 @@ pub struct Layer {
     pub color: Color,
     /// Its form.
     pub form: Form,
+    /// Description length of the form, and of what it misses, bits.
+    pub bits: f64,
 }
 
 /// What a layer covers, in pixels.
@@ -56,6 +58,14 @@ pub struct Layers {
     pub layers: Vec<Layer>,
 }
 
+impl Layers {
+    /// Description length of the forms, and of what they miss, bits.
+    #[must_use]
+    pub fn bits(&self) -> f64 {
+        self.layers.iter().map(|layer| layer.bits).sum()
+    }
+}
+
 /// The layers of a picture. `matte`: the color of what shows nothing, if the picture has such.
 #[must_use]
 pub fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<Color>) -> Layers {
@@ -68,8 +78,14 @@ pub fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<Color>) 
     for (group, outlines) in join::groups(&mut completion) {
         let color = partition.color(group[0]);
         match &pens[group[0] as usize] {
-            Some(pen) => layers.extend(pen.strokes.iter().map(|stroke| Layer { color, form: Form::Stroked(stroke.clone()) })),
-            None => layers.push(Layer { color, form: Form::Filled(outlines) }),
+            Some(pen) => {
+                let bits = (pen.bits + pen.misfit) / pen.strokes.len().max(1) as f64;
+                layers.extend(pen.strokes.iter().map(|stroke| Layer { color, form: Form::Stroked(stroke.clone()), bits }));
+            }
+            None => {
+                let bits = outlines.iter().map(|outline| outline.bits + outline.misfit).sum();
+                layers.push(Layer { color, form: Form::Filled(outlines), bits });
+            }
         }
     }
     Layers { background: partition.color(background), layers }

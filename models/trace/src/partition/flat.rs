@@ -48,6 +48,13 @@ impl Noise {
     }
 }
 
+impl Noise {
+    /// Whether it is that of a coder.
+    pub(super) fn is_coded(&self) -> bool {
+        self.flat > tuning::CLEAN_STEP
+    }
+}
+
 impl Flats {
     /// How many pixels are in flat blocks.
     pub(super) fn pure_count(&self) -> usize {

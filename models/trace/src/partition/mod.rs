@@ -36,6 +36,8 @@ pub struct Partition {
     pub faces: Vec<Face>,
     /// The colors; faces name one of them.
     pub palette: Vec<Color>,
+    /// Whether it looks as if a coder of photographs had changed it.
+    pub coded: bool,
     /// Most difference of a channel between a pixel and the mixture that explains it.
     pub mix_noise: f64,
     /// Share of the pixels that no mixture of the palette explains, [0, 1].
@@ -71,7 +73,7 @@ impl Partition {
         }
         let colors = palette::Palette::of(&flats, &noise)?;
         let mixed = mix::explain(&pixels, size, &flats, colors, &noise);
-        Ok(faces::cut(size, pixels, mixed))
+        Ok(Self { coded: noise.is_coded(), ..faces::cut(size, pixels, mixed) })
     }
 
     /// Color of a face.

@@ -19,6 +19,10 @@ use crate::format::{Picture, Place, read_scene};
 use crate::method;
 use crate::paint::{PaintScratch, Painter};
 
+/// Share of stained pixels beside edges from which on they may be other than those of a drawing (see [`dvp_trace::Traced`]): one picture of ten
+/// that the reference renderer painted has so few.
+const DOUBTFUL_EDGES: f64 = 0.04;
+
 /// How a scene is found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub(super) enum Method {
@@ -130,10 +134,7 @@ impl Solver {
                 let (compositing, settings) = (compositing.unwrap_or_default(), Refine::default());
                 method::refine(&settings, image, &start, compositing, max_objects, &mut scratch.refine)
             }
-            (Method::Segment, None) => match self.trace(picture, scratch)? {
-                Some(fit) => Ok(fit),
-                None => Ok(self.fitter.fit(image, &mut scratch.fit)?),
-            },
+            (Method::Segment, None) => self.segment(picture, scratch),
             (Method::RandOptP, _) => {
                 let seed = method::seed_of(stem, self.seed);
                 method::rand_opt_p(image, &method::random_start(self.bank(), self.object_count, seed))
@@ -146,18 +147,24 @@ impl Solver {
         }
     }
 
-    /// The picture as a drawing, if it is one: flat colors with clear edges, and no shapes are known beforehand.
-    fn trace(&self, picture: &Picture<f32>, scratch: &mut Scratch) -> Result<Option<Fit<f32>>> {
-        if self.options.bank.is_some() || self.options.compositing.is_some() {
-            return Ok(None);
-        }
+    /// The picture as a drawing, if it is one: flat colors with clear edges, and nothing known of its objects beforehand. Else, and where edges
+    /// leave a doubt and it is nearer to the picture, as segments.
+    fn segment(&self, picture: &Picture<f32>, scratch: &mut Scratch) -> Result<Fit<f32>> {
         let image = picture.image.view();
-        let Ok(scene) = dvp_trace::trace(&image, picture.transparent.then_some(picture.matte)) else { return Ok(None) };
+        let is_known = self.options.bank.is_some() || self.options.compositing.is_some();
+        let matte = picture.transparent.then_some(picture.matte);
+        let traced = if is_known { None } else { dvp_trace::trace(&image, matte).ok() };
+        let Some(traced) = traced else { return Ok(self.fitter.fit(image, &mut scratch.fit)?) };
         let painter = Painter::default();
-        let drawing = painter.draw(&scene, image.size())?;
-        let painted = painter.paint_in(&scene, image.size(), &mut scratch.paint)?;
+        let drawing = painter.draw(&traced.scene, image.size())?;
+        let painted = painter.paint_in(&traced.scene, image.size(), &mut scratch.paint)?;
         let loss = PixelLoss::Mae.value(ImagePair::new(painted.view(), image)?, &mut ())?;
-        let fit = Fit::of_painted(scene, &drawing, &image, painted.data());
-        Ok(Some(Fit { loss, stop: StopReason::Converged, ..fit }))
+        let fit = Fit::of_painted(traced.scene, &drawing, &image, painted.data());
+        let drawn = Fit { loss, bits: traced.bits, stop: StopReason::Converged, ..fit };
+        if traced.stained > DOUBTFUL_EDGES {
+            let segments = self.fitter.fit(image, &mut scratch.fit)?;
+            return Ok(if segments.loss < drawn.loss { segments } else { drawn });
+        }
+        Ok(drawn)
     }
 }
