@@ -1,9 +1,12 @@
-//! Inside core: `real, dims, simd, optim -> geometry, diff_op -> tensor, image -> contour -> shape -> scene -> render, matching -> loss -> metric`.
+//! Inside crates. Core: `real, dims, simd, optim -> geometry, diff_op -> tensor, image -> contour -> shape -> scene -> render, matching -> loss
+//! -> metric`. Trace: `tuning -> ruler, sample, partition -> boundary, outline -> stroke -> layers -> ties -> scene`.
 
 use crate::source::{code_lines, rust_sources};
 
 /// Modules in the order in which they may use each other: only earlier rows, never their own.
-const ORDER: [&[&str]; 10] = [
+type Order = &'static [&'static [&'static str]];
+
+const CORE: Order = &[
     &["real", "dims", "simd", "optim"],
     &["geometry", "diff_op"],
     &["tensor", "image"],
@@ -16,8 +19,18 @@ const ORDER: [&[&str]; 10] = [
     &["instances"],
 ];
 
-fn row(module: &str) -> Option<usize> {
-    ORDER.iter().position(|row| row.contains(&module))
+const TRACE: Order = &[
+    &["tuning"],
+    &["ruler", "sample", "partition"],
+    &["boundary", "outline"],
+    &["stroke"],
+    &["layers"],
+    &["ties"],
+    &["scene"],
+];
+
+fn row(order: Order, module: &str) -> Option<usize> {
+    order.iter().position(|row| row.contains(&module))
 }
 
 /// Names that the crate root re-exports, with the module they come from: from lines like `pub use dims::ImageSize;`.
@@ -83,19 +96,19 @@ fn heads(path: &str) -> Vec<String> {
     heads
 }
 
-/// What is wrong with the paths of one file of core; `path` from `core/src/`.
-fn violations(path: &str, text: &str, reexports: &[(String, String)]) -> Vec<String> {
+/// What is wrong with the paths of one file of a crate; `path` from its `src/`.
+fn violations(order: Order, path: &str, text: &str, reexports: &[(String, String)]) -> Vec<String> {
     let parts: Vec<&str> = path.trim_end_matches(".rs").split('/').collect();
     let module = parts[0];
     if module == "lib" {
         return Vec::new();
     }
-    let Some(own) = row(module) else { return vec![format!("{path}: module {module} has no place in the order")] };
+    let Some(own) = row(order, module) else { return vec![format!("{path}: module {module} has no place in the order")] };
     let depth = if parts.last() == Some(&"mod") { parts.len() - 1 } else { parts.len() };
     let mut found = Vec::new();
     for (line, name) in names_from_root(text, depth) {
         let target = reexports.iter().find(|(export, _)| *export == name).map_or(name.as_str(), |(_, module)| module);
-        let arrow = match row(target) {
+        let arrow = match row(order, target) {
             _ if target == module => continue,
             Some(row) if row < own => continue,
             Some(_) => "stands later or beside it",
@@ -106,27 +119,30 @@ fn violations(path: &str, text: &str, reexports: &[(String, String)]) -> Vec<Str
     found
 }
 
-#[test]
-fn modules_of_core_use_only_earlier_ones() {
-    let sources = rust_sources("core/src");
-    let root = sources.iter().find(|source| source.path == "core/src/lib.rs").unwrap();
+/// What is wrong in a crate, and how many paths were read.
+fn violations_in(folder: &str, order: Order) -> (Vec<String>, usize) {
+    let sources = rust_sources(folder);
+    let root = sources.iter().find(|source| source.path == format!("{folder}/lib.rs")).unwrap();
     let reexports = reexports(&root.text);
-    assert!(
-        reexports.iter().any(|(name, module)| name == "Real" && module == "real"),
-        "re-exports of lib.rs were read"
-    );
-    let strip = |path: &str| path.trim_start_matches("core/src/").to_owned();
-    let arrows: usize = sources.iter().map(|source| names_from_root(&source.text, 99).len()).sum();
-    assert!(arrows > 100, "only {arrows} paths were read");
-    let found: Vec<String> =
-        sources.iter().flat_map(|source| violations(&strip(&source.path), &source.text, &reexports)).collect();
-    assert!(found.is_empty(), "{}", found.join("\n"));
+    let strip = |path: &str| path[folder.len() + 1..].to_owned();
+    let arrows = sources.iter().map(|source| names_from_root(&source.text, 99).len()).sum();
+    let of = |source: &crate::source::Source| violations(order, &strip(&source.path), &source.text, &reexports);
+    (sources.iter().flat_map(of).collect(), arrows)
+}
+
+#[test]
+fn modules_use_only_earlier_ones() {
+    for (folder, order, least) in [("core/src", CORE, 100), ("models/trace/src", TRACE, 50)] {
+        let (found, arrows) = violations_in(folder, order);
+        assert!(arrows > least, "only {arrows} paths of {folder} were read");
+        assert!(found.is_empty(), "{folder}:\n{}", found.join("\n"));
+    }
 }
 
 #[test]
 fn made_up_arrows_are_judged() {
     let exports = reexports("pub use dims::ImageSize;\npub use scene::{Drawing, Scene};\n");
-    let count = |path: &str, text: &str| violations(path, text, &exports).len();
+    let count = |path: &str, text: &str| violations(CORE, path, text, &exports).len();
     assert_eq!(count("scene/draw.rs", "use crate::shape::Efd;\nuse crate::{ImageSize, real::Real};"), 0);
     assert_eq!(count("scene/draw.rs", "use crate::render::Renderer;"), 1);
     assert_eq!(count("shape/efd.rs", "use crate::{ImageSize,\n    Scene};"), 1, "re-exports, over lines");

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Core and fit work without std: the clean build must link and run, and the build that lets std in must fail with the
+# Core, trace and fit work without std: the clean build must link and run, and the build that lets std in must fail with the
 # duplicate lang item. Either outcome alone would prove nothing. Exits 0 only if both are as expected.
 set -euo pipefail
 cd "$(dirname "$0")"
@@ -15,7 +15,7 @@ if [ "$code" -ne 0 ]; then
     echo "no_std: the program without std failed at step $code of src/lib.rs" >&2
     exit 1
 fi
-echo "no_std: core and fit link and run without std"
+echo "no_std: core, trace and fit link and run without std"
 
 if cargo build --quiet --release --locked --target-dir "$target/no_std" --features sneak_std 2> "$log"; then
     echo "no_std: std slipped in and the build did not notice" >&2

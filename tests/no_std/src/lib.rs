@@ -1,4 +1,4 @@
-//! A program without std that renders, makes descriptors, matches and fits.
+//! A program without std that renders, makes descriptors, matches, fits and traces.
 //!
 //! A library links only if everything below it does without std: std brings its own panic handler, and two of them are
 //! a duplicate lang item. `check.sh` builds this crate both ways, links the clean one to `main.c` and runs it.
@@ -63,5 +63,16 @@ fn proof() -> Result<(), i32> {
 
     let view = ImageView::new(size, &image).map_err(|_| 10)?;
     let fit = fit_image(view, &FitOptions::default()).map_err(|_| 11)?;
-    if fit.scene.objects.len() == 1 && fit.loss < 0.01 { Ok(()) } else { Err(12) }
+    if fit.scene.objects.len() != 1 || fit.loss > 0.01 {
+        return Err(12);
+    }
+
+    // A square with clear edges.
+    let square = |i: usize| [i % 64, i / 64].iter().all(|place| (16..48).contains(place));
+    for (i, value) in image.iter_mut().enumerate() {
+        *value = if square(i % size.pixels()) { 1.0 } else { 0.0 };
+    }
+    let view = ImageView::new(size, &image).map_err(|_| 13)?;
+    let traced = dvp_trace::trace(&view, None).map_err(|_| 14)?;
+    if traced.scene.objects.len() == 1 { Ok(()) } else { Err(15) }
 }
