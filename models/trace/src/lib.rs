@@ -63,21 +63,30 @@ pub enum NoDrawing {
     },
 }
 
-/// The drawing that a picture is. `matte`: the color that transparent parts are shown on, if it has such.
+/// What is known of a picture beside its pixels.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Known {
+    /// The color that transparent parts are shown on, if it has such.
+    pub matte: Option<[f32; 3]>,
+    /// Whether a coder of photographs (JPEG) has changed its pixels. If it did not say so, that is seen if it changed many.
+    pub coded: bool,
+}
+
+/// The drawing that a picture is.
 ///
 /// # Errors
 /// [`NoDrawing`] if the picture is no drawing of flat colors with clear edges.
-pub fn trace(image: &ImageView<'_, f32>, matte: Option<[f32; 3]>) -> Result<Traced, NoDrawing> {
-    let partition = Partition::of(image).map_err(NoDrawing::Partition)?;
+pub fn trace(image: &ImageView<'_, f32>, known: &Known) -> Result<Traced, NoDrawing> {
+    let partition = Partition::of(image, known.coded).map_err(NoDrawing::Partition)?;
     let rings = boundary::rings(&partition);
     // Coders of photographs stain what is beside an edge, whatever its profile is.
     let stained = if partition.coded { 0.0 } else { boundary::stained(&partition, &rings).unwrap_or(0.0) };
     if stained > tuning::SOFT_STAINED {
         return Err(NoDrawing::Soft { stained });
     }
-    let layers = layers::layers(&partition, &rings, matte.map(|matte| matte.map(f64::from)));
+    let layers = layers::layers(&partition, &rings, known.matte.map(|matte| matte.map(f64::from)));
     let bits = layers.bits();
-    Ok(Traced { scene: scene::scene(&layers, image.size(), matte.is_some()), bits, stained })
+    Ok(Traced { scene: scene::scene(&layers, image.size(), known.matte.is_some()), bits, stained })
 }
 
 impl core::fmt::Display for NoDrawing {

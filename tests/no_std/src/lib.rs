@@ -73,6 +73,6 @@ fn proof() -> Result<(), i32> {
         *value = if square(i % size.pixels()) { 1.0 } else { 0.0 };
     }
     let view = ImageView::new(size, &image).map_err(|_| 13)?;
-    let traced = dvp_trace::trace(&view, None).map_err(|_| 14)?;
+    let traced = dvp_trace::trace(&view, &dvp_trace::Known::default()).map_err(|_| 14)?;
     if traced.scene.objects.len() == 1 { Ok(()) } else { Err(15) }
 }

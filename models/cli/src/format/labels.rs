@@ -19,7 +19,7 @@ use tiff::TiffError;
 use tiff::decoder::{Decoder, DecodingResult, Limits};
 
 use super::error::FormatError;
-use super::picture::decode;
+use super::picture::{Decoded, decode};
 
 /// What the names of label maps end with.
 const ENDING: &str = "labels.png";
@@ -46,7 +46,7 @@ pub fn read_labels(path: &Path, max_pixels: usize) -> Result<(ImageSize, Vec<u32
     if let Some(found) = read_gray_tiff(path, max_pixels)? {
         return Ok(found);
     }
-    let (size, picture) = decode(path, max_pixels)?;
+    let Decoded { size, picture, .. } = decode(path, max_pixels)?;
     let labels = match picture {
         DynamicImage::ImageLuma8(gray) => gray.into_raw().into_iter().map(u32::from).collect(),
         DynamicImage::ImageLuma16(gray) => gray.into_raw().into_iter().map(u32::from).collect(),

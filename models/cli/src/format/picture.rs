@@ -8,7 +8,7 @@ use std::path::Path;
 
 use dvp_core::image::{ImageError, RgbaImage};
 use dvp_core::{Image, ImageSize, ImageView, Real};
-use image::{DynamicImage, ImageDecoder, ImageReader, Limits};
+use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 
 use super::error::FormatError;
 use super::matte::Ground;
@@ -34,12 +34,14 @@ pub struct Picture<T> {
     pub visible: bool,
     /// Bits of a channel in the file.
     pub bits: BitDepth,
+    /// Whether a coder of photographs has changed its pixels: it is a JPEG.
+    pub coded: bool,
 }
 
 impl<T: Real> From<Image<T>> for Picture<T> {
     /// An opaque picture of float pixels.
     fn from(image: Image<T>) -> Self {
-        Self { image, transparent: false, matte: [T::one(); 3], visible: true, bits: BitDepth::Sixteen }
+        Self { image, transparent: false, matte: [T::one(); 3], visible: true, bits: BitDepth::Sixteen, coded: false }
     }
 }
 
@@ -49,7 +51,7 @@ impl<T: Real> From<Image<T>> for Picture<T> {
 /// [`FormatError::Read`], [`FormatError::Decode`], [`FormatError::Pixels`], or [`FormatError::Values`] for
 /// floating-point files with NaN.
 pub fn read_picture<T: Real>(path: &Path, max_pixels: usize) -> Result<Picture<T>, FormatError> {
-    let (size, picture) = decode(path, max_pixels)?;
+    let Decoded { size, picture, coded } = decode(path, max_pixels)?;
     let color = picture.color();
     let eight = |value: u8| f64::from(value) / 255.0;
     let sixteen = |value: u16| f64::from(value) / 65535.0;
@@ -61,7 +63,8 @@ pub fn read_picture<T: Real>(path: &Path, max_pixels: usize) -> Result<Picture<T
         (_, false) => opaque(size, picture.into_rgb32f().as_raw(), f64::from, BitDepth::Sixteen),
         (_, true) => translucent(size, picture.into_rgba32f().as_raw(), f64::from, BitDepth::Sixteen),
     };
-    result.map_err(|source| FormatError::Values { path: path.to_path_buf(), source })
+    let values = |source| FormatError::Values { path: path.to_path_buf(), source };
+    Ok(Picture { coded, ..result.map_err(values)? })
 }
 
 /// Reads a picture of at most `max_pixels` pixels with its alpha; no pixel of an opaque one lets anything through.
@@ -69,7 +72,7 @@ pub fn read_picture<T: Real>(path: &Path, max_pixels: usize) -> Result<Picture<T
 /// # Errors
 /// As [`read_picture`].
 pub fn read_picture_rgba<T: Real>(path: &Path, max_pixels: usize) -> Result<RgbaImage<T>, FormatError> {
-    let (size, picture) = decode(path, max_pixels)?;
+    let Decoded { size, picture, .. } = decode(path, max_pixels)?;
     let color = picture.color();
     let values: Vec<T> = match color.bytes_per_pixel() / color.channel_count() {
         1 => picture.into_rgba8().as_raw().iter().map(|&value| T::of(f64::from(value) / 255.0)).collect(),
@@ -80,14 +83,23 @@ pub fn read_picture_rgba<T: Real>(path: &Path, max_pixels: usize) -> Result<Rgba
     RgbaImage::from_straight(size, &values).map_err(refused)
 }
 
+/// A file's pixels.
+pub(super) struct Decoded {
+    pub(super) size: ImageSize,
+    pub(super) picture: DynamicImage,
+    /// Whether it is a JPEG.
+    pub(super) coded: bool,
+}
+
 /// The pixels as stored, at least one; turned as the orientation tag says.
-pub(super) fn decode(path: &Path, max_pixels: usize) -> Result<(ImageSize, DynamicImage), FormatError> {
+pub(super) fn decode(path: &Path, max_pixels: usize) -> Result<Decoded, FormatError> {
     let unreadable = |source| FormatError::Read { path: path.to_path_buf(), source };
     let undecodable = |source| FormatError::Decode { path: path.to_path_buf(), source };
     let mut reader = ImageReader::open(path).map_err(unreadable)?.with_guessed_format().map_err(unreadable)?;
     let mut limits = Limits::no_limits();
     limits.max_alloc = Some((max_pixels as u64).saturating_mul(DECODER_BYTES).saturating_add(1 << 20));
     reader.limits(limits);
+    let coded = reader.format() == Some(ImageFormat::Jpeg);
     let mut decoder = reader.into_decoder().map_err(undecodable)?;
     let (width, height) = decoder.dimensions();
     let too_many = FormatError::Pixels { path: path.to_path_buf(), width, height, limit: max_pixels };
@@ -98,7 +110,7 @@ pub(super) fn decode(path: &Path, max_pixels: usize) -> Result<(ImageSize, Dynam
     let mut picture = DynamicImage::from_decoder(decoder).map_err(undecodable)?;
     picture.apply_orientation(orientation);
     match ImageSize::new(picture.width() as usize, picture.height() as usize) {
-        Ok(size) => Ok((size, picture)),
+        Ok(size) => Ok(Decoded { size, picture, coded }),
         Err(_) => Err(too_many),
     }
 }
@@ -125,7 +137,7 @@ fn translucent<T: Real, V: Copy>(
     let ground = Ground::of(pixels.clone());
     let image = planar(size, pixels.map(|pixel| ground.under(pixel)))?;
     let matte = ground.under([0.0; 4]).map(T::of);
-    Ok(Picture { image, transparent: ground != Ground::Opaque, matte, visible: ground != Ground::Invisible, bits })
+    Ok(Picture { image, transparent: ground != Ground::Opaque, matte, visible: ground != Ground::Invisible, bits, coded: false })
 }
 
 fn planar<T: Real>(size: ImageSize, pixels: impl Iterator<Item = [f64; 3]>) -> Result<Image<T>, ImageError> {

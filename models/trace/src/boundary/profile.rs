@@ -17,11 +17,11 @@ const MOST_SLOPE: f64 = 1.0;
 /// Cracks before and behind one among which its neighbors are looked for.
 const BESIDE: usize = 2;
 
-/// Share of the pixels just beyond the reach of straight boundaries that still show the color on the other side; none if there are no
-/// such pixels.
+/// Share of the pixels just beyond the reach of straight boundaries that still show the color on the other side, less the share of
+/// those that show less than none of it (coders of photographs ring to both sides); none if there are no such pixels.
 #[must_use]
 pub fn stained(partition: &Partition, rings: &[Vec<Ring>]) -> Option<f64> {
-    let [mut stained, mut count] = [0_usize; 2];
+    let [mut stained, mut count] = [0_i32; 2];
     for ring in rings.iter().flatten() {
         let n = ring.steps.len();
         for k in (0..n).filter(|_| n > 2 * BESIDE) {
@@ -32,11 +32,11 @@ pub fn stained(partition: &Partition, rings: &[Vec<Ring>]) -> Option<f64> {
             let Some(slope) = slope(&here, &before, &behind) else { continue };
             for share in shares_beyond(partition, &ring.steps[k], &here, slope) {
                 count += 1;
-                stained += usize::from(share > tuning::LEAST_STAIN);
+                stained += i32::from(share > tuning::LEAST_STAIN) - i32::from(share < -tuning::LEAST_STAIN);
             }
         }
     }
-    (count > 0).then(|| stained as f64 / count as f64)
+    (count > 0).then(|| f64::from(stained) / f64::from(count))
 }
 
 /// Change of the position per pixel along a boundary that is straight over three windows of one axis.

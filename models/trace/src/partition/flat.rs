@@ -31,7 +31,7 @@ pub(super) const NONE: u32 = u32::MAX;
 impl Noise {
     /// From the blocks themselves: in a clean picture nearly all that are not equal are edges. Coders of photographs leave many
     /// that differ a little.
-    pub(super) fn of(pixels: &[[f32; 3]], size: [usize; 2]) -> Self {
+    pub(super) fn of(pixels: &[[f32; 3]], size: [usize; 2], coded: bool) -> Self {
         let [mut little, mut much] = [0usize; 2];
         for range in ranges(pixels, size).map(|(_, range)| range) {
             if range > tuning::CLEAN_STEP && range <= tuning::CODED_STEP {
@@ -40,7 +40,7 @@ impl Noise {
                 much += 1;
             }
         }
-        if little > much / 2 {
+        if coded || little > tuning::CODED_BLOCKS * much {
             Self { flat: tuning::CODED_STEP, mixed: tuning::CODED_MIX }
         } else {
             Self { flat: tuning::CLEAN_STEP, mixed: tuning::CLEAN_MIX }

@@ -58,14 +58,14 @@ pub enum NoPartition {
 }
 
 impl Partition {
-    /// Cuts a picture into faces.
+    /// Cuts a picture into faces; `coded` says that a coder of photographs has changed its pixels.
     ///
     /// # Errors
     /// [`NoPartition`] if it is no drawing of flat colors.
-    pub fn of(image: &ImageView<'_, f32>) -> Result<Self, NoPartition> {
+    pub fn of(image: &ImageView<'_, f32>, coded: bool) -> Result<Self, NoPartition> {
         let size = [image.size().width(), image.size().height()];
         let pixels: Vec<[f32; 3]> = (0..image.size().pixels()).map(|i| image.pixel(i)).collect();
-        let noise = flat::Noise::of(&pixels, size);
+        let noise = flat::Noise::of(&pixels, size, coded);
         let flats = flat::find(&pixels, size, &noise);
         let share = flats.pure_count() as f64 / pixels.len() as f64;
         if share < crate::tuning::LEAST_FLAT {

@@ -14,6 +14,7 @@ use dvp_fit::opt_iter::OptIter;
 use dvp_fit::refine::{Refine, RefineScratch};
 use dvp_fit::{Bank, Fit, FitOptions, FitScratch, Fitter, StopReason};
 use dvp_net::propose::Proposer;
+use dvp_trace::Known;
 
 use crate::format::{Picture, Place, read_scene};
 use crate::method;
@@ -152,8 +153,8 @@ impl Solver {
     fn segment(&self, picture: &Picture<f32>, scratch: &mut Scratch) -> Result<Fit<f32>> {
         let image = picture.image.view();
         let is_known = self.options.bank.is_some() || self.options.compositing.is_some();
-        let matte = picture.transparent.then_some(picture.matte);
-        let traced = if is_known { None } else { dvp_trace::trace(&image, matte).ok() };
+        let known = Known { matte: picture.transparent.then_some(picture.matte), coded: picture.coded };
+        let traced = if is_known { None } else { dvp_trace::trace(&image, &known).ok() };
         let Some(traced) = traced else { return Ok(self.fitter.fit(image, &mut scratch.fit)?) };
         let painter = Painter::default();
         let drawing = painter.draw(&traced.scene, image.size())?;
