@@ -31,6 +31,8 @@ pub mod ruler;
 pub mod sample;
 pub mod scene;
 pub mod stroke;
+#[cfg(test)]
+mod tests;
 pub mod tuning;
 
 use dvp_core::{ImageView, Scene};
