@@ -70,7 +70,7 @@ pub enum NoDrawing {
 pub struct Known {
     /// The color that transparent parts are shown on, if it has such.
     pub matte: Option<[f32; 3]>,
-    /// Whether a coder of photographs (JPEG) has changed its pixels. If it did not say so, that is seen if it changed many.
+    /// Whether a coder of photographs (JPEG) has changed its pixels.
     pub coded: bool,
 }
 
@@ -97,6 +97,7 @@ impl core::fmt::Display for NoDrawing {
             Self::Partition(NoPartition::NotFlat { flat }) => {
                 write!(f, "only {:.0} % of the picture are of flat colors", 100.0 * flat)
             }
+            Self::Partition(NoPartition::Noisy) => write!(f, "the flat parts of the picture are noisy"),
             Self::Partition(NoPartition::TooManyColors) => {
                 write!(f, "the picture has more than {} flat colors", tuning::MOST_COLORS)
             }

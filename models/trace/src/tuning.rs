@@ -120,6 +120,8 @@ pub const LEAST_STAIN: f64 = 0.003;
 /// Share of stained pixels from which on edges are soft. Renderers of area coverage leave up to .27 (emoji with lines thinner than a pixel, of 210
 /// pictures), the reference renderer of the paper .32 and more on nine of ten pictures.
 pub const SOFT_STAINED: f64 = 0.3;
-/// So many times as many blocks that differ a little as blocks that differ much make a picture a coded one, if nobody says so: 384 pictures of the
-/// paper's renderer have up to 1.1 times as many; JPEGs of icons about as many, photographs more.
-pub const CODED_BLOCKS: usize = 2;
+/// So many times as many blocks that differ a little as blocks that differ much make a picture a noisy one: 384 pictures of the paper's renderer
+/// have up to 1.1 times as many, noise of a standard deviation of .01 gives a hundred times.
+pub const NOISY_BLOCKS: usize = 2;
+/// Pixels that a pixel's length along the border counts when the background is chosen.
+pub const BORDER_WEIGHT: usize = 4;

@@ -26,6 +26,7 @@ use crate::boundary::Ring;
 use crate::outline::Outline;
 use crate::partition::{Color, OUTSIDE, Partition};
 use crate::ruler::Ruler;
+use crate::tuning;
 use complete::Completion;
 use order::Order;
 
@@ -91,12 +92,13 @@ pub fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<Color>) 
     Layers { background: partition.color(background), layers }
 }
 
-/// The face that everything lies on: that of the matte, or else the one along most of the border.
+/// The face that everything lies on: that of the matte, or else the largest, where what lies along the border counts more.
 fn background(partition: &Partition, rings: &[Vec<Ring>], matte: Option<Color>) -> u32 {
     let contact = |face: &u32| -> usize {
         rings[*face as usize].iter().flat_map(|ring| &ring.steps).filter(|step| step.other == OUTSIDE).count()
     };
-    let key = |face: &u32| (contact(face), partition.faces[*face as usize].area);
+    // What reaches beyond the picture on many sides counts for more than it shows.
+    let key = |face: &u32| partition.faces[*face as usize].area + tuning::BORDER_WEIGHT * contact(face);
     let faces = 0..partition.faces.len() as u32;
     let clear = matte.and_then(|matte| {
         let is_clear = |face: &u32| {

@@ -5,6 +5,7 @@ use alloc::vec::Vec;
 
 use dvp_core::geometry::DisjointSets;
 
+use super::NoPartition;
 use crate::tuning;
 
 /// How far pixels of one color differ.
@@ -29,9 +30,8 @@ pub(super) struct Flats {
 pub(super) const NONE: u32 = u32::MAX;
 
 impl Noise {
-    /// From the blocks themselves: in a clean picture nearly all that are not equal are edges. Coders of photographs leave many
-    /// that differ a little.
-    pub(super) fn of(pixels: &[[f32; 3]], size: [usize; 2], coded: bool) -> Self {
+    /// From the blocks themselves: in a clean picture nearly all that are not equal are edges; noise leaves many that differ a little.
+    pub(super) fn of(pixels: &[[f32; 3]], size: [usize; 2], coded: bool) -> Result<Self, NoPartition> {
         let [mut little, mut much] = [0usize; 2];
         for range in ranges(pixels, size).map(|(_, range)| range) {
             if range > tuning::CLEAN_STEP && range <= tuning::CODED_STEP {
@@ -40,11 +40,13 @@ impl Noise {
                 much += 1;
             }
         }
-        if coded || little > tuning::CODED_BLOCKS * much {
-            Self { flat: tuning::CODED_STEP, mixed: tuning::CODED_MIX }
-        } else {
-            Self { flat: tuning::CLEAN_STEP, mixed: tuning::CLEAN_MIX }
+        if coded {
+            return Ok(Self { flat: tuning::CODED_STEP, mixed: tuning::CODED_MIX });
         }
+        if little > tuning::NOISY_BLOCKS * much {
+            return Err(NoPartition::Noisy);
+        }
+        Ok(Self { flat: tuning::CLEAN_STEP, mixed: tuning::CLEAN_MIX })
     }
 }
 

@@ -53,6 +53,8 @@ pub enum NoPartition {
         /// Share of the pixels that belong to a flat face.
         flat: f64,
     },
+    /// Its flat parts are noisy.
+    Noisy,
     /// More colors than drawings have.
     TooManyColors,
 }
@@ -65,7 +67,7 @@ impl Partition {
     pub fn of(image: &ImageView<'_, f32>, coded: bool) -> Result<Self, NoPartition> {
         let size = [image.size().width(), image.size().height()];
         let pixels: Vec<[f32; 3]> = (0..image.size().pixels()).map(|i| image.pixel(i)).collect();
-        let noise = flat::Noise::of(&pixels, size, coded);
+        let noise = flat::Noise::of(&pixels, size, coded)?;
         let flats = flat::find(&pixels, size, &noise);
         let share = flats.pure_count() as f64 / pixels.len() as f64;
         if share < crate::tuning::LEAST_FLAT {

@@ -24,6 +24,9 @@ use crate::paint::{PaintScratch, Painter};
 /// that the reference renderer painted has so few.
 const DOUBTFUL_EDGES: f64 = 0.04;
 
+/// Where edges leave a doubt segments are taken, whose edges are fitted, unless they miss the picture by so many times as much.
+const CLEARLY_WORSE: f32 = 2.0;
+
 /// How a scene is found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub(super) enum Method {
@@ -164,7 +167,7 @@ impl Solver {
         let drawn = Fit { loss, bits: traced.bits, stop: StopReason::Converged, ..fit };
         if traced.stained > DOUBTFUL_EDGES {
             let segments = self.fitter.fit(image, &mut scratch.fit)?;
-            return Ok(if segments.loss < drawn.loss { segments } else { drawn });
+            return Ok(if segments.loss < CLEARLY_WORSE * drawn.loss { segments } else { drawn });
         }
         Ok(drawn)
     }
