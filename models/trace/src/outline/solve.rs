@@ -18,7 +18,7 @@ use crate::tuning;
 const MOST_STEPS: usize = 15;
 /// A step that lowers the sum of squares by less ends the fit.
 const LEAST_GAIN: f64 = 0.1;
-/// How hard ends of open lines are held: to half a pixel.
+/// How hard ends that nothing else holds are held to the last sample: to half a pixel.
 const END_WEIGHT: f64 = 4.0;
 /// Samples beside a corner that may be moved from one curve to the next at once.
 const REACH: usize = 8;
@@ -192,14 +192,11 @@ impl Problem<'_> {
                 equations.add(slopes.entries(), misfit, weight);
             }
         }
-        if !chain.closed {
-            // No sample says how far an open line goes: it ends about where they do.
-            for (point, sample) in [(0, chain.firsts[0]), (chain.points.len() - 1, chain.end - 1)] {
-                let off = chain.points[point] - self.track.point(sample % self.track.len());
-                for (axis, off) in [off.x, off.y].into_iter().enumerate() {
-                    equations.strain += END_WEIGHT * off * off;
-                    equations.add(&[(places[point] + axis, 1.0)], off, END_WEIGHT);
-                }
+        for (point, sample) in self.loose_ends(chain) {
+            let off = chain.points[point] - self.track.point(sample % self.track.len());
+            for (axis, off) in [off.x, off.y].into_iter().enumerate() {
+                equations.strain += END_WEIGHT * off * off;
+                equations.add(&[(places[point] + axis, 1.0)], off, END_WEIGHT);
             }
         }
         for &(tie, weight) in self.ties {
@@ -209,6 +206,16 @@ impl Problem<'_> {
             }
         }
         equations.cost().is_finite().then_some(equations)
+    }
+
+    /// Points up to which no sample says how far the outline goes, and the last sample before each: the ends of open lines and of lines over
+    /// hidden stretches. The outline ends about where the samples do.
+    fn loose_ends(&self, chain: &Chain) -> Vec<(usize, usize)> {
+        if !chain.closed {
+            return [(0, chain.firsts[0]), (chain.points.len() - 1, chain.end - 1)].into();
+        }
+        let bridges = (0..chain.curves.len()).filter(|&k| samples_of(chain, self.track.len(), k).is_empty());
+        bridges.flat_map(|k| [(k, chain.firsts[k] + self.track.len() - 1), (chain.next(k), chain.firsts[k])]).collect()
     }
 
     /// The first number that each meets, by what curves and ties hold together.
