@@ -114,3 +114,5 @@ pub const BORDER_SIGMA: f64 = 0.1;
 
 /// By how much a curve may be longer than the walk along its samples, pixels: corners lie beyond the last samples beside them.
 pub const OUTLINE_SLACK: f64 = 6.0;
+/// Bits of misfit per sample, along a stretch, from which on an outline is drawn anew there: as of samples that are 4 sigma off.
+pub const OUTLINE_MOST_MISFIT: f64 = 10.0;

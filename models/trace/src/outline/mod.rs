@@ -11,6 +11,7 @@
 //! | `chain`, `skyline`, `solve` | all numbers of a row of pieces together, by least squares |
 //! | `ties` | lines along the axes, smooth joins, equal radii, where they make the description shorter |
 //! | `revise` | curves joined, left out, put in at corners |
+//! | `mend` | polygons where all that is far off |
 //! | `path` | from samples to a path |
 //! | `as_ring` | outlines of any kind as rings of lines, arcs and cubics |
 //! | `figure`, `conic`, `whole` | circles, ellipses, rectangles, regular polygons and stars, fitted to all samples |
@@ -20,6 +21,7 @@ mod chain;
 mod conic;
 mod cubic;
 mod figure;
+mod mend;
 mod moments;
 mod nodes;
 mod path;
