@@ -22,8 +22,8 @@ const BEYOND: f64 = 1.5;
 /// Corners of the polygon may be this far from the ends of the curves beside it, pixels.
 const NEAR: f64 = 2.0;
 
-/// The chain with polygons where it was far off; as it was where that is no shorter.
-pub(super) fn mend(fitted: Fitted, track: &Track, ruler: &Ruler) -> Fitted {
+/// The chain with polygons where it was far off; none if it was not, or they are no shorter.
+pub(super) fn mend(fitted: &Fitted, track: &Track, ruler: &Ruler) -> Option<Fitted> {
     let off = misfits(&fitted.chain, track, ruler);
     // Two lines between two points enclose nothing.
     let is_flat = |chain: &Chain| {
@@ -36,15 +36,12 @@ pub(super) fn mend(fitted: Fitted, track: &Track, ruler: &Ruler) -> Fitted {
         bad.fill(true);
     }
     if !bad.contains(&true) {
-        return fitted;
+        return None;
     }
     let bits = |fitted: &Fitted, off: &[f64]| off.iter().sum::<f64>() + fitted.number_bits(ruler);
-    let mended = with_polygons(fitted.chain.clone(), &bad, track).and_then(|chain| Fitted::of(chain, track, ruler, &[]));
-    match mended {
-        Some(mended) if is_flat(&fitted.chain) && !is_flat(&mended.chain) => mended,
-        Some(mended) if bits(&mended, &misfits(&mended.chain, track, ruler)) < bits(&fitted, &off) => mended,
-        _ => fitted,
-    }
+    let mended = Fitted::of(with_polygons(fitted.chain.clone(), &bad, track)?, track, ruler, &[])?;
+    let is_shorter = || bits(&mended, &misfits(&mended.chain, track, ruler)) < bits(fitted, &off);
+    (is_flat(&fitted.chain) && !is_flat(&mended.chain) || is_shorter()).then_some(mended)
 }
 
 /// Bits of what the chain misses each sample by; unlike lines and circles its curves have ends.

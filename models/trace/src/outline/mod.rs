@@ -130,10 +130,17 @@ pub struct OpenFit {
 #[must_use]
 pub fn fit_closed(ring: &RingSamples, ruler: &Ruler) -> Option<Outline> {
     let mut track = Track::of_ring(ring)?;
-    let path = path::fit_ring(&mut track, ruler)?;
+    if let Some(outline) = whole::fit_plain(&track, ruler) {
+        return Some(outline);
+    }
+    let draft = path::draft_ring(&mut track, ruler)?;
+    let path = draft.finish(&track, ruler);
     let whole = whole::fit(&track, &path, ruler);
+    let path = draft.mended(&track, ruler).unwrap_or(path);
     let FittedPath { ring, bits, misfit } = path;
-    whole.or(Some(Outline { shape: OutlineShape::Path(ring), bits, misfit }))
+    whole
+        .filter(|whole| whole.bits + whole.misfit <= bits + misfit)
+        .or(Some(Outline { shape: OutlineShape::Path(ring), bits, misfit }))
 }
 
 /// The shortest description of an open line through samples.

@@ -28,8 +28,15 @@ pub(super) struct FittedPath {
     pub(super) misfit: f64,
 }
 
+/// A path before its numbers are tied.
+pub(super) struct Draft {
+    fitted: Fitted,
+    /// How many pieces it was cut into.
+    pieces: usize,
+}
+
 /// The cheapest closed path; the track starts somewhere else afterward.
-pub(super) fn fit_ring(track: &mut Track, ruler: &Ruler) -> Option<FittedPath> {
+pub(super) fn draft_ring(track: &mut Track, ruler: &Ruler) -> Option<Draft> {
     let corner = Nodes::sharpest(track);
     track.rotate(corner.unwrap_or(0));
     let mut spans = cut(track, ruler);
@@ -38,24 +45,38 @@ pub(super) fn fit_ring(track: &mut Track, ruler: &Ruler) -> Option<FittedPath> {
         track.rotate(spans[spans.len() / 2].samples.start);
         spans = cut(track, ruler);
     }
-    fit_spans(&spans, track, ruler)
+    draft(&spans, track, ruler)
 }
 
 /// The cheapest open path.
 pub(super) fn fit_line(track: &Track, ruler: &Ruler) -> Option<FittedPath> {
-    fit_spans(&cut(track, ruler), track, ruler)
+    let draft = draft(&cut(track, ruler), track, ruler)?;
+    Some(draft.mended(track, ruler).unwrap_or_else(|| draft.finish(track, ruler)))
 }
 
-fn fit_spans(spans: &[Span], track: &Track, ruler: &Ruler) -> Option<FittedPath> {
+fn draft(spans: &[Span], track: &Track, ruler: &Ruler) -> Option<Draft> {
     let mut chain = chain_of(spans, track)?;
     if chain.closed && super::solve::samples_of(&chain, track.len(), 0).is_empty() {
         // A bridge comes last rather than first: it goes from one curve to the next.
         chain = chain.rotated(track.len());
     }
     let fitted = bridge(Fitted::of(chain, track, ruler, &[])?, track, ruler);
-    let fitted = revised(mend(fitted, track, ruler), spans.len(), track, ruler);
-    let fitted = mend(fitted, track, ruler);
-    Some(finish(tie(fitted, track, ruler), ruler))
+    Some(Draft { fitted: revised(fitted, spans.len(), track, ruler), pieces: spans.len() })
+}
+
+impl Draft {
+    /// The path.
+    pub(super) fn finish(&self, track: &Track, ruler: &Ruler) -> FittedPath {
+        finish(tie(self.fitted.clone(), track, ruler), ruler)
+    }
+
+    /// The path with polygons where it would be far off; none if it is not.
+    pub(super) fn mended(&self, track: &Track, ruler: &Ruler) -> Option<FittedPath> {
+        let mended = mend(&self.fitted, track, ruler)?;
+        let again = revised(mended.clone(), self.pieces, track, ruler);
+        let fitted = if mend(&again, track, ruler).is_none() { again } else { mended };
+        Some(finish(tie(fitted, track, ruler), ruler))
+    }
 }
 
 /// The chain with what the programme could not see, if it is shorter; it was cut into `pieces`.

@@ -24,6 +24,25 @@ const STEPS: usize = 8;
 /// Step of differences, pixels and radians.
 const STEP: f64 = 1e-6;
 
+/// A circle, an ellipse or an upright rectangle that misses the samples by so little that no path can be shorter: its path has two numbers
+/// more, or costs as much.
+pub(super) fn fit_plain(track: &Track, ruler: &Ruler) -> Option<Outline> {
+    if track.hidden.contains(&true) {
+        return None;
+    }
+    let mut starts = Vec::new();
+    rounds(track, &mut starts);
+    upright(track, 0.0, false, &mut starts);
+    let most = 2.0 * ruler.number(track.sigma);
+    let mut best: Option<Outline> = None;
+    for (figure, start, free) in starts {
+        let limit = best.as_ref().map_or(f64::INFINITY, |best| best.bits + best.misfit);
+        let trial = Trial { track, ruler, figure, free };
+        best = trial.run(start, limit).filter(|found| found.misfit < most).or(best);
+    }
+    best
+}
+
 /// The cheapest whole outline that costs less than `path`.
 pub(super) fn fit(track: &Track, path: &FittedPath, ruler: &Ruler) -> Option<Outline> {
     let most = path.bits + path.misfit;
@@ -40,26 +59,31 @@ pub(super) fn fit(track: &Track, path: &FittedPath, ruler: &Ruler) -> Option<Out
 type Start = (Figure, [f64; MOST_NUMBERS], [bool; MOST_NUMBERS]);
 
 fn starts(track: &Track, ring: &PathRing<f64>) -> Vec<Start> {
-    let all = [true; MOST_NUMBERS];
     let mut starts = Vec::new();
     if ring.segments.iter().any(|segment| !matches!(segment, Segment::Line)) {
-        if let Some(circle) = track.moments(0..track.len()).circle() {
-            let center = circle.center + track.point(0);
-            starts.push((Figure::Circle, [center.x, center.y, circle.radius, 0.0, 0.0, 0.0], all));
-        }
-        if let Some([x, y, a, b, angle]) = conic::ellipse(track) {
-            let upright = if angle.sin().abs() < 0.5f64.sqrt() { [a, b] } else { [b, a] };
-            starts.push((
-                Figure::Ellipse,
-                [x, y, upright[0], upright[1], 0.0, 0.0],
-                [true, true, true, true, false, false],
-            ));
-            starts.push((Figure::Ellipse, [x, y, a, b, angle, 0.0], all));
-        }
+        rounds(track, &mut starts);
     }
     rectangles(track, ring, &mut starts);
     polygons(ring, &mut starts);
     starts
+}
+
+/// Circles and ellipses.
+fn rounds(track: &Track, starts: &mut Vec<Start>) {
+    let all = [true; MOST_NUMBERS];
+    if let Some(circle) = track.moments(0..track.len()).circle() {
+        let center = circle.center + track.point(0);
+        starts.push((Figure::Circle, [center.x, center.y, circle.radius, 0.0, 0.0, 0.0], all));
+    }
+    if let Some([x, y, a, b, angle]) = conic::ellipse(track) {
+        let upright = if angle.sin().abs() < 0.5f64.sqrt() { [a, b] } else { [b, a] };
+        starts.push((
+            Figure::Ellipse,
+            [x, y, upright[0], upright[1], 0.0, 0.0],
+            [true, true, true, true, false, false],
+        ));
+        starts.push((Figure::Ellipse, [x, y, a, b, angle, 0.0], all));
+    }
 }
 
 /// Upright and along the longest line of the path; sharp, and round if the path has arcs or curves.
@@ -74,29 +98,30 @@ fn rectangles(track: &Track, ring: &PathRing<f64>, starts: &mut Vec<Start>) {
     }
     let quarters = (longest.angle() / (0.5 * PI)).round();
     let angle = longest.angle() - quarters * 0.5 * PI;
-    for (angle, turns) in [(0.0, false), (angle, true)] {
-        let turn = Vec2::from_angle(-angle);
-        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        for sample in &track.samples {
-            let local = sample.point.turned(turn).to_array();
-            low = core::array::from_fn(|axis| low[axis].min(local[axis]));
-            high = core::array::from_fn(|axis| high[axis].max(local[axis]));
-        }
-        let [width, height] = [high[0] - low[0], high[1] - low[1]];
-        let center = Vec2::new(0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])).turned(Vec2::from_angle(angle));
-        // What the corners take away of the area, (4 - pi) radius^2, tells the radius of a rectangle that is seen whole.
-        let missing = (width * height - area(track).abs()) / (4.0 - PI);
-        let most = 0.5 * width.min(height);
-        let radius = if missing > 0.0 { missing.sqrt().min(0.98 * most) } else { 0.0 };
+    upright(track, 0.0, false, starts);
+    upright(track, angle, true, starts);
+}
+
+/// Rectangles at an angle, which is free if it `turns`: sharp, and round.
+fn upright(track: &Track, angle: f64, turns: bool, starts: &mut Vec<Start>) {
+    let turn = Vec2::from_angle(-angle);
+    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    for sample in &track.samples {
+        let local = sample.point.turned(turn).to_array();
+        low = core::array::from_fn(|axis| low[axis].min(local[axis]));
+        high = core::array::from_fn(|axis| high[axis].max(local[axis]));
+    }
+    let [width, height] = [high[0] - low[0], high[1] - low[1]];
+    let center = Vec2::new(0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])).turned(Vec2::from_angle(angle));
+    // What the corners take away of the area, (4 - pi) radius^2, tells the radius of a rectangle that is seen whole.
+    let missing = (width * height - area(track).abs()) / (4.0 - PI);
+    let most = 0.5 * width.min(height);
+    let radius = if missing > 0.0 { missing.sqrt().min(0.98 * most) } else { 0.0 };
+    for (radius, is_round) in [(radius, true), (0.0, false)] {
         starts.push((
             Figure::Rectangle,
             [center.x, center.y, width, height, radius, angle],
-            [true, true, true, true, true, turns],
-        ));
-        starts.push((
-            Figure::Rectangle,
-            [center.x, center.y, width, height, 0.0, angle],
-            [true, true, true, true, false, turns],
+            [true, true, true, true, is_round, turns],
         ));
     }
 }
