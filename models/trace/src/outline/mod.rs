@@ -36,6 +36,8 @@ mod ties;
 mod track;
 mod whole;
 
+use alloc::vec::Vec;
+
 use dvp_core::Vec2;
 use dvp_core::shape::PathRing;
 
@@ -53,6 +55,10 @@ pub struct Outline {
     pub bits: f64,
     /// Bits of what it misses the samples by.
     pub misfit: f64,
+    /// Standard deviations of the numbers of a circle (x and y of its middle, radius), an ellipse (middle, radii, angle) or a rectangle
+    /// (middle, width, height, corner radius, angle), in pixels and radians: from their covariance and from what the samples are found to be off
+    /// by. 0 for numbers that are not fitted (the angle of what is upright); empty for other kinds.
+    pub deviations: Vec<f64>,
 }
 
 /// The kinds of outlines that are tried.
@@ -140,7 +146,7 @@ pub fn fit_closed(ring: &RingSamples, ruler: &Ruler) -> Option<Outline> {
     let FittedPath { ring, bits, misfit } = path;
     whole
         .filter(|whole| whole.bits + whole.misfit <= bits + misfit)
-        .or(Some(Outline { shape: OutlineShape::Path(ring), bits, misfit }))
+        .or(Some(Outline { shape: OutlineShape::Path(ring), bits, misfit, deviations: Vec::new() }))
 }
 
 /// The shortest description of an open line through samples.

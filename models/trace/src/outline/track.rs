@@ -78,6 +78,11 @@ impl Track {
         self.samples.len()
     }
 
+    /// The deviation of a sample of the track without what renderers are off by.
+    pub(super) fn own_sigma(sample: &Sample) -> f64 {
+        (sample.sigma * sample.sigma - tuning::RENDERER_SIGMA * tuning::RENDERER_SIGMA).max(1e-8).sqrt()
+    }
+
     /// Where sample `k` says that the boundary is.
     pub(super) fn point(&self, k: usize) -> Vec2<f64> {
         self.samples[k].point

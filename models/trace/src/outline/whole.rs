@@ -21,6 +21,8 @@ use crate::tuning;
 const FIRST_LOOKS: usize = 48;
 /// Steps of a fit.
 const STEPS: usize = 8;
+/// Mean squared misfit of samples below which a picture is exact: renderers that round their coverage have a half to two.
+const EXACT: f64 = 0.1;
 /// Step of differences, pixels and radians.
 const STEP: f64 = 1e-6;
 
@@ -37,7 +39,7 @@ pub(super) fn fit_plain(track: &Track, ruler: &Ruler) -> Option<Outline> {
     let mut best: Option<Outline> = None;
     for (figure, start, free) in starts {
         let limit = best.as_ref().map_or(f64::INFINITY, |best| best.bits + best.misfit);
-        let trial = Trial { track, ruler, figure, free };
+        let trial = Trial { track, ruler, figure, free, renderer: tuning::RENDERER_SIGMA };
         best = trial.run(start, limit).filter(|found| found.misfit < most).or(best);
     }
     best
@@ -49,7 +51,7 @@ pub(super) fn fit(track: &Track, path: &FittedPath, ruler: &Ruler) -> Option<Out
     let mut best: Option<Outline> = None;
     for (figure, start, free) in starts(track, &path.ring) {
         let most = best.as_ref().map_or(most, |best| best.bits + best.misfit);
-        let trial = Trial { track, ruler, figure, free };
+        let trial = Trial { track, ruler, figure, free, renderer: tuning::RENDERER_SIGMA };
         best = trial.run(start, most).or(best);
     }
     best
@@ -178,11 +180,14 @@ fn area(track: &Track) -> f64 {
 }
 
 /// A figure on trial.
+#[derive(Clone, Copy)]
 struct Trial<'a> {
     track: &'a Track,
     ruler: &'a Ruler,
     figure: Figure,
     free: [bool; MOST_NUMBERS],
+    /// What renderers are off by, pixels.
+    renderer: f64,
 }
 
 /// Normal equations of a figure's numbers; those that are not free keep to themselves.
@@ -217,8 +222,36 @@ impl Trial<'_> {
             }
             bits += self.ruler.number(sigma);
         }
-        let shape = self.shape(&numbers)?;
-        (bits + misfit < most).then_some(Outline { shape, bits, misfit })
+        if bits + misfit >= most {
+            return None;
+        }
+        let (numbers, deviations) = self.polish(numbers, &equations).unwrap_or((numbers, Vec::new()));
+        Some(Outline { shape: self.shape(&numbers)?, bits, misfit, deviations })
+    }
+
+    /// The numbers by the doubt of the samples alone, if they are not off by what renderers are off by, and the deviations of the numbers.
+    fn polish(&self, numbers: [f64; MOST_NUMBERS], found: &Equations) -> Option<([f64; MOST_NUMBERS], Vec<f64>)> {
+        if matches!(self.figure, Figure::Polygon { .. } | Figure::Star { .. }) {
+            return None;
+        }
+        let variance = |equations: &Equations| equations.chi2 / (as_f64(self.track.len()) - as_f64(self.count_free())).max(1.0);
+        let exact = Trial { renderer: 0.0, ..*self };
+        let polished = (variance(found) < EXACT && self.renderer > 0.0).then(|| exact.descend(numbers, 1)).flatten();
+        let (numbers, found) = polished.as_ref().map_or((numbers, found), |(numbers, found)| (*numbers, found));
+        let factor = cholesky(&found.normal, 0.0)?;
+        let deviation = |k: usize| {
+            if !self.free[k] {
+                return 0.0;
+            }
+            let unit: [f64; MOST_NUMBERS] = core::array::from_fn(|i| if i == k { 1.0 } else { 0.0 });
+            (solve(&factor, unit)[k] * variance(found)).sqrt()
+        };
+        Some((numbers, (0..self.figure.number_count()).map(deviation).collect()))
+    }
+
+    /// How many numbers are free.
+    fn count_free(&self) -> usize {
+        self.free[..self.figure.number_count()].iter().filter(|&&is_free| is_free).count()
     }
 
     /// Gauss-Newton on every `every`-th sample.
@@ -253,8 +286,9 @@ impl Trial<'_> {
         let mut equations =
             Equations { normal: [[0.0; MOST_NUMBERS]; MOST_NUMBERS], right: [0.0; MOST_NUMBERS], chi2: 0.0 };
         for sample in self.track.samples.iter().step_by(every) {
+            let sigma = if self.renderer > 0.0 { sample.sigma } else { Track::own_sigma(sample) };
             let (distance, normal) = self.figure.distance(numbers, sample.point);
-            let scale = 1.0 / (normal.dot(sample.axis).abs().max(LEAST_COSINE) * sample.sigma);
+            let scale = 1.0 / (normal.dot(sample.axis).abs().max(LEAST_COSINE) * sigma);
             let misfit = distance * scale;
             if corners.iter().any(|&corner| sample.holds(corner)) {
                 equations.chi2 += (misfit * misfit).min(spoiled_chi2());
