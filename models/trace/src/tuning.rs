@@ -125,3 +125,5 @@ pub const SOFT_STAINED: f64 = 0.3;
 pub const NOISY_BLOCKS: usize = 2;
 /// Pixels that a pixel's length along the border counts when the background is chosen.
 pub const BORDER_WEIGHT: usize = 4;
+/// Bits of misfit per sample, along a stretch, from which on an outline is drawn anew there: as of samples that are 4 sigma off.
+pub const OUTLINE_MOST_MISFIT: f64 = 10.0;

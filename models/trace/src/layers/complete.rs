@@ -161,7 +161,7 @@ impl Completion<'_> {
             points = ring.steps.iter().map(|step| step.crack.start.map(|value| value as f64)).collect();
         }
         let bits = 2.0 * points.len() as f64 * self.ruler.number(0.1);
-        Outline { shape: OutlineShape::Path(PathRing::polygon(points)), bits, misfit: 0.0 }
+        Outline { shape: OutlineShape::Path(PathRing::polygon(points)), bits, misfit: 0.0, deviations: Vec::new() }
     }
 }
 

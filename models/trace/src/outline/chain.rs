@@ -3,8 +3,10 @@
 use alloc::vec::Vec;
 
 use dvp_core::Vec2;
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
 
-use super::cubic::{at, basis, nearer};
+use super::cubic::{at, basis, nearer, unit};
 use super::track::LEAST_COSINE;
 use crate::sample::Sample;
 
@@ -135,7 +137,7 @@ impl Chain {
         if let Some(cubic) = self.cubic(k) {
             *t = nearer(&cubic, sample.point, *t);
             let (place, velocity) = at(&cubic, *t);
-            let across = velocity.normalized()?.perp();
+            let across = unit(velocity)?.perp();
             let across = across / (held(across.dot(sample.axis), 1.0) * sample.sigma);
             let share = basis(*t);
             for (share, place) in share.into_iter().zip([first, first + 2, first + 4, last]) {
@@ -152,7 +154,7 @@ impl Chain {
         let g = bulge * quarter + factor * cross;
         let by_q = q * (2.0 * bulge) + chord.perp() * factor;
         let by_chord = chord * (-0.5 * bulge) - q.perp() * factor;
-        let steepness = by_q.length();
+        let steepness = by_q.length_squared().sqrt();
         let along = held(by_q.dot(sample.axis), steepness) * sample.sigma;
         if steepness <= 0.0 || !along.is_finite() {
             return None;

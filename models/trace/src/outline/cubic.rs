@@ -32,6 +32,12 @@ pub(super) fn at(cubic: &[Vec2<f64>; 4], t: f64) -> (Vec2<f64>, Vec2<f64>) {
     (abc * s + bcd * t, (bcd - abc) * 3.0)
 }
 
+/// The direction of a vector, without the care for overflow that [`Vec2::normalized`] takes: it is asked for at every sample.
+pub(super) fn unit(vector: Vec2<f64>) -> Option<Vec2<f64>> {
+    let square = vector.length_squared();
+    (square > 0.0 && square.is_finite()).then(|| vector / square.sqrt())
+}
+
 /// A better parameter of the point of the cubic that is nearest to `point`.
 pub(super) fn nearer(cubic: &[Vec2<f64>; 4], point: Vec2<f64>, t: f64) -> f64 {
     let (place, velocity) = at(cubic, t);
@@ -77,7 +83,7 @@ pub(super) fn fit(track: &Track, range: Range<usize>) -> Option<([Vec2<f64>; 4],
             let sample = &track.samples[index(k)];
             *t = nearer(&cubic, sample.point, *t);
             let (place, velocity) = at(&cubic, *t);
-            let across = velocity.normalized()?.perp();
+            let across = unit(velocity)?.perp();
             let cosine = across.dot(sample.axis).abs().max(LEAST_COSINE);
             let across = across / (cosine * sample.sigma);
             let misfit = (sample.point - place).dot(across);

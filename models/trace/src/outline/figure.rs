@@ -33,15 +33,15 @@ impl Figure {
         let offset = point - Vec2::new(x, y);
         match self {
             Self::Circle => {
-                let length = offset.length();
+                let length = offset.length_squared().sqrt();
                 (length - a, offset / length)
             }
             Self::Ellipse => {
                 let turn = Vec2::from_angle(c);
                 let q = offset.turned(conjugate(turn));
-                let height = (q.x / a).hypot(q.y / b);
+                let height = Vec2::new(q.x / a, q.y / b).length_squared().sqrt();
                 let slope = Vec2::new(q.x / (a * a), q.y / (b * b)) / height;
-                let steepness = slope.length();
+                let steepness = slope.length_squared().sqrt();
                 ((height - 1.0) / steepness, (slope / steepness).turned(turn))
             }
             Self::Rectangle => {
@@ -49,7 +49,7 @@ impl Figure {
                 let q = offset.turned(conjugate(turn));
                 let beyond = Vec2::new(q.x.abs() - (0.5 * a - c), q.y.abs() - (0.5 * b - c));
                 let (distance, normal) = if beyond.x > 0.0 && beyond.y > 0.0 {
-                    let length = beyond.length();
+                    let length = beyond.length_squared().sqrt();
                     (length - c, beyond / length)
                 } else if beyond.x > beyond.y {
                     (beyond.x - c, Vec2::new(1.0, 0.0))

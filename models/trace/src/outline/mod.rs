@@ -11,6 +11,7 @@
 //! | `chain`, `skyline`, `solve` | all numbers of a row of pieces together, by least squares |
 //! | `ties` | lines along the axes, smooth joins, equal radii, where they make the description shorter |
 //! | `revise` | curves joined, left out, put in at corners |
+//! | `mend` | polygons where all that is far off |
 //! | `path` | from samples to a path |
 //! | `as_ring` | outlines of any kind as rings of lines, arcs and cubics |
 //! | `figure`, `conic`, `whole` | circles, ellipses, rectangles, regular polygons and stars, fitted to all samples |
@@ -20,6 +21,7 @@ mod chain;
 mod conic;
 mod cubic;
 mod figure;
+mod mend;
 mod moments;
 mod nodes;
 mod path;
@@ -33,6 +35,8 @@ mod tests;
 mod ties;
 mod track;
 mod whole;
+
+use alloc::vec::Vec;
 
 use dvp_core::Vec2;
 use dvp_core::shape::PathRing;
@@ -51,6 +55,10 @@ pub struct Outline {
     pub bits: f64,
     /// Bits of what it misses the samples by.
     pub misfit: f64,
+    /// Standard deviations of the numbers of a circle (x and y of its middle, radius), an ellipse (middle, radii, angle) or a rectangle
+    /// (middle, width, height, corner radius, angle), in pixels and radians: from their covariance and from what the samples are found to be off
+    /// by. 0 for numbers that are not fitted (the angle of what is upright); empty for other kinds.
+    pub deviations: Vec<f64>,
 }
 
 /// The kinds of outlines that are tried.
@@ -128,10 +136,17 @@ pub struct OpenFit {
 #[must_use]
 pub fn fit_closed(ring: &RingSamples, ruler: &Ruler) -> Option<Outline> {
     let mut track = Track::of_ring(ring)?;
-    let path = path::fit_ring(&mut track, ruler)?;
+    if let Some(outline) = whole::fit_plain(&track, ruler) {
+        return Some(outline);
+    }
+    let draft = path::draft_ring(&mut track, ruler)?;
+    let path = draft.finish(&track, ruler);
     let whole = whole::fit(&track, &path, ruler);
+    let path = draft.mended(&track, ruler).unwrap_or(path);
     let FittedPath { ring, bits, misfit } = path;
-    whole.or(Some(Outline { shape: OutlineShape::Path(ring), bits, misfit }))
+    whole
+        .filter(|whole| whole.bits + whole.misfit <= bits + misfit)
+        .or(Some(Outline { shape: OutlineShape::Path(ring), bits, misfit, deviations: Vec::new() }))
 }
 
 /// The shortest description of an open line through samples.

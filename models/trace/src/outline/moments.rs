@@ -58,7 +58,7 @@ impl Moments {
         let (xx, xy, yy) = self.scatter();
         let (half_sum, half_difference) = (0.5 * (xx + yy), 0.5 * (xx - yy));
         // The smaller eigenvalue.
-        (half_sum - half_difference.hypot(xy)).max(0.0)
+        (half_sum - (half_difference * half_difference + xy * xy).sqrt()).max(0.0)
     }
 
     fn scatter(&self) -> (f64, f64, f64) {

@@ -8,6 +8,7 @@ use dvp_core::shape::{PathRing, Segment};
 use num_traits::Float as _;
 
 use super::chain::{Chain, Curve};
+use super::mend::mend;
 use super::nodes::Nodes;
 use super::programme::{Kind, Span, cut};
 use super::revise::revise;
@@ -27,8 +28,15 @@ pub(super) struct FittedPath {
     pub(super) misfit: f64,
 }
 
+/// A path before its numbers are tied.
+pub(super) struct Draft {
+    fitted: Fitted,
+    /// How many pieces it was cut into.
+    pieces: usize,
+}
+
 /// The cheapest closed path; the track starts somewhere else afterward.
-pub(super) fn fit_ring(track: &mut Track, ruler: &Ruler) -> Option<FittedPath> {
+pub(super) fn draft_ring(track: &mut Track, ruler: &Ruler) -> Option<Draft> {
     let corner = Nodes::sharpest(track);
     track.rotate(corner.unwrap_or(0));
     let mut spans = cut(track, ruler);
@@ -37,30 +45,47 @@ pub(super) fn fit_ring(track: &mut Track, ruler: &Ruler) -> Option<FittedPath> {
         track.rotate(spans[spans.len() / 2].samples.start);
         spans = cut(track, ruler);
     }
-    fit_spans(&spans, track, ruler)
+    draft(&spans, track, ruler)
 }
 
 /// The cheapest open path.
 pub(super) fn fit_line(track: &Track, ruler: &Ruler) -> Option<FittedPath> {
-    fit_spans(&cut(track, ruler), track, ruler)
+    let draft = draft(&cut(track, ruler), track, ruler)?;
+    Some(draft.mended(track, ruler).unwrap_or_else(|| draft.finish(track, ruler)))
 }
 
-fn fit_spans(spans: &[Span], track: &Track, ruler: &Ruler) -> Option<FittedPath> {
+fn draft(spans: &[Span], track: &Track, ruler: &Ruler) -> Option<Draft> {
     let mut chain = chain_of(spans, track)?;
     if chain.closed && super::solve::samples_of(&chain, track.len(), 0).is_empty() {
         // A bridge comes last rather than first: it goes from one curve to the next.
         chain = chain.rotated(track.len());
     }
-    // Arcs in corners are paid for by their ties, which come last.
-    let slack = 2.0 * ruler.number(track.sigma) * super::figure::as_f64(spans.len());
-    let mut fitted = bridge(Fitted::of(chain, track, ruler, &[])?, track, ruler);
-    if let Some(chain) = revise(&fitted.chain, track, ruler)
-        && let Some(revised) = Fitted::of(chain, track, ruler, &[])
-        && revised.misfit(ruler) + revised.number_bits(ruler) < fitted.misfit(ruler) + fitted.number_bits(ruler) + slack
-    {
-        fitted = revised;
+    let fitted = bridge(Fitted::of(chain, track, ruler, &[])?, track, ruler);
+    Some(Draft { fitted: revised(fitted, spans.len(), track, ruler), pieces: spans.len() })
+}
+
+impl Draft {
+    /// The path.
+    pub(super) fn finish(&self, track: &Track, ruler: &Ruler) -> FittedPath {
+        finish(tie(self.fitted.clone(), track, ruler), ruler)
     }
-    Some(finish(tie(fitted, track, ruler), ruler))
+
+    /// The path with polygons where it would be far off; none if it is not.
+    pub(super) fn mended(&self, track: &Track, ruler: &Ruler) -> Option<FittedPath> {
+        let mended = mend(&self.fitted, track, ruler)?;
+        let again = revised(mended.clone(), self.pieces, track, ruler);
+        let fitted = if mend(&again, track, ruler).is_none() { again } else { mended };
+        Some(finish(tie(fitted, track, ruler), ruler))
+    }
+}
+
+/// The chain with what the programme could not see, if it is shorter; it was cut into `pieces`.
+fn revised(fitted: Fitted, pieces: usize, track: &Track, ruler: &Ruler) -> Fitted {
+    // Arcs in corners are paid for by their ties, which come last.
+    let slack = 2.0 * ruler.number(track.sigma) * super::figure::as_f64(pieces);
+    let bits = |fitted: &Fitted| fitted.misfit(ruler) + fitted.number_bits(ruler);
+    let better = revise(&fitted.chain, track, ruler).and_then(|chain| Fitted::of(chain, track, ruler, &[]));
+    better.filter(|better| bits(better) < bits(&fitted) + slack).unwrap_or(fitted)
 }
 
 /// The curves of the pieces, through the samples where they meet. Where the boundary is hidden between two pieces a straight
@@ -71,15 +96,22 @@ fn chain_of(spans: &[Span], track: &Track) -> Option<Chain> {
         Chain { points: Vec::new(), curves: Vec::new(), firsts: Vec::new(), end: 2 * count, closed: track.closed };
     let (first, last) = (spans.first()?, spans.last()?);
     let mut before = track.closed.then_some(last);
-    for span in spans {
+    for (k, span) in spans.iter().enumerate() {
         let start = track.point(span.samples.start);
-        let came_from = before.map(|before| (before.samples.end - 1, track.point(before.samples.end - 1)));
-        match came_from {
-            Some((sample, point)) if track.is_hidden(sample, span.samples.start) => {
-                chain.push(point, Curve::Line, count + span.samples.start);
-                chain.push(start, Curve::Line, count + span.samples.start);
+        // Samples count on past the last of the track; those of the piece before the first one come before.
+        let first = count + span.samples.start;
+        match before.map(|before: &Span| before.samples.end - 1) {
+            Some(last) => {
+                let counted = if k == 0 { last } else { count + last };
+                match (counted + 1..=first).rev().find(|sample| track.hidden[sample % count]) {
+                    // Samples that were left out stay on their side of the gap.
+                    Some(gap) => {
+                        chain.push(track.point(last), Curve::Line, gap);
+                        chain.push(start, Curve::Line, gap);
+                    }
+                    None => chain.push((track.point(last) + start) * 0.5, Curve::Line, first),
+                }
             }
-            Some((_, point)) => chain.push((point + start) * 0.5, Curve::Line, count + span.samples.start),
             None => chain.push(start, Curve::Line, count),
         }
         let curve = match span.kind {
@@ -103,7 +135,8 @@ fn chain_of(spans: &[Span], track: &Track) -> Option<Chain> {
 }
 
 impl Chain {
-    fn push(&mut self, point: Vec2<f64>, curve: Curve, first: usize) {
+    /// A curve from `point` on.
+    pub(super) fn push(&mut self, point: Vec2<f64>, curve: Curve, first: usize) {
         self.points.push(point);
         self.curves.push(curve);
         self.firsts.push(first);

@@ -63,6 +63,8 @@ struct Programme<'a> {
     ends: Vec<Best>,
     /// Of each node: the bits up to it, and the node at which the last piece before it ends; samples between are left out.
     starts: Vec<(f64, usize)>,
+    /// Of each node: the last sample before it up to which no piece from further back leads.
+    folds: Vec<usize>,
     /// Of each node: what the last cubic tried from it missed by, bits: longer ones miss by more.
     floors: Vec<f64>,
 }
@@ -70,6 +72,12 @@ struct Programme<'a> {
 impl<'a> Programme<'a> {
     fn new(track: &'a Track, ruler: &'a Ruler, nodes: &'a Nodes, prices: Prices) -> Self {
         let count = nodes.places.len();
+        let mut fold = 0;
+        let folds = (0..count).map(|node| {
+            let from = nodes.places[node.max(1) - 1];
+            fold = (from..nodes.places[node]).rev().find(|&k| track.folds(k)).unwrap_or(fold);
+            fold
+        });
         let none = Best { bits: f64::INFINITY, from: 0, kind: Kind::Line };
         Self {
             track,
@@ -78,6 +86,7 @@ impl<'a> Programme<'a> {
             prices,
             ends: vec![none; count],
             starts: vec![(f64::INFINITY, 0); count],
+            folds: folds.collect(),
             floors: vec![0.0; count],
         }
     }
@@ -118,6 +127,9 @@ impl<'a> Programme<'a> {
         let most = if self.track.closed { self.track.len() * 3 / 4 } else { self.track.len() };
         for end in node + 1..self.nodes.places.len() {
             let place = self.nodes.places[end];
+            if first < self.folds[end] {
+                break;
+            }
             while done < place {
                 moments.add(self.track.point(done) - origin, self.track.weights[done]);
                 done += 1;
@@ -149,7 +161,7 @@ impl<'a> Programme<'a> {
         let (mut floor, mut corner) = (0.0_f64, 0);
         for from in (0..node).rev() {
             let (before, first) = (self.starts[from].0, self.nodes.places[from]);
-            if corner > first + 2 {
+            if corner > first + 2 || first < self.folds[node] {
                 break;
             }
             if self.nodes.turns[from] > tuning::OUTLINE_SHARP && first + 2 < place {

@@ -58,19 +58,23 @@ struct Reviser<'a> {
 impl Reviser<'_> {
     /// The chain with something better around point `k`.
     fn better(&self, chain: &Chain, k: usize) -> Option<Chain> {
-        let count = chain.curves.len();
         let first = k - 1;
+        // A line over a hidden stretch explains nothing, and nothing that is seen explains it.
+        let seen = (first..chain.curves.len()).take_while(|&k| !samples_of(chain, self.track.len(), k).is_empty()).count();
+        if seen == 0 {
+            return None;
+        }
         let one = chain.part(first, 1, self.track.len());
         if let Some(better) = self.shorter(&one, self.simpler(&one)) {
             return Some(chain.with_part(first, 1, &better));
         }
-        if count >= 2 {
+        if seen >= 2 {
             let pair = chain.part(first, 2, self.track.len());
             if let Some(better) = self.shorter(&pair, self.merged(&pair).into_iter().chain(self.rounded(&pair))) {
                 return Some(chain.with_part(first, 2, &better));
             }
         }
-        if first + 3 <= count && (1..=SHORT).contains(&samples_of(chain, self.track.len(), k).len()) {
+        if seen >= 3 && samples_of(chain, self.track.len(), k).len() <= SHORT {
             let three = chain.part(first, 3, self.track.len());
             if let Some(better) =
                 self.shorter(&three, self.without_middle(&three).into_iter().chain(bent_middle(&three)))

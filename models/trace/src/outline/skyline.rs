@@ -28,10 +28,6 @@ impl Skyline {
         Self { first, start, entries: vec![0.0; count] }
     }
 
-    pub(crate) fn clear(&mut self) {
-        self.entries.fill(0.0);
-    }
-
     fn row(&self, row: usize) -> &[f64] {
         &self.entries[self.start[row]..][..row + 1 - self.first[row]]
     }

@@ -18,8 +18,12 @@ use crate::tuning;
 const MOST_STEPS: usize = 15;
 /// A step that lowers the sum of squares by less ends the fit.
 const LEAST_GAIN: f64 = 0.1;
-/// How hard ends of open lines are held: to half a pixel.
+/// What damping adds for its size, 1/px^2: the tip of a narrow ray is hardly held by its sides, and must not be thrown far along them.
+const STIFFNESS: f64 = 1e4;
+/// How hard ends that nothing else holds are held to the last sample: to half a pixel.
 const END_WEIGHT: f64 = 4.0;
+/// Squared length of the sum of two directions, of length 1, below which one leads back along the other (168 degrees).
+const LEAST_FORWARD: f64 = 0.04;
 /// Samples beside a corner that may be moved from one curve to the next at once.
 const REACH: usize = 8;
 
@@ -60,7 +64,7 @@ impl Fitted {
         let mut damping = 1e-3;
         for _ in 0..MOST_STEPS {
             let mut change = now.right.clone();
-            now.normal.factor(damping, ridge)?.solve(&mut change);
+            now.normal.factor(damping, ridge + damping * STIFFNESS)?.solve(&mut change);
             let mut next = chain.clone();
             next.shift(&change);
             problem.assign(&mut next);
@@ -133,11 +137,11 @@ impl Problem<'_> {
             };
             let (low, high) = limits(chain, self.track, k);
             let mut first = chain.firsts[k];
-            if first <= low || high <= first {
-                // Nothing is seen of one of both.
+            let forward = arrive + leave;
+            if first <= low || high <= first || forward.length_squared() < LEAST_FORWARD {
+                // Nothing is seen of one of both, or the outline turns back.
                 continue;
             }
-            let forward = arrive + leave;
             let ahead =
                 |sample: usize| (self.track.point(sample % self.track.len()) - chain.points[k]).dot(forward) > 0.0;
             let start = first;
@@ -186,20 +190,16 @@ impl Problem<'_> {
                     equations.chi2 += (misfit * misfit).min(spoiled_chi2());
                     continue;
                 }
-                let far = misfit.abs() / tuning::OUTLINE_HUBER;
-                let weight = 1.0 / far.max(1.0);
-                equations.chi2 += misfit * misfit * weight * (2.0 - weight);
+                let weight = robust(misfit);
+                equations.chi2 += huber(misfit);
                 equations.add(slopes.entries(), misfit, weight);
             }
         }
-        if !chain.closed {
-            // No sample says how far an open line goes: it ends about where they do.
-            for (point, sample) in [(0, chain.firsts[0]), (chain.points.len() - 1, chain.end - 1)] {
-                let off = chain.points[point] - self.track.point(sample % self.track.len());
-                for (axis, off) in [off.x, off.y].into_iter().enumerate() {
-                    equations.strain += END_WEIGHT * off * off;
-                    equations.add(&[(places[point] + axis, 1.0)], off, END_WEIGHT);
-                }
+        for (point, sample) in self.loose_ends(chain) {
+            let off = chain.points[point] - self.track.point(sample % self.track.len());
+            for (axis, off) in [off.x, off.y].into_iter().enumerate() {
+                equations.strain += END_WEIGHT * off * off;
+                equations.add(&[(places[point] + axis, 1.0)], off, END_WEIGHT);
             }
         }
         for &(tie, weight) in self.ties {
@@ -209,6 +209,16 @@ impl Problem<'_> {
             }
         }
         equations.cost().is_finite().then_some(equations)
+    }
+
+    /// Points up to which no sample says how far the outline goes, and the last sample before each: the ends of open lines and of lines over
+    /// hidden stretches. The outline ends about where the samples do.
+    fn loose_ends(&self, chain: &Chain) -> Vec<(usize, usize)> {
+        if !chain.closed {
+            return [(0, chain.firsts[0]), (chain.points.len() - 1, chain.end - 1)].into();
+        }
+        let bridges = (0..chain.curves.len()).filter(|&k| samples_of(chain, self.track.len(), k).is_empty());
+        bridges.flat_map(|k| [(k, chain.firsts[k] + self.track.len() - 1), (chain.next(k), chain.firsts[k])]).collect()
     }
 
     /// The first number that each meets, by what curves and ties hold together.
@@ -260,6 +270,17 @@ fn is_plain(chain: &Chain, track: &Track) -> bool {
         };
         length < 1.1 * track.length(&range) + tuning::OUTLINE_SLACK
     })
+}
+
+/// The weight of a misfit, in sigmas: beyond [`tuning::OUTLINE_HUBER`] it counts linearly.
+fn robust(misfit: f64) -> f64 {
+    1.0 / (misfit.abs() / tuning::OUTLINE_HUBER).max(1.0)
+}
+
+/// What a misfit, in sigmas, counts in a sum of squares.
+pub(super) fn huber(misfit: f64) -> f64 {
+    let weight = robust(misfit);
+    misfit * misfit * weight * (2.0 - weight)
 }
 
 /// What a sample counts whose window holds a corner, at most: half of what leaving out a sample costs where no corner is known

@@ -52,6 +52,11 @@ impl Track {
         for run in runs {
             let first = samples.len();
             samples.extend(run.iter().filter_map(usable));
+            if samples.len() - first <= tuning::OUTLINE_SPOILED && !whole {
+                // Too few to be more than what a corner beside the gap spoils.
+                samples.truncate(first);
+                continue;
+            }
             hidden.resize(samples.len(), false);
             if let (Some(mark), false) = (hidden.get_mut(first), whole) {
                 *mark = true;
@@ -73,6 +78,11 @@ impl Track {
         self.samples.len()
     }
 
+    /// The deviation of a sample of the track without what renderers are off by.
+    pub(super) fn own_sigma(sample: &Sample) -> f64 {
+        (sample.sigma * sample.sigma - tuning::RENDERER_SIGMA * tuning::RENDERER_SIGMA).max(1e-8).sqrt()
+    }
+
     /// Where sample `k` says that the boundary is.
     pub(super) fn point(&self, k: usize) -> Vec2<f64> {
         self.samples[k].point
@@ -82,6 +92,18 @@ impl Track {
     pub(super) fn is_hidden(&self, before: usize, after: usize) -> bool {
         let after = if after <= before { after + self.len() } else { after };
         (before + 1..=after).any(|k| self.hidden[k % self.len()])
+    }
+
+    /// Whether the boundary, hidden just before sample `k`, is seen on either side of the gap to lead away from the other side: then no piece
+    /// leads over.
+    pub(super) fn folds(&self, k: usize) -> bool {
+        if !self.hidden[k] || k == 0 {
+            return false;
+        }
+        let gap = self.point(k) - self.point(k - 1);
+        let [before, behind] = [k - 1, k].map(|k| self.neighborhood(k, REACH));
+        let is_back = |around: Range<usize>| (self.point(around.end) - self.point(around.start)).dot(gap) < 0.0;
+        is_back(before) || is_back(behind)
     }
 
     /// The moments of the samples `range`, counted on past the last, around the first of them.

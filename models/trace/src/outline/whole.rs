@@ -21,8 +21,29 @@ use crate::tuning;
 const FIRST_LOOKS: usize = 48;
 /// Steps of a fit.
 const STEPS: usize = 8;
+/// Mean squared misfit of samples below which a picture is exact: renderers that round their coverage have a half to two.
+const EXACT: f64 = 0.1;
 /// Step of differences, pixels and radians.
 const STEP: f64 = 1e-6;
+
+/// A circle, an ellipse or an upright rectangle that misses the samples by so little that no path can be shorter: its path has two numbers
+/// more, or costs as much.
+pub(super) fn fit_plain(track: &Track, ruler: &Ruler) -> Option<Outline> {
+    if track.hidden.contains(&true) {
+        return None;
+    }
+    let mut starts = Vec::new();
+    rounds(track, &mut starts);
+    upright(track, 0.0, false, &mut starts);
+    let most = 2.0 * ruler.number(track.sigma);
+    let mut best: Option<Outline> = None;
+    for (figure, start, free) in starts {
+        let limit = best.as_ref().map_or(f64::INFINITY, |best| best.bits + best.misfit);
+        let trial = Trial { track, ruler, figure, free, renderer: tuning::RENDERER_SIGMA };
+        best = trial.run(start, limit).filter(|found| found.misfit < most).or(best);
+    }
+    best
+}
 
 /// The cheapest whole outline that costs less than `path`.
 pub(super) fn fit(track: &Track, path: &FittedPath, ruler: &Ruler) -> Option<Outline> {
@@ -30,7 +51,7 @@ pub(super) fn fit(track: &Track, path: &FittedPath, ruler: &Ruler) -> Option<Out
     let mut best: Option<Outline> = None;
     for (figure, start, free) in starts(track, &path.ring) {
         let most = best.as_ref().map_or(most, |best| best.bits + best.misfit);
-        let trial = Trial { track, ruler, figure, free };
+        let trial = Trial { track, ruler, figure, free, renderer: tuning::RENDERER_SIGMA };
         best = trial.run(start, most).or(best);
     }
     best
@@ -40,26 +61,31 @@ pub(super) fn fit(track: &Track, path: &FittedPath, ruler: &Ruler) -> Option<Out
 type Start = (Figure, [f64; MOST_NUMBERS], [bool; MOST_NUMBERS]);
 
 fn starts(track: &Track, ring: &PathRing<f64>) -> Vec<Start> {
-    let all = [true; MOST_NUMBERS];
     let mut starts = Vec::new();
     if ring.segments.iter().any(|segment| !matches!(segment, Segment::Line)) {
-        if let Some(circle) = track.moments(0..track.len()).circle() {
-            let center = circle.center + track.point(0);
-            starts.push((Figure::Circle, [center.x, center.y, circle.radius, 0.0, 0.0, 0.0], all));
-        }
-        if let Some([x, y, a, b, angle]) = conic::ellipse(track) {
-            let upright = if angle.sin().abs() < 0.5f64.sqrt() { [a, b] } else { [b, a] };
-            starts.push((
-                Figure::Ellipse,
-                [x, y, upright[0], upright[1], 0.0, 0.0],
-                [true, true, true, true, false, false],
-            ));
-            starts.push((Figure::Ellipse, [x, y, a, b, angle, 0.0], all));
-        }
+        rounds(track, &mut starts);
     }
     rectangles(track, ring, &mut starts);
     polygons(ring, &mut starts);
     starts
+}
+
+/// Circles and ellipses.
+fn rounds(track: &Track, starts: &mut Vec<Start>) {
+    let all = [true; MOST_NUMBERS];
+    if let Some(circle) = track.moments(0..track.len()).circle() {
+        let center = circle.center + track.point(0);
+        starts.push((Figure::Circle, [center.x, center.y, circle.radius, 0.0, 0.0, 0.0], all));
+    }
+    if let Some([x, y, a, b, angle]) = conic::ellipse(track) {
+        let upright = if angle.sin().abs() < 0.5f64.sqrt() { [a, b] } else { [b, a] };
+        starts.push((
+            Figure::Ellipse,
+            [x, y, upright[0], upright[1], 0.0, 0.0],
+            [true, true, true, true, false, false],
+        ));
+        starts.push((Figure::Ellipse, [x, y, a, b, angle, 0.0], all));
+    }
 }
 
 /// Upright and along the longest line of the path; sharp, and round if the path has arcs or curves.
@@ -74,29 +100,30 @@ fn rectangles(track: &Track, ring: &PathRing<f64>, starts: &mut Vec<Start>) {
     }
     let quarters = (longest.angle() / (0.5 * PI)).round();
     let angle = longest.angle() - quarters * 0.5 * PI;
-    for (angle, turns) in [(0.0, false), (angle, true)] {
-        let turn = Vec2::from_angle(-angle);
-        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        for sample in &track.samples {
-            let local = sample.point.turned(turn).to_array();
-            low = core::array::from_fn(|axis| low[axis].min(local[axis]));
-            high = core::array::from_fn(|axis| high[axis].max(local[axis]));
-        }
-        let [width, height] = [high[0] - low[0], high[1] - low[1]];
-        let center = Vec2::new(0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])).turned(Vec2::from_angle(angle));
-        // What the corners take away of the area, (4 - pi) radius^2, tells the radius of a rectangle that is seen whole.
-        let missing = (width * height - area(track).abs()) / (4.0 - PI);
-        let most = 0.5 * width.min(height);
-        let radius = if missing > 0.0 { missing.sqrt().min(0.98 * most) } else { 0.0 };
+    upright(track, 0.0, false, starts);
+    upright(track, angle, true, starts);
+}
+
+/// Rectangles at an angle, which is free if it `turns`: sharp, and round.
+fn upright(track: &Track, angle: f64, turns: bool, starts: &mut Vec<Start>) {
+    let turn = Vec2::from_angle(-angle);
+    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    for sample in &track.samples {
+        let local = sample.point.turned(turn).to_array();
+        low = core::array::from_fn(|axis| low[axis].min(local[axis]));
+        high = core::array::from_fn(|axis| high[axis].max(local[axis]));
+    }
+    let [width, height] = [high[0] - low[0], high[1] - low[1]];
+    let center = Vec2::new(0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])).turned(Vec2::from_angle(angle));
+    // What the corners take away of the area, (4 - pi) radius^2, tells the radius of a rectangle that is seen whole.
+    let missing = (width * height - area(track).abs()) / (4.0 - PI);
+    let most = 0.5 * width.min(height);
+    let radius = if missing > 0.0 { missing.sqrt().min(0.98 * most) } else { 0.0 };
+    for (radius, is_round) in [(radius, true), (0.0, false)] {
         starts.push((
             Figure::Rectangle,
             [center.x, center.y, width, height, radius, angle],
-            [true, true, true, true, true, turns],
-        ));
-        starts.push((
-            Figure::Rectangle,
-            [center.x, center.y, width, height, 0.0, angle],
-            [true, true, true, true, false, turns],
+            [true, true, true, true, is_round, turns],
         ));
     }
 }
@@ -153,11 +180,14 @@ fn area(track: &Track) -> f64 {
 }
 
 /// A figure on trial.
+#[derive(Clone, Copy)]
 struct Trial<'a> {
     track: &'a Track,
     ruler: &'a Ruler,
     figure: Figure,
     free: [bool; MOST_NUMBERS],
+    /// What renderers are off by, pixels.
+    renderer: f64,
 }
 
 /// Normal equations of a figure's numbers; those that are not free keep to themselves.
@@ -192,8 +222,36 @@ impl Trial<'_> {
             }
             bits += self.ruler.number(sigma);
         }
-        let shape = self.shape(&numbers)?;
-        (bits + misfit < most).then_some(Outline { shape, bits, misfit })
+        if bits + misfit >= most {
+            return None;
+        }
+        let (numbers, deviations) = self.polish(numbers, &equations).unwrap_or((numbers, Vec::new()));
+        Some(Outline { shape: self.shape(&numbers)?, bits, misfit, deviations })
+    }
+
+    /// The numbers by the doubt of the samples alone, if they are not off by what renderers are off by, and the deviations of the numbers.
+    fn polish(&self, numbers: [f64; MOST_NUMBERS], found: &Equations) -> Option<([f64; MOST_NUMBERS], Vec<f64>)> {
+        if matches!(self.figure, Figure::Polygon { .. } | Figure::Star { .. }) {
+            return None;
+        }
+        let variance = |equations: &Equations| equations.chi2 / (as_f64(self.track.len()) - as_f64(self.count_free())).max(1.0);
+        let exact = Trial { renderer: 0.0, ..*self };
+        let polished = (variance(found) < EXACT && self.renderer > 0.0).then(|| exact.descend(numbers, 1)).flatten();
+        let (numbers, found) = polished.as_ref().map_or((numbers, found), |(numbers, found)| (*numbers, found));
+        let factor = cholesky(&found.normal, 0.0)?;
+        let deviation = |k: usize| {
+            if !self.free[k] {
+                return 0.0;
+            }
+            let unit: [f64; MOST_NUMBERS] = core::array::from_fn(|i| if i == k { 1.0 } else { 0.0 });
+            (solve(&factor, unit)[k] * variance(found)).sqrt()
+        };
+        Some((numbers, (0..self.figure.number_count()).map(deviation).collect()))
+    }
+
+    /// How many numbers are free.
+    fn count_free(&self) -> usize {
+        self.free[..self.figure.number_count()].iter().filter(|&&is_free| is_free).count()
     }
 
     /// Gauss-Newton on every `every`-th sample.
@@ -228,8 +286,9 @@ impl Trial<'_> {
         let mut equations =
             Equations { normal: [[0.0; MOST_NUMBERS]; MOST_NUMBERS], right: [0.0; MOST_NUMBERS], chi2: 0.0 };
         for sample in self.track.samples.iter().step_by(every) {
+            let sigma = if self.renderer > 0.0 { sample.sigma } else { Track::own_sigma(sample) };
             let (distance, normal) = self.figure.distance(numbers, sample.point);
-            let scale = 1.0 / (normal.dot(sample.axis).abs().max(LEAST_COSINE) * sample.sigma);
+            let scale = 1.0 / (normal.dot(sample.axis).abs().max(LEAST_COSINE) * sigma);
             let misfit = distance * scale;
             if corners.iter().any(|&corner| sample.holds(corner)) {
                 equations.chi2 += (misfit * misfit).min(spoiled_chi2());
