@@ -114,3 +114,21 @@ pub const BORDER_SIGMA: f64 = 0.1;
 
 /// By how much a curve may be longer than the walk along its samples, pixels: corners lie beyond the last samples beside them.
 pub const OUTLINE_SLACK: f64 = 6.0;
+
+/// Widest line that is looked for across both of its sides at once, pixels: wider ones have pixels of their own.
+pub const THIN_WIDTH: f64 = 2.2;
+
+/// Fewest windows across a thin line, and fewest that make a color of its own of it.
+pub const THIN_LEAST_LENGTH: usize = 6;
+
+/// By how much the width of a thin line may differ from window to window, per width.
+pub const THIN_TOLERANCE: f64 = 0.2;
+
+/// Standard deviation of the middle of a thin line in one window, pixels: what slanted lines look like to windows.
+pub const THIN_SIGMA: f64 = 0.05;
+
+/// How far apart (pixels) the parts of a thin line may be that something crosses.
+pub const THIN_GAP: f64 = 8.0;
+
+/// Most of a pixel that shows through between two things side by side: a quarter, and rounding.
+pub const SEAM_MOST: f64 = 0.27;

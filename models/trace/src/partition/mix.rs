@@ -211,7 +211,28 @@ fn triple(pixel: Color, colors: [u16; 3], palette: &[Color]) -> Option<Mixture> 
     Some(Mixture { color: colors[most], share: shares[most], misfit })
 }
 
-/// The colors of flat pixels within reach of pixel `i`.
+/// A list of colors, used again and again.
+#[derive(Debug, Default)]
+pub(super) struct Near(Vec<u16>);
+
+impl Near {
+    /// The colors of flat pixels within reach of pixel `i`.
+    pub(super) fn around(&mut self, flat_colors: &[u16], size: [usize; 2], i: usize) -> &[u16] {
+        colors_near(flat_colors, size, i, &mut self.0);
+        &self.0
+    }
+}
+
+/// The pixels that no mixture of flat colors nearby explains.
+pub(super) fn open(pixels: &[[f32; 3]], size: [usize; 2], flat_colors: &[u16], palette: &[Color], noise: f64) -> Vec<bool> {
+    let mut near = Near::default();
+    let is_open = |(i, pixel): (usize, &[f32; 3])| {
+        flat_colors[i] == u16::MAX
+            && best_mixture(pixel.map(f64::from), near.around(flat_colors, size, i), palette).is_none_or(|best| best.misfit > noise)
+    };
+    pixels.iter().enumerate().map(is_open).collect()
+}
+
 fn colors_near(flat_colors: &[u16], [width, height]: [usize; 2], i: usize, near: &mut Vec<u16>) {
     let (x, y) = (i % width, i / width);
     near.clear();

@@ -1,12 +1,18 @@
 //! Pixels to faces: which color each pixel belongs to, and by how much.
 //!
 //! Every pixel is pure (of one face) or mixed (of two, rarely three, with shares). `flat` finds what is of one color beyond doubt,
-//! `palette` the colors, `mix` explains every other pixel as a mixture of colors nearby, `faces` joins pixels to faces.
+//! `palette` the colors, `seam` mends what renderers let through between things side by side, `thin` (windows of `cross`, joined by
+//! `chain`) takes out lines without a pixel of their own, `mix` explains every other pixel as a mixture of colors nearby, `faces`
+//! joins pixels to faces.
 
+mod chain;
+mod cross;
 mod faces;
 mod flat;
 mod mix;
 mod palette;
+mod seam;
+mod thin;
 
 use alloc::vec::Vec;
 
@@ -14,6 +20,7 @@ use dvp_core::ImageView;
 
 pub use faces::Face;
 pub(crate) use mix::coverage;
+pub use thin::ThinLine;
 
 /// Colors as the picture stores them, RGB.
 pub type Color = [f64; 3];
@@ -34,6 +41,8 @@ pub struct Partition {
     pub shares: Vec<f32>,
     /// What the picture is made of.
     pub faces: Vec<Face>,
+    /// Lines that were taken out before the cut.
+    pub lines: Vec<ThinLine>,
     /// The colors; faces name one of them.
     pub palette: Vec<Color>,
     /// Most difference of a channel between a pixel and the mixture that explains it.
@@ -62,7 +71,7 @@ impl Partition {
     /// [`NoPartition`] if it is no drawing of flat colors.
     pub fn of(image: &ImageView<'_, f32>) -> Result<Self, NoPartition> {
         let size = [image.size().width(), image.size().height()];
-        let pixels: Vec<[f32; 3]> = (0..image.size().pixels()).map(|i| image.pixel(i)).collect();
+        let mut pixels: Vec<[f32; 3]> = (0..image.size().pixels()).map(|i| image.pixel(i)).collect();
         let noise = flat::Noise::of(&pixels, size);
         let flats = flat::find(&pixels, size, &noise);
         let share = flats.pure_count() as f64 / pixels.len() as f64;
@@ -70,8 +79,11 @@ impl Partition {
             return Err(NoPartition::NotFlat { flat: share });
         }
         let colors = palette::Palette::of(&flats, &noise)?;
+        let lines = take_lines(&mut pixels, size, &flats, &colors, f64::from(noise.mixed));
+        let flats = flat::find(&pixels, size, &noise);
+        let colors = palette::Palette::of(&flats, &noise)?;
         let mixed = mix::explain(&pixels, size, &flats, colors, &noise);
-        Ok(faces::cut(size, pixels, mixed))
+        Ok(Self { lines, ..faces::cut(size, pixels, mixed) })
     }
 
     /// Color of a face.
@@ -86,4 +98,15 @@ impl Partition {
     pub fn face_at(&self, [x, y]: [usize; 2]) -> u32 {
         if x < self.size[0] && y < self.size[1] { self.labels[y * self.size[0] + x] } else { OUTSIDE }
     }
+}
+
+/// Mends seams, and takes thin lines out of the picture.
+fn take_lines(pixels: &mut [[f32; 3]], size: [usize; 2], flats: &flat::Flats, colors: &palette::Palette, noise: f64) -> Vec<ThinLine> {
+    let flat = cross::thick(&flats.regions, size, &colors.of_region);
+    let mut open = mix::open(pixels, size, &flat, &colors.colors, noise);
+    seam::mend(pixels, size, &flat, &mut open, &colors.colors, noise);
+    let canvas = cross::Canvas { pixels, size, flat: &flat, open: &open, noise };
+    let (lines, chains) = thin::find(&canvas, &colors.colors);
+    thin::erase(pixels, size, &flat, &open, &colors.colors, &chains);
+    lines
 }
