@@ -2,11 +2,12 @@
 //!
 //! Every pixel is pure (of one face) or mixed (of two, rarely three, with shares). `flat` finds what is of one color beyond doubt,
 //! `palette` the colors, `seam` mends what renderers let through between things side by side, `thin` (windows of `cross`, joined by
-//! `chain`) takes out lines without a pixel of their own, `mix` explains every other pixel as a mixture of colors nearby, `faces`
+//! `chain`) finds and `erase` takes out lines without a pixel of their own, `mix` explains every other pixel as a mixture of colors nearby, `faces`
 //! joins pixels to faces.
 
 mod chain;
 mod cross;
+mod erase;
 mod faces;
 mod flat;
 mod mix;
@@ -107,6 +108,7 @@ fn take_lines(pixels: &mut [[f32; 3]], size: [usize; 2], flats: &flat::Flats, co
     seam::mend(pixels, size, &flat, &mut open, &colors.colors, noise);
     let canvas = cross::Canvas { pixels, size, flat: &flat, open: &open, noise };
     let (lines, chains) = thin::find(&canvas, &colors.colors);
-    thin::erase(pixels, size, &flat, &open, &colors.colors, &chains);
+    let known = flat.iter().map(|&color| color != u16::MAX).collect();
+    erase::Eraser { pixels, size, open: &open, known, palette: &colors.colors }.erase(&chains);
     lines
 }

@@ -2,15 +2,15 @@
 //! their middle as if they were not there.
 
 
+use alloc::collections::BTreeMap;
 use alloc::vec::Vec;
 
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
-use dvp_core::Vec2;
-
 use super::chain::{Chain, join};
 use super::cross::{Along, Canvas, Cross};
+use super::mix::coverage;
 use super::palette::distance;
 use super::Color;
 use crate::stroke::{ThinChain, ThinSample};
@@ -25,8 +25,8 @@ pub struct ThinLine {
     pub chain: ThinChain,
 }
 
-/// Most colors that only thin lines have.
-const MOST_NEW_COLORS: usize = 24;
+/// How often a color that only thin lines have is looked for.
+const MOST_TRIES: usize = 48;
 
 /// Finds thin lines. `palette`: the colors of flat pixels, those of thick regions first.
 pub(super) fn find(canvas: &Canvas<'_>, palette: &[Color]) -> (Vec<ThinLine>, Vec<Chain>) {
@@ -43,6 +43,8 @@ pub(super) fn find(canvas: &Canvas<'_>, palette: &[Color]) -> (Vec<ThinLine>, Ve
     let mut taken = Vec::new();
     for mut chain in chains {
         let color = colors[chain.colors.trailing_zeros() as usize];
+        #[cfg(feature = "dbg")]
+        { extern crate std; std::eprintln!("chain n {} colors {:b} {:?} closed {} from {:?} to {:?} -> {:?}", chain.marks.len(), chain.colors, color.map(|c| (c * 255.0) as u8), chain.is_closed, chain.marks[0].point, chain.marks[chain.marks.len()-1].point, constant(&mut chain.clone()).map(|t| (t.samples.len(), t.ends))); }
         if let Some(thin) = constant(&mut chain) {
             lines.push(ThinLine { color, chain: thin });
             taken.push(chain);
@@ -70,26 +72,72 @@ fn color(canvas: &Canvas<'_>, crosses: &mut [Vec<Vec<Cross>>; 2], palette: &[Col
             }
         }
     }
-    rest.sort_by(|a, b| b.0.total_cmp(&a.0));
-    for _ in 0..MOST_NEW_COLORS {
-        let Some(&(away, .., color)) = rest.first() else { break };
-        if away < tuning::LEAST_CONTRAST || colors.len() == 128 {
+    let opens: Vec<Color> = (0..canvas.pixels.len()).filter(|&i| canvas.open[i]).map(|i| canvas.pixels[i].map(f64::from)).collect();
+    for _ in 0..MOST_TRIES {
+        if rest.len() < tuning::THIN_LEAST_LENGTH || colors.len() == 128 {
             break;
         }
-        let (explained, left): (Vec<_>, Vec<_>) =
-            rest.into_iter().partition(|(_, along, cross, _)| fits(canvas, *along, cross, color, palette));
-        rest = left;
-        if explained.len() >= tuning::THIN_LEAST_LENGTH {
-            for (_, _, cross, _) in explained {
-                cross.colors |= 1 << colors.len();
-            }
-            colors.push(color);
-        } else {
-            rest.extend(explained.into_iter().skip(1));
-            rest.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let bin = modal(rest.iter().map(|&(.., extreme)| extreme));
+        let Some(&(away, _, ref cross, extreme)) = rest.iter().find(|&&(.., extreme)| bin_of(extreme) == bin) else { break };
+        let sides = cross.sides.map(|side| palette[side as usize]);
+        let side = if distance(sides[0], extreme) <= distance(sides[1], extreme) { sides[0] } else { sides[1] };
+        let seen = rest.iter().map(|&(.., extreme)| extreme);
+        let own = farthest(side, extreme, seen, canvas.noise);
+        let darkest = farthest(side, own, opens.iter().copied(), canvas.noise);
+        // Where lines of one color cross they are darker: what is no darker elsewhere is nowhere full.
+        let is_more = coverage(darkest, side, own) > 1.15;
+        let candidates = [if is_more { beyond(side, darkest) } else { own }, [0.0; 3], [1.0; 3]];
+        let explains = |color: Color| rest.iter().filter(|(_, along, cross, _)| fits(canvas, *along, cross, color, palette)).count();
+        let counts = candidates.map(explains);
+        let margin = counts[0] + tuning::THIN_LEAST_LENGTH.max(counts[0] / 4);
+        let best = if counts[1].max(counts[2]) < margin { 0 } else if counts[1] >= counts[2] { 1 } else { 2 };
+        if away < tuning::LEAST_CONTRAST || counts[best] < tuning::THIN_LEAST_LENGTH {
+            rest.retain(|&(.., extreme)| bin_of(extreme) != bin);
+            continue;
         }
+        let (explained, left): (Vec<_>, Vec<_>) =
+            rest.into_iter().partition(|(_, along, cross, _)| fits(canvas, *along, cross, candidates[best], palette));
+        rest = left;
+        for (_, _, cross, _) in explained {
+            cross.colors |= 1 << colors.len();
+        }
+        colors.push(candidates[best]);
     }
     colors
+}
+
+/// Colors that are alike, 16 levels to a channel.
+fn bin_of(color: Color) -> [u8; 3] {
+    color.map(|value| (value * 15.0 + 0.5) as u8)
+}
+
+/// The bin with the most colors.
+fn modal(colors: impl Iterator<Item = Color>) -> [u8; 3] {
+    let mut counts: BTreeMap<[u8; 3], usize> = BTreeMap::new();
+    for color in colors {
+        *counts.entry(bin_of(color)).or_default() += 1;
+    }
+    counts.into_iter().max_by_key(|&(_, count)| count).map_or([0; 3], |(bin, _)| bin)
+}
+
+/// The color furthest from `side` on the ray through `through`.
+fn farthest(side: Color, through: Color, colors: impl Iterator<Item = Color>, noise: f64) -> Color {
+    let on_ray = |color: &Color| {
+        let t = coverage(*color, side, through);
+        let misfit = (0..3).map(|c| (color[c] - side[c] - t * (through[c] - side[c])).abs()).fold(0.0, f64::max);
+        (misfit <= noise && t >= 1.0).then_some((t, *color))
+    };
+    colors.filter_map(|color| on_ray(&color)).max_by(|a, b| a.0.total_cmp(&b.0)).map_or(through, |(_, color)| color)
+}
+
+/// What a line that is nowhere full is likely to be: black on gray, white on gray; else as much as is seen.
+fn beyond(side: Color, seen: Color) -> Color {
+    let is_gray = |color: Color| (0..3).all(|c| (color[c] - color[0]).abs() <= tuning::LEAST_CONTRAST);
+    match is_gray(side) && is_gray(seen) {
+        true if seen[0] < side[0] => [0.0; 3],
+        true => [1.0; 3],
+        false => seen,
+    }
 }
 
 fn fits(canvas: &Canvas<'_>, along: Along, cross: &Cross, color: Color, palette: &[Color]) -> bool {
@@ -207,71 +255,3 @@ fn sigma(width: f64) -> f64 {
     tuning::THIN_SIGMA + 0.25 * (1.0 - width).max(0.0)
 }
 
-/// Takes the lines out of the picture: on both sides of their middle what lies beside them goes on.
-pub(super) fn erase(pixels: &mut [[f32; 3]], size: [usize; 2], flat: &[u16], open: &[bool], palette: &[Color], chains: &[Chain]) {
-    let mut known: Vec<bool> = flat.iter().map(|&color| color != u16::MAX).collect();
-    let mut holes = Vec::new();
-    let index = |along: Along, line: usize, at: usize| match along {
-        Along::Columns => at * size[0] + line,
-        Along::Rows => line * size[0] + at,
-    };
-    for chain in chains {
-        let reach = 0.5 * chain.width + 1.2;
-        let mut around = |from: Vec2<f64>, to: Vec2<f64>, only_open: bool| {
-            let [x0, y0] = [from.x.min(to.x) - reach, from.y.min(to.y) - reach].map(|low| low.max(0.0) as usize);
-            let [x1, y1] = [from.x.max(to.x) + reach, from.y.max(to.y) + reach].map(|high| high.max(0.0) as usize + 1);
-            for y in y0..y1.min(size[1]) {
-                for x in x0..x1.min(size[0]) {
-                    let i = y * size[0] + x;
-                    let pixel = Vec2::new(x as f64 + 0.5, y as f64 + 0.5);
-                    let segment = dvp_core::geometry::LineSegment::new(from, to);
-                    let foot = from.lerp(to, segment.nearest(pixel).share);
-                    if flat[i] == u16::MAX && (open[i] || !only_open) && (pixel - foot).length() < reach {
-                        holes.push(i);
-                    }
-                }
-            }
-        };
-        for pair in chain.marks.windows(2) {
-            if (pair[1].point - pair[0].point).length() > 1.9 || pair[0].along != pair[1].along {
-                around(pair[0].point, pair[1].point, false);
-            }
-        }
-        if let [first, .., last] = &chain.marks[..] {
-            around(first.point, first.point, true);
-            around(last.point, last.point, true);
-        }
-        for mark in &chain.marks {
-            let sides = mark.cross.sides.map(|side| palette[side as usize]);
-            let center = mark.point.dot(mark.axis());
-            for at in mark.cross.run[0]..mark.cross.run[1] {
-                let share = (center - at as f64).clamp(0.0, 1.0);
-                let i = index(mark.along, mark.cross.line, at);
-                pixels[i] = core::array::from_fn(|c| (share * sides[0][c] + (1.0 - share) * sides[1][c]) as f32);
-                known[i] = true;
-            }
-        }
-    }
-    // What is left under crossings and corners is as what is nearest.
-    holes.retain(|&i| !known[i]);
-    holes.sort_unstable();
-    holes.dedup();
-    while !holes.is_empty() {
-        let near = |i: usize| {
-            let (x, y) = (i % size[0], i / size[0]);
-            let beside = [(x > 0).then(|| i - 1), (x + 1 < size[0]).then_some(i + 1), (y > 0).then(|| i - size[0]), (y + 1 < size[1]).then_some(i + size[0])];
-            beside.into_iter().flatten().find(|&j| known[j])
-        };
-        let filled: Vec<(usize, usize)> = holes.iter().filter_map(|&i| Some((i, near(i)?))).collect();
-        if filled.is_empty() {
-            break;
-        }
-        for &(i, from) in &filled {
-            pixels[i] = pixels[from];
-        }
-        for (i, _) in filled {
-            known[i] = true;
-        }
-        holes.retain(|&i| !known[i]);
-    }
-}
