@@ -118,6 +118,9 @@ pub const OUTLINE_SLACK: f64 = 6.0;
 /// Widest line that is looked for across both of its sides at once, pixels: wider ones have pixels of their own.
 pub const THIN_WIDTH: f64 = 2.2;
 
+/// Widest lines that are taken out where they cross one another, pixels: of a chart of 512 pixels.
+pub const CROSSING_WIDTH: f64 = 9.0;
+
 /// Fewest windows across a thin line, and fewest that make a color of its own of it.
 pub const THIN_LEAST_LENGTH: usize = 6;
 
@@ -128,7 +131,7 @@ pub const THIN_TOLERANCE: f64 = 0.2;
 pub const THIN_SIGMA: f64 = 0.05;
 
 /// How far apart (pixels) the parts of a thin line may be that something crosses.
-pub const THIN_GAP: f64 = 8.0;
+pub const THIN_GAP: f64 = 32.0;
 
 /// Most of a pixel that shows through between two things side by side: a quarter, and rounding.
 pub const SEAM_MOST: f64 = 0.27;

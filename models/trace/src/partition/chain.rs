@@ -77,6 +77,11 @@ impl Chain {
         })
     }
 
+    /// Where windows are missing between two of them.
+    pub(super) fn gaps(&self) -> impl Iterator<Item = [Vec2<f64>; 2]> {
+        self.marks.windows(2).map(|pair| [pair[0].point, pair[1].point]).filter(|[from, to]| (*to - *from).length() > 2.5)
+    }
+
     /// The first or last point, and the direction out of the line there.
     fn tip(&self, at_finish: bool) -> [Vec2<f64>; 2] {
         let n = self.marks.len();

@@ -12,8 +12,8 @@ use super::palette::distance;
 use super::Color;
 use crate::tuning;
 
-/// The longest run, pixels: a line of [`tuning::THIN_WIDTH`] at 45 degrees, and a mixed pixel on both sides.
-const LONGEST: usize = 6;
+/// The longest run, pixels: the widest line that is asked for at 45 degrees, and a mixed pixel on both sides.
+const LONGEST: usize = 16;
 
 /// A window across something thin.
 #[derive(Clone, Copy, Debug)]
@@ -37,6 +37,8 @@ pub(super) struct Canvas<'a> {
     /// Pixels that no mixture of flat colors nearby explains.
     pub(super) open: &'a [bool],
     pub(super) noise: f64,
+    /// The widest lines, pixels.
+    pub(super) widest: f64,
 }
 
 /// Which way windows lie.
@@ -70,6 +72,7 @@ impl Canvas<'_> {
     /// All windows, line by line; which of `palette` explains them is not said yet.
     pub(super) fn crosses(&self, along: Along) -> Vec<Vec<Cross>> {
         let [lines, length] = self.extent(along);
+        let longest = ((self.widest * core::f64::consts::SQRT_2).ceil() as usize + 2).min(LONGEST);
         let mut found = vec![Vec::new(); lines];
         for (line, of_line) in found.iter_mut().enumerate() {
             let mut start = 0;
@@ -80,7 +83,7 @@ impl Canvas<'_> {
                     is_open |= self.open[i];
                     continue;
                 }
-                if is_open && start > 0 && at - start <= LONGEST {
+                if is_open && start > 0 && at - start <= longest {
                     let before = self.flat[self.index(along, line, start - 1)];
                     of_line.push(Cross { line, run: [start, at], sides: [before, self.flat[i]], colors: 0 });
                 }
@@ -186,23 +189,24 @@ pub(super) fn shares_of_three(pixel: Color, [a, b, c]: [Color; 3]) -> Option<[f6
         .then(|| [(dot(u, w) * vv - dot(v, w) * uv) / determinant, (dot(v, w) * uu - dot(u, w) * uv) / determinant])
 }
 
-/// Flat pixels for windows: those of regions that are two pixels wide all along are what a line covers, too.
-pub(super) fn thick(regions: &[u32], [width, height]: [usize; 2], of_region: &[usize]) -> Vec<u16> {
-    let mut bounds = vec![[usize::MAX, usize::MAX, 0, 0, 0]; of_region.len()];
-    for (i, &region) in regions.iter().enumerate().filter(|(_, region)| **region != NONE) {
+/// Flat pixels for windows: those of regions that hold no block of `block` pixels' side are what a line covers, too.
+pub(super) fn thick(regions: &[u32], width: usize, of_region: &[usize], block: u16) -> Vec<u16> {
+    let mut is_thick = vec![false; of_region.len()];
+    // Side of the largest block of one region whose lower right pixel is this one, of the row above and of this row.
+    let mut sides = vec![0_u16; width];
+    let mut upper_left = 0;
+    for (i, &region) in regions.iter().enumerate() {
         let (x, y) = (i % width, i / width);
-        let [left, top, right, bottom, thick] = &mut bounds[region as usize];
-        (*left, *top, *right, *bottom) = ((*left).min(x), (*top).min(y), (*right).max(x + 1), (*bottom).max(y + 1));
-        let inside = |x: usize, y: usize| regions[y * width + x] == region;
-        if x > 0 && y > 0 && x + 1 < width && y + 1 < height {
-            let block = (y - 1..y + 2).all(|y| (x - 1..x + 2).all(|x| inside(x, y)));
-            *thick += usize::from(block);
+        let upper = sides[x];
+        sides[x] = 0;
+        if region != NONE {
+            let inside = x > 0 && y > 0 && [i - 1, i - width, i - width - 1].iter().all(|&j| regions[j] == region);
+            sides[x] = if inside { 1 + upper.min(upper_left).min(sides[x - 1]) } else { 1 };
+            is_thick[region as usize] |= sides[x] >= block;
         }
+        upper_left = upper;
     }
-    let is_thin = |region: u32| {
-        let [left, top, right, bottom, thick] = bounds[region as usize];
-        thick == 0 && (right - left).max(bottom - top) >= tuning::THIN_LEAST_LENGTH
-    };
+    let is_thin = |region: u32| !is_thick[region as usize];
     let color = |region: u32| u16::try_from(of_region[region as usize]).unwrap_or(u16::MAX);
     regions.iter().map(|&region| if region == NONE || is_thin(region) { u16::MAX } else { color(region) }).collect()
 }

@@ -8,7 +8,6 @@ use dvp_core::geometry::LineSegment;
 use super::Color;
 use super::chain::{Chain, Mark};
 use super::cross::Along;
-use crate::tuning;
 
 /// A picture of which lines are taken out.
 pub(super) struct Eraser<'a> {
@@ -29,8 +28,8 @@ impl Eraser<'_> {
         }
     }
 
-    pub(super) fn erase(&mut self, chains: &[Chain]) {
-        for mark in chains.iter().flat_map(|chain| &chain.marks) {
+    pub(super) fn erase<'c>(&mut self, chains: impl Iterator<Item = &'c Chain> + Clone) {
+        for mark in chains.clone().flat_map(|chain| &chain.marks) {
             let sides = mark.cross.sides.map(|side| self.palette[side as usize]);
             self.fill(mark.along, mark.cross.line, mark.cross.run, mark.point.dot(mark.axis()), sides);
         }
@@ -70,14 +69,23 @@ impl Eraser<'_> {
             Along::Columns => self.size[1],
             Along::Rows => self.size[0],
         };
-        let run = [low.cross.run[0].min(high.cross.run[0]), low.cross.run[1].max(high.cross.run[1])];
-        if run[0] == 0 || run[1] >= length || lines as f64 > tuning::THIN_GAP + 2.0 {
-            return;
-        }
         for k in 1..lines {
             let line = low.cross.line + k;
-            let center = low.point.lerp(high.point, k as f64 / lines as f64).dot(low.axis());
-            let sides = [run[0] - 1, run[1]].map(|at| self.pixels[self.index(low.along, line, at)].map(f64::from));
+            let share = k as f64 / lines as f64;
+            let center = low.point.lerp(high.point, share).dot(low.axis());
+            let [start, end] = [0, 1].map(|side| {
+                let [a, b] = [low, high].map(|mark| mark.cross.run[side] as f64);
+                a + share * (b - a)
+            });
+            let run = [start.floor() as usize, end.ceil() as usize];
+            if run[0] == 0 || run[1] >= length {
+                continue;
+            }
+            let sides = if low.cross.sides == high.cross.sides {
+                low.cross.sides.map(|side| self.palette[side as usize])
+            } else {
+                [run[0] - 1, run[1]].map(|at| self.pixels[self.index(low.along, line, at)].map(f64::from))
+            };
             self.fill(low.along, line, run, center, sides);
         }
     }

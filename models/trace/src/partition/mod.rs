@@ -19,6 +19,8 @@ use alloc::vec::Vec;
 
 use dvp_core::ImageView;
 
+use crate::tuning;
+
 pub use faces::Face;
 pub(crate) use mix::coverage;
 pub use thin::ThinLine;
@@ -76,13 +78,23 @@ impl Partition {
         let noise = flat::Noise::of(&pixels, size);
         let flats = flat::find(&pixels, size, &noise);
         let share = flats.pure_count() as f64 / pixels.len() as f64;
-        if share < crate::tuning::LEAST_FLAT {
+        if share < tuning::LEAST_FLAT {
             return Err(NoPartition::NotFlat { flat: share });
         }
-        let colors = palette::Palette::of(&flats, &noise)?;
-        let lines = take_lines(&mut pixels, size, &flats, &colors, f64::from(noise.mixed));
-        let flats = flat::find(&pixels, size, &noise);
-        let colors = palette::Palette::of(&flats, &noise)?;
+        let mut flats = flats;
+        let mut colors = palette::Palette::of(&flats, &noise)?;
+        let mut lines = Vec::new();
+        for widest in [tuning::THIN_WIDTH, tuning::CROSSING_WIDTH] {
+            // Lines that cross have two colors, and lie on a third.
+            if widest > tuning::THIN_WIDTH && colors.colors.len() < 3 {
+                continue;
+            }
+            let taken = take_lines(&mut pixels, size, &flats, &colors, f64::from(noise.mixed), widest);
+            // Wide lines may pass under thin ones.
+            lines.splice(0..0, taken);
+            flats = flat::find(&pixels, size, &noise);
+            colors = palette::Palette::of(&flats, &noise)?;
+        }
         let mixed = mix::explain(&pixels, size, &flats, colors, &noise);
         Ok(Self { lines, ..faces::cut(size, pixels, mixed) })
     }
@@ -101,14 +113,25 @@ impl Partition {
     }
 }
 
-/// Mends seams, and takes thin lines out of the picture.
-fn take_lines(pixels: &mut [[f32; 3]], size: [usize; 2], flats: &flat::Flats, colors: &palette::Palette, noise: f64) -> Vec<ThinLine> {
-    let flat = cross::thick(&flats.regions, size, &colors.of_region);
+/// Mends seams, and takes lines up to some width (pixels) out of the picture.
+fn take_lines(
+    pixels: &mut [[f32; 3]],
+    size: [usize; 2],
+    flats: &flat::Flats,
+    colors: &palette::Palette,
+    noise: f64,
+    widest: f64,
+) -> Vec<ThinLine> {
+    let flat = cross::thick(&flats.regions, size[0], &colors.of_region, widest as u16 + 1);
     let mut open = mix::open(pixels, size, &flat, &colors.colors, noise);
     seam::mend(pixels, size, &flat, &mut open, &colors.colors, noise);
-    let canvas = cross::Canvas { pixels, size, flat: &flat, open: &open, noise };
-    let (lines, chains) = thin::find(&canvas, &colors.colors);
+    let canvas = cross::Canvas { pixels, size, flat: &flat, open: &open, noise, widest };
+    let mut lines = thin::find(&canvas, &colors.colors);
+    if widest > tuning::THIN_WIDTH {
+        lines = thin::crossing_lines(lines);
+    }
     let known = flat.iter().map(|&color| color != u16::MAX).collect();
-    erase::Eraser { pixels, size, open: &open, known, palette: &colors.colors }.erase(&chains);
-    lines
+    let mut eraser = erase::Eraser { pixels, size, open: &open, known, palette: &colors.colors };
+    eraser.erase(lines.iter().map(|(_, chain)| chain));
+    lines.into_iter().map(|(line, _)| line).collect()
 }

@@ -8,6 +8,8 @@ use alloc::vec::Vec;
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
+use dvp_core::Vec2;
+
 use super::chain::{Chain, join};
 use super::cross::{Along, Canvas, Cross};
 use super::mix::coverage;
@@ -29,7 +31,7 @@ pub struct ThinLine {
 const MOST_TRIES: usize = 48;
 
 /// Finds thin lines. `palette`: the colors of flat pixels, those of thick regions first.
-pub(super) fn find(canvas: &Canvas<'_>, palette: &[Color]) -> (Vec<ThinLine>, Vec<Chain>) {
+pub(super) fn find(canvas: &Canvas<'_>, palette: &[Color]) -> Vec<(ThinLine, Chain)> {
     let mut crosses = [Along::Columns, Along::Rows].map(|along| canvas.crosses(along));
     let colors = color(canvas, &mut crosses, palette);
     let mut chains = Vec::new();
@@ -40,17 +42,77 @@ pub(super) fn find(canvas: &Canvas<'_>, palette: &[Color]) -> (Vec<ThinLine>, Ve
     }
     let chains = join(canvas, chains);
     let mut lines = Vec::new();
-    let mut taken = Vec::new();
     for mut chain in chains {
         let color = colors[chain.colors.trailing_zeros() as usize];
         #[cfg(feature = "dbg")]
-        { extern crate std; std::eprintln!("chain n {} colors {:b} {:?} closed {} from {:?} to {:?} -> {:?}", chain.marks.len(), chain.colors, color.map(|c| (c * 255.0) as u8), chain.is_closed, chain.marks[0].point, chain.marks[chain.marks.len()-1].point, constant(&mut chain.clone()).map(|t| (t.samples.len(), t.ends))); }
-        if let Some(thin) = constant(&mut chain) {
-            lines.push(ThinLine { color, chain: thin });
-            taken.push(chain);
+        { extern crate std; std::eprintln!("chain n {} colors {:b} {:?} closed {} from {:?} to {:?} -> {:?}", chain.marks.len(), chain.colors, color.map(|c| (c * 255.0) as u8), chain.is_closed, chain.marks[0].point, chain.marks[chain.marks.len()-1].point, constant(&mut chain.clone(), canvas.widest).map(|t| (t.samples.len(), t.ends))); }
+        if let Some(thin) = constant(&mut chain, canvas.widest) {
+            lines.push((ThinLine { color, chain: thin }, chain));
         }
     }
-    (lines, taken)
+    in_order(canvas, lines)
+}
+
+/// Lines from back to front: where two cross the one in front shows its color.
+fn in_order(canvas: &Canvas<'_>, mut lines: Vec<(ThinLine, Chain)>) -> Vec<(ThinLine, Chain)> {
+    let gaps: Vec<Vec<[Vec2<f64>; 2]>> = lines.iter().map(|(_, chain)| chain.gaps().collect()).collect();
+    let mut is_behind = alloc::vec![alloc::vec![false; lines.len()]; lines.len()];
+    for a in 0..lines.len() {
+        for b in 0..a {
+            for (one, other) in gaps[a].iter().flat_map(|one| gaps[b].iter().map(move |other| (one, other))) {
+                let Some(at) = crossing(*one, *other) else { continue };
+                let [x, y] = [at.x, at.y].map(|value| value.max(0.0) as usize);
+                let i = y.min(canvas.size[1] - 1) * canvas.size[0] + x.min(canvas.size[0] - 1);
+                let away = [a, b].map(|k| distance(lines[k].0.color, canvas.pixels[i].map(f64::from)));
+                let (front, back) = if away[0] <= away[1] { (a, b) } else { (b, a) };
+                is_behind[back][front] = true;
+            }
+        }
+    }
+    let mut rest: Vec<usize> = (0..lines.len()).collect();
+    let mut order = Vec::new();
+    while !rest.is_empty() {
+        let hindmost = rest.iter().position(|&k| rest.iter().all(|&other| !is_behind[other][k])).unwrap_or(0);
+        order.push(rest.remove(hindmost));
+    }
+    let mut place = alloc::vec![0; order.len()];
+    order.into_iter().enumerate().for_each(|(k, line)| place[line] = k);
+    let mut numbered: Vec<_> = place.into_iter().zip(lines.drain(..)).collect();
+    numbered.sort_by_key(|&(place, _)| place);
+    numbered.into_iter().map(|(_, line)| line).collect()
+}
+
+/// Where two segments cross.
+fn crossing([a, b]: [Vec2<f64>; 2], [c, d]: [Vec2<f64>; 2]) -> Option<Vec2<f64>> {
+    let (u, v, w) = (b - a, d - c, c - a);
+    let cross = u.cross(v);
+    let [s, t] = [w.cross(v) / cross, w.cross(u) / cross];
+    ((0.0..=1.0).contains(&s) && (0.0..=1.0).contains(&t)).then(|| a.lerp(b, s))
+}
+
+/// Of lines that may be wider than what is thin: those that cross one another, or cut what they lie on. A pen draws what is alone.
+pub(super) fn crossing_lines(lines: Vec<(ThinLine, Chain)>) -> Vec<(ThinLine, Chain)> {
+    let gaps: Vec<Vec<[Vec2<f64>; 2]>> = lines.iter().map(|(_, chain)| chain.gaps().collect()).collect();
+    let crosses = |a: usize, b: usize| {
+        let of_marks = lines[b].1.marks.windows(2).map(|pair| [pair[0].point, pair[1].point]).collect::<Vec<_>>();
+        lines[a].0.color != lines[b].0.color
+            && gaps[a].iter().any(|one| of_marks.iter().any(|other| crossing(*one, *other).is_some()))
+    };
+    let n = lines.len();
+    let mut keep = alloc::vec![false; n];
+    for a in (0..n).filter(|&a| !gaps[a].is_empty()) {
+        for b in (0..n).filter(|&b| b != a) {
+            if crosses(a, b) {
+                (keep[a], keep[b]) = (true, true);
+            }
+        }
+    }
+    // What lies on something cuts it in two.
+    let is_on = |chain: &Chain| {
+        let marks = chain.marks.iter().filter(|mark| mark.cross.sides[0] == mark.cross.sides[1] && mark.cross.sides[0] != 0);
+        5 * marks.count() > 4 * chain.marks.len()
+    };
+    lines.into_iter().zip(keep).filter_map(|(line, keep)| (keep || is_on(&line.1)).then_some(line)).collect()
 }
 
 /// Says of every window which colors a line across it may have; the colors, new ones last.
@@ -142,7 +204,7 @@ fn beyond(side: Color, seen: Color) -> Color {
 
 fn fits(canvas: &Canvas<'_>, along: Along, cross: &Cross, color: Color, palette: &[Color]) -> bool {
     canvas.measure(along, cross, color, palette).is_some_and(|[_, width, misfit]| {
-        misfit <= canvas.noise && width <= tuning::THIN_WIDTH * core::f64::consts::SQRT_2
+        misfit <= canvas.noise && width <= canvas.widest * core::f64::consts::SQRT_2
     })
 }
 
@@ -203,7 +265,7 @@ fn level_parts(chain: Chain) -> Vec<Chain> {
 }
 
 /// The line that a chain is, if it is long enough and its width the same all along.
-fn constant(chain: &mut Chain) -> Option<ThinChain> {
+fn constant(chain: &mut Chain, widest: f64) -> Option<ThinChain> {
     let n = chain.marks.len();
     if n < tuning::THIN_LEAST_LENGTH {
         return None;
@@ -225,7 +287,7 @@ fn constant(chain: &mut Chain) -> Option<ThinChain> {
     let tolerance = tuning::THIN_TOLERANCE * width + 0.08;
     let off = widths.iter().filter(|&&one| (one - width).abs() > tolerance).count();
     let thirds = [median(&widths[..n.div_ceil(3)]), median(&widths[n - n.div_ceil(3)..])];
-    if !(0.08..=tuning::THIN_WIDTH).contains(&width) || off * 5 > n || thirds.iter().any(|third| (third - width).abs() > tolerance) {
+    if !(0.08..=widest).contains(&width) || off * 5 > n || thirds.iter().any(|third| (third - width).abs() > tolerance) {
         return None;
     }
     // Ends that are covered in part say how much further the line goes.
