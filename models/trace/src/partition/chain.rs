@@ -111,9 +111,13 @@ pub(super) fn join(canvas: &Canvas<'_>, chains: Vec<Chain>) -> Vec<Chain> {
             }
             let turn = (-out.dot(other_out)).clamp(-1.0, 1.0).acos();
             let aside = out.cross(gap).abs().max(other_out.cross(gap).abs());
-            let is_straight = turn < tuning::STROKE_STRAIGHT_TURN && out.dot(gap) > -0.5 && aside < 1.0 + 0.25 * distance;
+            // Where columns give way to rows both have read the same stretch.
+            let overlap = if chains[a / 2].marks[0].along == chains[b / 2].marks[0].along { 0.5 } else { 8.0 };
+            let is_straight = turn < tuning::STROKE_STRAIGHT_TURN && out.dot(gap) > -overlap && aside < 1.0 + 0.25 * distance;
             let is_corner = distance < 3.5 && turn < 2.4 && out.dot(gap) > -1.5 && other_out.dot(gap) < 1.5;
-            if (is_straight || is_corner) && is_covered(canvas, from, to) {
+            let [leave, arrive] = [out.cross(gap).atan2(out.dot(gap)), gap.cross(-other_out).atan2(-gap.dot(other_out))];
+            let is_bend = distance > 3.5 && (leave - arrive).abs() < 0.35 && (leave + arrive).abs() < 1.3;
+            if (is_straight || is_corner || is_bend) && is_covered(canvas, from, to) {
                 joints.push(Joint { cost: distance + 4.0 * turn + aside, ends: [a, b] });
             }
         }

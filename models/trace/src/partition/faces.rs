@@ -46,21 +46,23 @@ fn falling_joins(shares: &[f32], [nw, ne, sw, se]: [usize; 4]) -> bool {
 /// Numbers the faces.
 fn label([width, height]: [usize; 2], mixed: &Mixed) -> (Vec<u32>, Vec<Face>) {
     let colors = &mixed.colors;
+    let sides = super::checker::sides(colors, &mixed.is_flat, [width, height]);
+    let same = |i: usize, j: usize| colors[i] == colors[j] && (sides[i] == sides[j] || sides[i] == 0 || sides[j] == 0);
     let mut sets = DisjointSets::default();
     sets.reset(index(colors.len()));
     for y in 0..height {
         for x in 0..width {
             let i = y * width + x;
-            if x + 1 < width && colors[i] == colors[i + 1] {
+            if x + 1 < width && same(i, i + 1) {
                 sets.unite(index(i), index(i + 1));
             }
-            if y + 1 < height && colors[i] == colors[i + width] {
+            if y + 1 < height && same(i, i + width) {
                 sets.unite(index(i), index(i + width));
             }
             if x + 1 < width && y + 1 < height {
                 let four = [i, i + 1, i + width, i + width + 1];
                 let [nw, ne, sw, se] = four;
-                let (falls, rises) = (colors[nw] == colors[se], colors[ne] == colors[sw]);
+                let (falls, rises) = (same(nw, se), same(ne, sw));
                 if falls && (!rises || falling_joins(&mixed.shares, four)) {
                     sets.unite(index(nw), index(se));
                 } else if rises {
@@ -140,9 +142,8 @@ impl Partition {
         }
         let se = y * width + x;
         let four = [se - width - 1, se - width, se - 1, se];
-        let color = |i: usize| self.faces[self.labels[i] as usize].color;
         let [nw, ne, sw, se] = four;
-        let (falls, rises) = (color(nw) == color(se), color(ne) == color(sw));
+        let (falls, rises) = (self.labels[nw] == self.labels[se], self.labels[ne] == self.labels[sw]);
         let falling_wins = falls && (!rises || falling_joins(&self.shares, four));
         if falling { falling_wins } else { rises && !falling_wins }
     }

@@ -3,9 +3,10 @@
 //! Every pixel is pure (of one face) or mixed (of two, rarely three, with shares). `flat` finds what is of one color beyond doubt,
 //! `palette` the colors, `seam` mends what renderers let through between things side by side, `thin` (windows of `cross`, joined by
 //! `chain`) finds and `erase` takes out lines without a pixel of their own, `mix` explains every other pixel as a mixture of colors nearby, `faces`
-//! joins pixels to faces.
+//! joins pixels to faces, but not across the corners of `checker`.
 
 mod chain;
+mod checker;
 mod cross;
 mod erase;
 mod faces;
