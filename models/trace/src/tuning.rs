@@ -135,3 +135,6 @@ pub const THIN_GAP: f64 = 32.0;
 
 /// Most of a pixel that shows through between two things side by side: a quarter, and rounding.
 pub const SEAM_MOST: f64 = 0.27;
+
+/// What a face of a few pixels costs, bits: its color, 24, and three numbers of 10.
+pub const SPECK_BITS: f64 = 54.0;

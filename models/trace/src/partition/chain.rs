@@ -101,18 +101,20 @@ struct Joint {
 pub(super) fn join(canvas: &Canvas<'_>, chains: Vec<Chain>) -> Vec<Chain> {
     let tips: Vec<[Vec2<f64>; 2]> = (0..2 * chains.len()).map(|end| chains[end / 2].tip(end % 2 == 1)).collect();
     let mut joints = Vec::new();
+    // Wider lines hide more of one another.
+    let longest = tuning::THIN_GAP * (canvas.widest / tuning::THIN_WIDTH);
     for a in 0..tips.len() {
         for b in 0..a {
             let [[from, out], [to, other_out]] = [tips[a], tips[b]];
             let gap = to - from;
             let distance = gap.length();
-            if distance > tuning::THIN_GAP || chains[a / 2].colors & chains[b / 2].colors == 0 || a / 2 == b / 2 && chains[a / 2].marks.len() < 8 {
+            if distance > longest || chains[a / 2].colors & chains[b / 2].colors == 0 || a / 2 == b / 2 && chains[a / 2].marks.len() < 8 {
                 continue;
             }
             let turn = (-out.dot(other_out)).clamp(-1.0, 1.0).acos();
             let aside = out.cross(gap).abs().max(other_out.cross(gap).abs());
             // Where columns give way to rows both have read the same stretch.
-            let overlap = if chains[a / 2].marks[0].along == chains[b / 2].marks[0].along { 0.5 } else { 8.0 };
+            let overlap = if chains[a / 2].marks[0].along == chains[b / 2].marks[0].along { 0.5 } else { longest };
             let is_straight = turn < tuning::STROKE_STRAIGHT_TURN && out.dot(gap) > -overlap && aside < 1.0 + 0.25 * distance;
             let is_corner = distance < 3.5 && turn < 2.4 && out.dot(gap) > -1.5 && other_out.dot(gap) < 1.5;
             let [leave, arrive] = [out.cross(gap).atan2(out.dot(gap)), gap.cross(-other_out).atan2(-gap.dot(other_out))];

@@ -96,6 +96,7 @@ impl Mixed {
     ) {
         let mut near = Vec::new();
         let mut tried_from = 0;
+        let mut given_up = Vec::new();
         loop {
             let count = self.palette.len();
             let mut left = Vec::new();
@@ -129,16 +130,30 @@ impl Mixed {
             }
             let progressed = left.len() < open.len();
             *open = left;
-            let Some((away, i)) = extreme else { return };
+            let Some((away, i)) = extreme else { break };
             if away <= tuning::LEAST_CONTRAST || (!progressed && tried_from > 0 && open.len() < tuning::LEAST_THIN) {
-                return;
+                break;
             }
             if self.palette.len() >= tuning::MOST_COLORS {
-                return;
+                break;
             }
             tried_from = self.palette.len();
             self.palette.push(pixels[i].map(f64::from));
+            // A color that explains its own pixel alone is a mixture of what is not known.
+            let added = narrow(tried_from);
+            let is_of = |&&j: &&usize| {
+                colors_near(flat_colors, size, j, &mut near);
+                let pixel = pixels[j].map(f64::from);
+                near.iter().any(|&base| pair(pixel, base, added, &self.palette).misfit <= self.noise)
+                    || distance(self.palette[tried_from], pixel) <= self.noise
+            };
+            if open.iter().filter(is_of).take(tuning::LEAST_THIN).count() < tuning::LEAST_THIN {
+                self.palette.pop();
+                open.retain(|&j| j != i);
+                given_up.push(i);
+            }
         }
+        open.extend(given_up);
     }
 }
 
