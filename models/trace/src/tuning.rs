@@ -127,3 +127,27 @@ pub const NOISY_BLOCKS: usize = 2;
 pub const BORDER_WEIGHT: usize = 4;
 /// Bits of misfit per sample, along a stretch, from which on an outline is drawn anew there: as of samples that are 4 sigma off.
 pub const OUTLINE_MOST_MISFIT: f64 = 10.0;
+
+/// Widest line that is looked for across both of its sides at once, pixels: wider ones have pixels of their own.
+pub const THIN_WIDTH: f64 = 2.2;
+
+/// Widest lines that are taken out where they cross one another, pixels: of a chart of 512 pixels.
+pub const CROSSING_WIDTH: f64 = 9.0;
+
+/// Fewest windows across a thin line, and fewest that make a color of its own of it.
+pub const THIN_LEAST_LENGTH: usize = 6;
+
+/// By how much the width of a thin line may differ from window to window, per width.
+pub const THIN_TOLERANCE: f64 = 0.2;
+
+/// Standard deviation of the middle of a thin line in one window, pixels: what slanted lines look like to windows.
+pub const THIN_SIGMA: f64 = 0.05;
+
+/// How far apart (pixels) the parts of a thin line may be that something crosses.
+pub const THIN_GAP: f64 = 32.0;
+
+/// Most of a pixel that shows through between two things side by side: a quarter, and rounding.
+pub const SEAM_MOST: f64 = 0.27;
+
+/// What a face of a few pixels costs, bits: its color, 24, and three numbers of 10.
+pub const SPECK_BITS: f64 = 54.0;

@@ -54,6 +54,9 @@ fn sample(partition: &Partition, step: &Step) -> Option<Sample> {
     }
     let [inner, outer] = [step.inner, step.other].map(|face| partition.color(face));
     let contrast2: f64 = (0..3).map(|c| (inner[c] - outer[c]).powi(2)).sum();
+    if contrast2 <= 0.0 {
+        return None;
+    }
     let rounding = tuning::ROUNDING / contrast2.sqrt();
     let [inner_at, outer_at] = step.crack.sides();
     // From the crack inward: missing coverage moves the boundary inward. Outward: coverage moves it outward.

@@ -27,6 +27,7 @@ use crate::outline::Outline;
 use crate::partition::{Color, OUTSIDE, Partition};
 use crate::ruler::Ruler;
 use crate::tuning;
+use crate::stroke::fit_thin;
 use complete::Completion;
 use order::Order;
 
@@ -89,6 +90,9 @@ pub fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<Color>) 
             }
         }
     }
+    // Thin lines were taken out of what they lie on.
+    let lines = partition.lines.iter().filter_map(|line| Some((line.color, fit_thin(&line.chain, &ruler)?)));
+    layers.extend(lines.map(|(color, stroke)| Layer { color, form: Form::Stroked(stroke) }));
     Layers { background: partition.color(background), layers }
 }
 

@@ -3,11 +3,15 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
+
 use dvp_core::geometry::DisjointSets;
 
 use super::flat::{NONE, index};
 use super::mix::{Mixed, best_mixture};
 use super::Partition;
+use crate::tuning;
 
 /// A connected part of the picture of one color.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,11 +26,15 @@ pub struct Face {
     pub bounds: [usize; 4],
 }
 
-/// Cuts a picture into faces; specks that a mixture of their neighbors explains as well are given to these.
+/// Cuts a picture into faces; specks that a mixture of their neighbors explains nearly as well are given to these.
 pub(super) fn cut(size: [usize; 2], pixels: Vec<[f32; 3]>, mut mixed: Mixed) -> Partition {
     let (labels, faces) = label(size, &mixed);
     if remove_specks(size, &pixels, &mut mixed, &labels, &faces) {
-        let (labels, faces) = label(size, &mixed);
+        // What was given away may be a speck beside another one.
+        let (mut labels, mut faces) = label(size, &mixed);
+        if remove_specks(size, &pixels, &mut mixed, &labels, &faces) {
+            (labels, faces) = label(size, &mixed);
+        }
         return partition(size, pixels, mixed, labels, faces);
     }
     partition(size, pixels, mixed, labels, faces)
@@ -35,6 +43,7 @@ pub(super) fn cut(size: [usize; 2], pixels: Vec<[f32; 3]>, mut mixed: Mixed) -> 
 fn partition(size: [usize; 2], pixels: Vec<[f32; 3]>, mixed: Mixed, labels: Vec<u32>, faces: Vec<Face>) -> Partition {
     let Mixed { shares, palette, unexplained, noise, .. } = mixed;
     Partition { size, pixels, labels, shares, faces, palette, coded: false, mix_noise: noise, unexplained }
+    Partition { size, pixels, labels, shares, faces, lines: Vec::new(), palette, mix_noise: noise, unexplained }
 }
 
 /// Whether, of four pixels around a corner whose diagonals are of two colors, the diagonal from upper left to lower right is
@@ -46,21 +55,23 @@ fn falling_joins(shares: &[f32], [nw, ne, sw, se]: [usize; 4]) -> bool {
 /// Numbers the faces.
 fn label([width, height]: [usize; 2], mixed: &Mixed) -> (Vec<u32>, Vec<Face>) {
     let colors = &mixed.colors;
+    let sides = super::checker::sides(colors, &mixed.is_flat, [width, height]);
+    let same = |i: usize, j: usize| colors[i] == colors[j] && (sides[i] == sides[j] || sides[i] == 0 || sides[j] == 0);
     let mut sets = DisjointSets::default();
     sets.reset(index(colors.len()));
     for y in 0..height {
         for x in 0..width {
             let i = y * width + x;
-            if x + 1 < width && colors[i] == colors[i + 1] {
+            if x + 1 < width && same(i, i + 1) {
                 sets.unite(index(i), index(i + 1));
             }
-            if y + 1 < height && colors[i] == colors[i + width] {
+            if y + 1 < height && same(i, i + width) {
                 sets.unite(index(i), index(i + width));
             }
             if x + 1 < width && y + 1 < height {
                 let four = [i, i + 1, i + width, i + width + 1];
                 let [nw, ne, sw, se] = four;
-                let (falls, rises) = (colors[nw] == colors[se], colors[ne] == colors[sw]);
+                let (falls, rises) = (same(nw, se), same(ne, sw));
                 if falls && (!rises || falling_joins(&mixed.shares, four)) {
                     sets.unite(index(nw), index(se));
                 } else if rises {
@@ -89,7 +100,7 @@ fn label([width, height]: [usize; 2], mixed: &Mixed) -> (Vec<u32>, Vec<Face>) {
     (labels, faces)
 }
 
-/// Gives specks, faces without a flat pixel, to the faces around them where mixtures of those explain every one of their pixels.
+/// Gives specks, faces without a flat pixel, to the faces around them where mixtures of those are the shorter description.
 /// Whether there were any.
 fn remove_specks(size: [usize; 2], pixels: &[[f32; 3]], mixed: &mut Mixed, labels: &[u32], faces: &[Face]) -> bool {
     let [width, height] = size;
@@ -108,16 +119,16 @@ fn remove_specks(size: [usize; 2], pixels: &[[f32; 3]], mixed: &mut Mixed, label
             for row in y.saturating_sub(1)..(y + 2).min(height) {
                 for j in (row * width + x.saturating_sub(1))..(row * width + (x + 2).min(width)) {
                     let (other, color) = (labels[j] as usize, mixed.colors[j]);
-                    if other != face && faces[other].flat > 0 && usize::from(color) != faces[face].color && !around.contains(&color) {
+                    if other != face && (faces[other].flat > 0 || faces[other].area > faces[face].area) && usize::from(color) != faces[face].color && !around.contains(&color) {
                         around.push(color);
                     }
                 }
             }
         }
-        let mixtures: Option<Vec<_>> = speck
-            .iter()
-            .map(|&i| best_mixture(pixels[i].map(f64::from), &around, &mixed.palette).filter(|m| m.misfit <= mixed.noise))
-            .collect();
+        let mixtures: Option<Vec<_>> =
+            speck.iter().map(|&i| best_mixture(pixels[i].map(f64::from), &around, &mixed.palette)).collect();
+        let bits = |misfit: f64| 1.5 * core::f64::consts::LOG2_E * (misfit / mixed.noise).powi(2);
+        let mixtures = mixtures.filter(|mixtures| mixtures.iter().map(|mixture| bits(mixture.misfit)).sum::<f64>() < tuning::SPECK_BITS);
         if let Some(mixtures) = mixtures {
             for (&i, mixture) in speck.iter().zip(mixtures) {
                 mixed.colors[i] = mixture.color;
@@ -140,9 +151,8 @@ impl Partition {
         }
         let se = y * width + x;
         let four = [se - width - 1, se - width, se - 1, se];
-        let color = |i: usize| self.faces[self.labels[i] as usize].color;
         let [nw, ne, sw, se] = four;
-        let (falls, rises) = (color(nw) == color(se), color(ne) == color(sw));
+        let (falls, rises) = (self.labels[nw] == self.labels[se], self.labels[ne] == self.labels[sw]);
         let falling_wins = falls && (!rises || falling_joins(&self.shares, four));
         if falling { falling_wins } else { rises && !falling_wins }
     }

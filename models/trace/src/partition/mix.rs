@@ -96,6 +96,7 @@ impl Mixed {
     ) {
         let mut near = Vec::new();
         let mut tried_from = 0;
+        let mut given_up = Vec::new();
         loop {
             let count = self.palette.len();
             let mut left = Vec::new();
@@ -129,16 +130,30 @@ impl Mixed {
             }
             let progressed = left.len() < open.len();
             *open = left;
-            let Some((away, i)) = extreme else { return };
+            let Some((away, i)) = extreme else { break };
             if away <= tuning::LEAST_CONTRAST || (!progressed && tried_from > 0 && open.len() < tuning::LEAST_THIN) {
-                return;
+                break;
             }
             if self.palette.len() >= tuning::MOST_COLORS {
-                return;
+                break;
             }
             tried_from = self.palette.len();
             self.palette.push(pixels[i].map(f64::from));
+            // A color that explains its own pixel alone is a mixture of what is not known.
+            let added = narrow(tried_from);
+            let is_of = |&&j: &&usize| {
+                colors_near(flat_colors, size, j, &mut near);
+                let pixel = pixels[j].map(f64::from);
+                near.iter().any(|&base| pair(pixel, base, added, &self.palette).misfit <= self.noise)
+                    || distance(self.palette[tried_from], pixel) <= self.noise
+            };
+            if open.iter().filter(is_of).take(tuning::LEAST_THIN).count() < tuning::LEAST_THIN {
+                self.palette.pop();
+                open.retain(|&j| j != i);
+                given_up.push(i);
+            }
         }
+        open.extend(given_up);
     }
 }
 
@@ -211,7 +226,28 @@ fn triple(pixel: Color, colors: [u16; 3], palette: &[Color]) -> Option<Mixture> 
     Some(Mixture { color: colors[most], share: shares[most], misfit })
 }
 
-/// The colors of flat pixels within reach of pixel `i`.
+/// A list of colors, used again and again.
+#[derive(Debug, Default)]
+pub(super) struct Near(Vec<u16>);
+
+impl Near {
+    /// The colors of flat pixels within reach of pixel `i`.
+    pub(super) fn around(&mut self, flat_colors: &[u16], size: [usize; 2], i: usize) -> &[u16] {
+        colors_near(flat_colors, size, i, &mut self.0);
+        &self.0
+    }
+}
+
+/// The pixels that no mixture of flat colors nearby explains.
+pub(super) fn open(pixels: &[[f32; 3]], size: [usize; 2], flat_colors: &[u16], palette: &[Color], noise: f64) -> Vec<bool> {
+    let mut near = Near::default();
+    let is_open = |(i, pixel): (usize, &[f32; 3])| {
+        flat_colors[i] == u16::MAX
+            && best_mixture(pixel.map(f64::from), near.around(flat_colors, size, i), palette).is_none_or(|best| best.misfit > noise)
+    };
+    pixels.iter().enumerate().map(is_open).collect()
+}
+
 fn colors_near(flat_colors: &[u16], [width, height]: [usize; 2], i: usize, near: &mut Vec<u16>) {
     let (x, y) = (i % width, i / width);
     near.clear();

@@ -1,19 +1,30 @@
 //! Pixels to faces: which color each pixel belongs to, and by how much.
 //!
 //! Every pixel is pure (of one face) or mixed (of two, rarely three, with shares). `flat` finds what is of one color beyond doubt,
-//! `palette` the colors, `mix` explains every other pixel as a mixture of colors nearby, `faces` joins pixels to faces.
+//! `palette` the colors, `seam` mends what renderers let through between things side by side, `thin` (windows of `cross`, joined by
+//! `chain`) finds and `erase` takes out lines without a pixel of their own, `mix` explains every other pixel as a mixture of colors nearby, `faces`
+//! joins pixels to faces, but not across the corners of `checker`.
 
+mod chain;
+mod checker;
+mod cross;
+mod erase;
 mod faces;
 mod flat;
 mod mix;
 mod palette;
+mod seam;
+mod thin;
 
 use alloc::vec::Vec;
 
 use dvp_core::ImageView;
 
+use crate::tuning;
+
 pub use faces::Face;
 pub(crate) use mix::coverage;
+pub use thin::ThinLine;
 
 /// Colors as the picture stores them, RGB.
 pub type Color = [f64; 3];
@@ -34,6 +45,8 @@ pub struct Partition {
     pub shares: Vec<f32>,
     /// What the picture is made of.
     pub faces: Vec<Face>,
+    /// Lines that were taken out before the cut.
+    pub lines: Vec<ThinLine>,
     /// The colors; faces name one of them.
     pub palette: Vec<Color>,
     /// Whether it looks as if a coder of photographs had changed it.
@@ -68,14 +81,30 @@ impl Partition {
         let size = [image.size().width(), image.size().height()];
         let pixels: Vec<[f32; 3]> = (0..image.size().pixels()).map(|i| image.pixel(i)).collect();
         let noise = flat::Noise::of(&pixels, size, coded)?;
+        let mut pixels: Vec<[f32; 3]> = (0..image.size().pixels()).map(|i| image.pixel(i)).collect();
+        let noise = flat::Noise::of(&pixels, size);
         let flats = flat::find(&pixels, size, &noise);
         let share = flats.pure_count() as f64 / pixels.len() as f64;
-        if share < crate::tuning::LEAST_FLAT {
+        if share < tuning::LEAST_FLAT {
             return Err(NoPartition::NotFlat { flat: share });
         }
-        let colors = palette::Palette::of(&flats, &noise)?;
+        let mut flats = flats;
+        let mut colors = palette::Palette::of(&flats, &noise)?;
+        let mut lines = Vec::new();
+        for widest in [tuning::THIN_WIDTH, tuning::CROSSING_WIDTH] {
+            // Lines that cross have two colors, and lie on a third.
+            if widest > tuning::THIN_WIDTH && colors.colors.len() < 3 {
+                continue;
+            }
+            let taken = take_lines(&mut pixels, size, &flats, &colors, f64::from(noise.mixed), widest);
+            // Wide lines may pass under thin ones.
+            lines.splice(0..0, taken);
+            flats = flat::find(&pixels, size, &noise);
+            colors = palette::Palette::of(&flats, &noise)?;
+        }
         let mixed = mix::explain(&pixels, size, &flats, colors, &noise);
         Ok(Self { coded: noise.is_coded(), ..faces::cut(size, pixels, mixed) })
+        Ok(Self { lines, ..faces::cut(size, pixels, mixed) })
     }
 
     /// Color of a face.
@@ -90,4 +119,27 @@ impl Partition {
     pub fn face_at(&self, [x, y]: [usize; 2]) -> u32 {
         if x < self.size[0] && y < self.size[1] { self.labels[y * self.size[0] + x] } else { OUTSIDE }
     }
+}
+
+/// Mends seams, and takes lines up to some width (pixels) out of the picture.
+fn take_lines(
+    pixels: &mut [[f32; 3]],
+    size: [usize; 2],
+    flats: &flat::Flats,
+    colors: &palette::Palette,
+    noise: f64,
+    widest: f64,
+) -> Vec<ThinLine> {
+    let flat = cross::thick(&flats.regions, size[0], &colors.of_region, widest as u16 + 1);
+    let mut open = mix::open(pixels, size, &flat, &colors.colors, noise);
+    seam::mend(pixels, size, &flat, &mut open, &colors.colors, noise);
+    let canvas = cross::Canvas { pixels, size, flat: &flat, open: &open, noise, widest };
+    let mut lines = thin::find(&canvas, &colors.colors);
+    if widest > tuning::THIN_WIDTH {
+        lines = thin::crossing_lines(lines);
+    }
+    let known = flat.iter().map(|&color| color != u16::MAX).collect();
+    let mut eraser = erase::Eraser { pixels, size, open: &open, known, palette: &colors.colors };
+    eraser.erase(lines.iter().map(|(_, chain)| chain));
+    lines.into_iter().map(|(line, _)| line).collect()
 }

@@ -39,7 +39,7 @@ use border::Border;
 use draw::{Drawing, Line, MITER_LIMIT};
 use refine::Refined;
 
-pub use thin::{ThinSample, fit_thin};
+pub use thin::{ThinChain, ThinSample, fit_thin};
 
 /// Strokes that together explain a face. All lengths in pixels.
 #[derive(Clone, Debug, PartialEq)]

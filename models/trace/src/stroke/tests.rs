@@ -221,7 +221,9 @@ fn thin_lines() {
         let width = 1.2 / cosine + 0.02 * noise.normal();
         ThinSample { point: point + axis * (0.02 * noise.normal()), axis, sigma: 0.02, width }
     });
-    let strokes = fit_thin(&[samples.collect(), Vec::new()], &RULER);
+    let chain = ThinChain { samples: samples.collect(), ..ThinChain::default() };
+    assert!(fit_thin(&ThinChain::default(), &RULER).is_none());
+    let strokes: Vec<_> = fit_thin(&chain, &RULER).into_iter().collect();
     let [stroke] = &strokes[..] else { panic!("{strokes:?}") };
     assert!((stroke.width - 1.2).abs() < 0.01, "{stroke:?}");
     assert_eq!((stroke.cap, stroke.rings[0].points.len()), (Cap::Butt, 2));

@@ -9,9 +9,9 @@ use num_traits::Float as _;
 
 use super::draw::MITER_LIMIT;
 use super::piece::{direction, move_tip, nearest, pieces, tip};
-use crate::outline::fit_open;
+use crate::outline::{fit_closed, fit_open};
 use crate::ruler::Ruler;
-use crate::sample::Sample;
+use crate::sample::{RingSamples, Sample};
 
 /// What one window across a thin line tells.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,19 +26,35 @@ pub struct ThinSample {
     pub width: f64,
 }
 
-/// A stroke for each chain of samples that has at least three: its center line through them, its width their mean across the line.
-#[must_use]
-pub fn fit_thin(centers: &[Vec<ThinSample>], ruler: &Ruler) -> Vec<Stroke<f64>> {
-    centers.iter().filter_map(|samples| thin(samples, ruler)).collect()
+/// What is known of one thin line.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ThinChain {
+    /// Windows across it, in order.
+    pub samples: Vec<ThinSample>,
+    /// How much further it goes than the first and the last window, pixels.
+    pub ends: [f64; 2],
+    /// Whether it comes back to where it starts.
+    pub is_closed: bool,
 }
 
-fn thin(thin: &[ThinSample], ruler: &Ruler) -> Option<Stroke<f64>> {
+/// The stroke along a chain of at least three samples: its center line through them, its width their mean across the line.
+#[must_use]
+pub fn fit_thin(chain: &ThinChain, ruler: &Ruler) -> Option<Stroke<f64>> {
+    let thin = &chain.samples[..];
     if thin.len() < 3 {
         return None;
     }
-    let samples: Vec<_> =
+    let mut samples: Vec<_> =
         thin.iter().map(|thin| Sample { point: thin.point, axis: thin.axis, sigma: thin.sigma }).collect();
-    let mut ring = fit_open(&samples, ruler)?.path;
+    let mut ring = if chain.is_closed {
+        let area: f64 = (0..samples.len()).map(|k| samples[k].point.cross(samples[(k + 1) % samples.len()].point)).sum();
+        if area < 0.0 {
+            samples.reverse();
+        }
+        fit_closed(&RingSamples { runs: alloc::vec![samples.clone()], closed: true }, ruler)?.shape.ring()
+    } else {
+        fit_open(&samples, ruler)?.path
+    };
     let line = pieces(&ring);
     let (mut sum, mut weights) = (0.0, 0.0);
     for sample in thin {
@@ -52,10 +68,10 @@ fn thin(thin: &[ThinSample], ruler: &Ruler) -> Option<Stroke<f64>> {
         weights += weight;
     }
     // Windows are a pixel wide, and their samples in the middle.
-    for at_finish in [false, true] {
+    for at_finish in [false, true].into_iter().filter(|_| !chain.is_closed) {
         let [from, out] = tip(&ring, at_finish)?;
         let end = if at_finish { samples.last()? } else { samples.first()? };
-        let reach = 0.5 / out.cross(end.axis).abs().max(0.5);
+        let reach = (0.5 + chain.ends[usize::from(at_finish)]) / out.cross(end.axis).abs().max(0.5);
         move_tip(&mut ring, at_finish, from + out * reach);
     }
     let join = Join::Miter { limit: MITER_LIMIT };

@@ -1,0 +1,202 @@
+//! Chains of windows across thin lines, and which of them are one line.
+
+use alloc::vec::Vec;
+
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
+
+use dvp_core::Vec2;
+
+use super::cross::{Along, Canvas, Cross};
+use crate::tuning;
+
+/// A window of a chain.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Mark {
+    pub(super) along: Along,
+    pub(super) cross: Cross,
+    /// Middle of the line, pixels.
+    pub(super) point: Vec2<f64>,
+    /// Width along the window, pixels.
+    pub(super) width: f64,
+}
+
+impl Mark {
+    /// The axis that the window lies along.
+    pub(super) fn axis(&self) -> Vec2<f64> {
+        match self.along {
+            Along::Columns => Vec2::new(0.0, 1.0),
+            Along::Rows => Vec2::new(1.0, 0.0),
+        }
+    }
+
+    pub(super) fn place(&mut self, center: f64, width: f64) {
+        let line = self.cross.line as f64 + 0.5;
+        self.point = match self.along {
+            Along::Columns => Vec2::new(line, center),
+            Along::Rows => Vec2::new(center, line),
+        };
+        self.width = width;
+    }
+}
+
+/// Windows in order along a line.
+#[derive(Clone, Debug)]
+pub(super) struct Chain {
+    pub(super) marks: Vec<Mark>,
+    /// Colors that explain all windows, bits.
+    pub(super) colors: u128,
+    /// Whether the last is followed by the first.
+    pub(super) is_closed: bool,
+    /// Median width across the line, pixels.
+    pub(super) width: f64,
+}
+
+impl Chain {
+    pub(super) fn new(along: Along, cross: Cross, center: f64, width: f64) -> Self {
+        let mut chain = Self { marks: Vec::new(), colors: cross.colors, is_closed: false, width };
+        chain.push(along, cross, center, width);
+        chain
+    }
+
+    pub(super) fn push(&mut self, along: Along, cross: Cross, center: f64, width: f64) {
+        let mut mark = Mark { along, cross, point: Vec2::default(), width };
+        mark.place(center, width);
+        self.colors &= cross.colors;
+        self.marks.push(mark);
+    }
+
+    pub(super) fn last_line(&self) -> usize {
+        self.marks.last().map_or(usize::MAX - 1, |mark| mark.cross.line)
+    }
+
+    pub(super) fn last_center(&self, along: Along) -> f64 {
+        self.marks.last().map_or(f64::INFINITY, |mark| match along {
+            Along::Columns => mark.point.y,
+            Along::Rows => mark.point.x,
+        })
+    }
+
+    /// Where windows are missing between two of them.
+    pub(super) fn gaps(&self) -> impl Iterator<Item = [Vec2<f64>; 2]> {
+        self.marks.windows(2).map(|pair| [pair[0].point, pair[1].point]).filter(|[from, to]| (*to - *from).length() > 2.5)
+    }
+
+    /// The first or last point, and the direction out of the line there.
+    fn tip(&self, at_finish: bool) -> [Vec2<f64>; 2] {
+        let n = self.marks.len();
+        let (end, inner) = if at_finish { (n - 1, n.saturating_sub(6)) } else { (0, 5.min(n - 1)) };
+        let [end, inner] = [end, inner].map(|k| self.marks[k].point);
+        [end, (end - inner).normalized().unwrap_or_default()]
+    }
+}
+
+/// Ends of chains, by their number: twice the chain's, and one more for its finish.
+struct Joint {
+    cost: f64,
+    ends: [usize; 2],
+}
+
+/// Joins chains that go on from one to the other: around corners at once, straight on across what crosses them.
+pub(super) fn join(canvas: &Canvas<'_>, chains: Vec<Chain>) -> Vec<Chain> {
+    let tips: Vec<[Vec2<f64>; 2]> = (0..2 * chains.len()).map(|end| chains[end / 2].tip(end % 2 == 1)).collect();
+    let mut joints = Vec::new();
+    // Wider lines hide more of one another.
+    let longest = tuning::THIN_GAP * (canvas.widest / tuning::THIN_WIDTH);
+    for a in 0..tips.len() {
+        for b in 0..a {
+            let [[from, out], [to, other_out]] = [tips[a], tips[b]];
+            let gap = to - from;
+            let distance = gap.length();
+            if distance > longest || chains[a / 2].colors & chains[b / 2].colors == 0 || a / 2 == b / 2 && chains[a / 2].marks.len() < 8 {
+                continue;
+            }
+            let turn = (-out.dot(other_out)).clamp(-1.0, 1.0).acos();
+            let aside = out.cross(gap).abs().max(other_out.cross(gap).abs());
+            // Where columns give way to rows both have read the same stretch.
+            let overlap = if chains[a / 2].marks[0].along == chains[b / 2].marks[0].along { 0.5 } else { longest };
+            let is_straight = turn < tuning::STROKE_STRAIGHT_TURN && out.dot(gap) > -overlap && aside < 1.0 + 0.25 * distance;
+            let is_corner = distance < 3.5 && turn < 2.4 && out.dot(gap) > -1.5 && other_out.dot(gap) < 1.5;
+            let [leave, arrive] = [out.cross(gap).atan2(out.dot(gap)), gap.cross(-other_out).atan2(-gap.dot(other_out))];
+            let is_bend = distance > 3.5 && (leave - arrive).abs() < 0.35 && (leave + arrive).abs() < 1.3;
+            if (is_straight || is_corner || is_bend) && is_covered(canvas, from, to) {
+                joints.push(Joint { cost: distance + 4.0 * turn + aside, ends: [a, b] });
+            }
+        }
+    }
+    joints.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    let mut partner = alloc::vec![usize::MAX; tips.len()];
+    let mut colors: Vec<u128> = chains.iter().map(|chain| chain.colors).collect();
+    let mut root: Vec<usize> = (0..chains.len()).collect();
+    for Joint { ends: [a, b], .. } in joints {
+        if partner[a] != usize::MAX || partner[b] != usize::MAX {
+            continue;
+        }
+        let [first, second] = [root[a / 2], root[b / 2]];
+        if colors[first] & colors[second] == 0 {
+            continue;
+        }
+        (partner[a], partner[b]) = (b, a);
+        colors[first] &= colors[second];
+        if first != second {
+            root.iter_mut().filter(|root| **root == second).for_each(|root| *root = first);
+        }
+    }
+    let mut done = alloc::vec![false; chains.len()];
+    let mut joined = Vec::new();
+    // Open ones from an end, then those that are closed.
+    let starts = (0..tips.len()).filter(|&end| partner[end] == usize::MAX).chain((0..chains.len()).map(|k| 2 * k));
+    for start in starts.collect::<Vec<_>>() {
+        if done[start / 2] {
+            continue;
+        }
+        let mut whole = Chain { marks: Vec::new(), colors: colors[root[start / 2]], is_closed: false, width: 0.0 };
+        let mut end = start;
+        loop {
+            let chain = &chains[end / 2];
+            done[end / 2] = true;
+            if end % 2 == 0 {
+                append(&mut whole.marks, chain.marks.iter());
+            } else {
+                append(&mut whole.marks, chain.marks.iter().rev());
+            }
+            let next = partner[end ^ 1];
+            if next == usize::MAX {
+                break;
+            }
+            if done[next / 2] {
+                whole.is_closed = next == start;
+                break;
+            }
+            end = next;
+        }
+        joined.push(whole);
+    }
+    joined
+}
+
+/// Appends marks; those that go back behind where the line has come are left out.
+fn append<'a>(marks: &mut Vec<Mark>, more: impl Iterator<Item = &'a Mark>) {
+    let n = marks.len();
+    let ahead = (n >= 2).then(|| (marks[n - 1].point, (marks[n - 1].point - marks[n - 2].point).normalized().unwrap_or_default()));
+    let mut is_ahead = false;
+    for mark in more {
+        is_ahead |= ahead.is_none_or(|(at, out)| {
+            let step = mark.point - at;
+            step.dot(out) > 0.3 || step.cross(out).abs() > 1.0
+        });
+        if is_ahead {
+            marks.push(*mark);
+        }
+    }
+}
+
+/// Whether no flat pixel lies on the straight way between two points.
+fn is_covered(canvas: &Canvas<'_>, from: Vec2<f64>, to: Vec2<f64>) -> bool {
+    let steps = (2.0 * (to - from).length()).ceil().max(1.0) as usize;
+    (0..=steps).all(|k| {
+        let at = from.lerp(to, k as f64 / steps as f64);
+        let [x, y] = [at.x, at.y].map(|value| value.max(0.0) as usize);
+        x < canvas.size[0] && y < canvas.size[1] && canvas.flat[y * canvas.size[0] + x] == u16::MAX
+    })
+}

@@ -1,0 +1,55 @@
+//! Where four fields meet in a corner, like those of a chess board: what is of one color across the corner is two things.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+/// How far (pixels) from the corner the fields are asked for their color: beyond what is mixed there.
+const NEAR: usize = 2;
+/// How far they reach at least along their sides: no line that runs across the corner is as wide.
+const FAR: usize = 6;
+
+/// Side of the corner, 1 or 2, of the pixels around one; 0 of all others. Pixels of one color that are on different sides are no neighbors.
+pub(super) fn sides(colors: &[u16], is_flat: &[bool], [width, height]: [usize; 2]) -> Vec<u8> {
+    let mut sides = vec![0; colors.len()];
+    let flat = |x: usize, y: usize| is_flat[y * width + x].then(|| colors[y * width + x]);
+    let corner = |x: usize, y: usize| -> Option<[bool; 2]> {
+        let (l, r, t, b) = (x - NEAR, x + NEAR, y - NEAR, y + NEAR);
+        let [nw, ne, sw, se] = [flat(l, t)?, flat(r, t)?, flat(l, b)?, flat(r, b)?];
+        if nw == ne || ne == se || se == sw || sw == nw {
+            return None;
+        }
+        let is = |x: usize, y: usize, color: u16| flat(x, y) == Some(color);
+        let rises = ne == sw && is(x + FAR, t, ne) && is(r, y - FAR, ne) && is(x - FAR, b, sw) && is(l, y + FAR, sw);
+        let falls = nw == se && is(x - FAR, t, nw) && is(l, y - FAR, nw) && is(x + FAR, b, se) && is(r, y + FAR, se);
+        (rises || falls).then_some([rises, falls])
+    };
+    for y in FAR..height.saturating_sub(FAR) {
+        let mut x = FAR;
+        while x + FAR < width {
+            let Some([rises, falls]) = corner(x, y).filter(|_| sides[y * width + x] == 0) else {
+                x += 1;
+                continue;
+            };
+            // The corner is in the middle of the places that see it.
+            let columns = (x..width - FAR).take_while(|&x| corner(x, y).is_some()).count();
+            let rows = (y..height - FAR).take_while(|&y| corner(x, y).is_some()).count();
+            let [cx, cy] = [x + columns / 2, y + rows / 2];
+            let (ne, nw) = (colors[(y - NEAR) * width + x + NEAR], colors[(y - NEAR) * width + x - NEAR]);
+            for py in cy.saturating_sub(NEAR + 1)..(cy + NEAR + 2).min(height) {
+                for px in cx.saturating_sub(NEAR + 1)..(cx + NEAR + 2).min(width) {
+                    let i = py * width + px;
+                    let first = if rises && colors[i] == ne {
+                        px + cy >= cx + py
+                    } else if falls && colors[i] == nw {
+                        px + py >= cx + cy
+                    } else {
+                        true
+                    };
+                    sides[i] = if first { 1 } else { 2 };
+                }
+            }
+            x += columns;
+        }
+    }
+    sides
+}

@@ -1,0 +1,136 @@
+//! Lines taken out of the picture: on both sides of their middle what lies beside them goes on.
+
+use alloc::vec::Vec;
+
+use dvp_core::Vec2;
+use dvp_core::geometry::LineSegment;
+
+use super::Color;
+use super::chain::{Chain, Mark};
+use super::cross::Along;
+
+/// A picture of which lines are taken out.
+pub(super) struct Eraser<'a> {
+    pub(super) pixels: &'a mut [[f32; 3]],
+    pub(super) size: [usize; 2],
+    /// Pixels that say nothing but the lines over them.
+    pub(super) open: &'a [bool],
+    /// Pixels that no line covers, any more or from the start.
+    pub(super) known: Vec<bool>,
+    pub(super) palette: &'a [Color],
+}
+
+impl Eraser<'_> {
+    fn index(&self, along: Along, line: usize, at: usize) -> usize {
+        match along {
+            Along::Columns => at * self.size[0] + line,
+            Along::Rows => line * self.size[0] + at,
+        }
+    }
+
+    pub(super) fn erase<'c>(&mut self, chains: impl Iterator<Item = &'c Chain> + Clone) {
+        for mark in chains.clone().flat_map(|chain| &chain.marks) {
+            let sides = mark.cross.sides.map(|side| self.palette[side as usize]);
+            self.fill(mark.along, mark.cross.line, mark.cross.run, mark.point.dot(mark.axis()), sides);
+        }
+        let mut holes = Vec::new();
+        for chain in chains {
+            let closing = chain.marks.last().zip(chain.marks.first()).filter(|_| chain.is_closed);
+            let pairs = chain.marks.windows(2).map(|pair| (pair[0], pair[1])).chain(closing.map(|(a, b)| (*a, *b)));
+            for (from, to) in pairs {
+                if from.along == to.along && from.cross.line.abs_diff(to.cross.line) > 1 {
+                    self.bridge(&from, &to);
+                } else if from.along != to.along {
+                    self.around(from.point, to.point, chain.width, &mut holes);
+                }
+            }
+            for mark in [chain.marks.first(), chain.marks.last()].into_iter().flatten() {
+                self.around(mark.point, mark.point, chain.width, &mut holes);
+            }
+        }
+        self.fill_holes(holes);
+    }
+
+    /// Lets two colors meet at `center` in a window.
+    fn fill(&mut self, along: Along, line: usize, [from, to]: [usize; 2], center: f64, sides: [Color; 2]) {
+        for at in from..to {
+            let share = (center - at as f64).clamp(0.0, 1.0);
+            let i = self.index(along, line, at);
+            self.pixels[i] = core::array::from_fn(|c| (share * sides[0][c] + (1.0 - share) * sides[1][c]) as f32);
+            self.known[i] = true;
+        }
+    }
+
+    /// The windows that are missing between two: what borders on them goes on under the line.
+    fn bridge(&mut self, from: &Mark, to: &Mark) {
+        let (low, high) = if from.cross.line < to.cross.line { (from, to) } else { (to, from) };
+        let lines = high.cross.line - low.cross.line;
+        let length = match low.along {
+            Along::Columns => self.size[1],
+            Along::Rows => self.size[0],
+        };
+        for k in 1..lines {
+            let line = low.cross.line + k;
+            let share = k as f64 / lines as f64;
+            let center = low.point.lerp(high.point, share).dot(low.axis());
+            let [start, end] = [0, 1].map(|side| {
+                let [a, b] = [low, high].map(|mark| mark.cross.run[side] as f64);
+                a + share * (b - a)
+            });
+            let run = [start.floor() as usize, end.ceil() as usize];
+            if run[0] == 0 || run[1] >= length {
+                continue;
+            }
+            let sides = if low.cross.sides == high.cross.sides {
+                low.cross.sides.map(|side| self.palette[side as usize])
+            } else {
+                [run[0] - 1, run[1]].map(|at| self.pixels[self.index(low.along, line, at)].map(f64::from))
+            };
+            self.fill(low.along, line, run, center, sides);
+        }
+    }
+
+    /// The pixels around a piece of a line that nothing else explains.
+    fn around(&self, from: Vec2<f64>, to: Vec2<f64>, width: f64, holes: &mut Vec<usize>) {
+        let reach = 0.5 * width + 1.8;
+        let [x0, y0] = [from.x.min(to.x) - reach, from.y.min(to.y) - reach].map(|low| low.max(0.0) as usize);
+        let [x1, y1] = [from.x.max(to.x) + reach, from.y.max(to.y) + reach].map(|high| high.max(0.0) as usize + 1);
+        let segment = LineSegment::new(from, to);
+        for y in y0..y1.min(self.size[1]) {
+            for x in x0..x1.min(self.size[0]) {
+                let i = y * self.size[0] + x;
+                let pixel = Vec2::new(x as f64 + 0.5, y as f64 + 0.5);
+                let foot = from.lerp(to, segment.nearest(pixel).share);
+                if self.open[i] && !self.known[i] && (pixel - foot).length() < reach {
+                    holes.push(i);
+                }
+            }
+        }
+    }
+
+    /// What is left under corners and ends is as what is nearest.
+    fn fill_holes(&mut self, mut holes: Vec<usize>) {
+        let [width, height] = self.size;
+        holes.retain(|&i| !self.known[i]);
+        holes.sort_unstable();
+        holes.dedup();
+        loop {
+            let near = |i: usize| {
+                let (x, y) = (i % width, i / width);
+                let beside = [(x > 0).then(|| i - 1), (x + 1 < width).then_some(i + 1), (y > 0).then(|| i - width), (y + 1 < height).then_some(i + width)];
+                beside.into_iter().flatten().find(|&j| self.known[j])
+            };
+            let filled: Vec<(usize, usize)> = holes.iter().filter_map(|&i| Some((i, near(i)?))).collect();
+            if filled.is_empty() {
+                return;
+            }
+            for &(i, from) in &filled {
+                self.pixels[i] = self.pixels[from];
+            }
+            for (i, _) in filled {
+                self.known[i] = true;
+            }
+            holes.retain(|&i| !self.known[i]);
+        }
+    }
+}

@@ -1,0 +1,56 @@
+//! Seams: where two things are painted edge to edge, renderers let through a little of what is behind them.
+//!
+//! A pixel that the front thing covers by b and the other one by 1 - b is `b front + (1 - b) ((1 - b) other + b behind)`: up to a
+//! quarter of it is neither's. The seam says nothing of the drawing; the pixel becomes the mixture of the two that it stands for.
+
+use super::Color;
+use super::cross::shares_of_three;
+use super::mix::Near;
+use crate::tuning;
+
+/// Colors that may show through, by falling area: what lies behind much is large.
+const BEHIND: usize = 3;
+
+/// Mends the pixels of `open` that are seams; they are open no more.
+pub(super) fn mend(pixels: &mut [[f32; 3]], size: [usize; 2], flat: &[u16], open: &mut [bool], palette: &[Color], noise: f64) {
+    let mut near = Near::default();
+    for i in 0..pixels.len() {
+        if !open[i] {
+            continue;
+        }
+        let colors = near.around(flat, size, i);
+        let pixel = pixels[i].map(f64::from);
+        let mut best = (noise, None);
+        for (k, &a) in colors.iter().enumerate() {
+            for &b in &colors[..k] {
+                for behind in (0..palette.len().min(BEHIND) as u16).filter(|&behind| behind != a && behind != b) {
+                    for [front, other] in [[a, b], [b, a]].map(|pair| pair.map(|color| palette[color as usize])) {
+                        let Some((share, misfit)) = seam(pixel, front, other, palette[behind as usize]) else { continue };
+                        if misfit < best.0 {
+                            best = (misfit, Some((front, other, share)));
+                        }
+                    }
+                }
+            }
+        }
+        if let (_, Some((front, other, share))) = best {
+            pixels[i] = core::array::from_fn(|c| (share * front[c] + (1.0 - share) * other[c]) as f32);
+            open[i] = false;
+        }
+    }
+}
+
+/// Coverage by the front thing, and what is left, the most that a channel differs.
+fn seam(pixel: Color, front: Color, other: Color, behind: Color) -> Option<(f64, f64)> {
+    let [of_other, of_behind] = shares_of_three(pixel, [front, other, behind])?;
+    let share = 1.0 - of_other - of_behind;
+    if !(0.0..=1.0).contains(&share) || of_behind > tuning::SEAM_MOST {
+        return None;
+    }
+    let misfit = |share: f64| {
+        let rest = 1.0 - share;
+        let expected = |c: usize| share * front[c] + rest * (rest * other[c] + share * behind[c]);
+        (0..3).map(|c| (pixel[c] - expected(c)).abs()).fold(0.0, f64::max)
+    };
+    Some((share, misfit(share)))
+}

@@ -1,0 +1,319 @@
+//! Lines thinner than two pixels: found across, chained along, and taken out of the picture, so that what they lie on meets in
+//! their middle as if they were not there.
+
+
+use alloc::collections::BTreeMap;
+use alloc::vec::Vec;
+
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
+
+use dvp_core::Vec2;
+
+use super::chain::{Chain, join};
+use super::cross::{Along, Canvas, Cross};
+use super::mix::coverage;
+use super::palette::distance;
+use super::Color;
+use crate::stroke::{ThinChain, ThinSample};
+use crate::tuning;
+
+/// A thin line.
+#[derive(Clone, Debug)]
+pub struct ThinLine {
+    /// Its color.
+    pub color: Color,
+    /// Where it passes.
+    pub chain: ThinChain,
+}
+
+/// How often a color that only thin lines have is looked for.
+const MOST_TRIES: usize = 48;
+
+/// Finds thin lines. `palette`: the colors of flat pixels, those of thick regions first.
+pub(super) fn find(canvas: &Canvas<'_>, palette: &[Color]) -> Vec<(ThinLine, Chain)> {
+    let mut crosses = [Along::Columns, Along::Rows].map(|along| canvas.crosses(along));
+    let colors = color(canvas, &mut crosses, palette);
+    let mut chains = Vec::new();
+    for (along, crosses) in [Along::Columns, Along::Rows].into_iter().zip(&crosses) {
+        for chain in link(canvas, along, crosses, &colors, palette) {
+            chains.extend(level_parts(chain));
+        }
+    }
+    let chains = join(canvas, chains);
+    let mut lines = Vec::new();
+    for mut chain in chains {
+        let color = colors[chain.colors.trailing_zeros() as usize];
+        #[cfg(feature = "dbg")]
+        { extern crate std; std::eprintln!("chain n {} colors {:b} {:?} closed {} from {:?} to {:?} -> {:?}", chain.marks.len(), chain.colors, color.map(|c| (c * 255.0) as u8), chain.is_closed, chain.marks[0].point, chain.marks[chain.marks.len()-1].point, constant(&mut chain.clone(), canvas.widest).map(|t| (t.samples.len(), t.ends))); }
+        if let Some(thin) = constant(&mut chain, canvas.widest) {
+            lines.push((ThinLine { color, chain: thin }, chain));
+        }
+    }
+    in_order(canvas, lines)
+}
+
+/// Lines from back to front: where two cross the one in front shows its color.
+fn in_order(canvas: &Canvas<'_>, mut lines: Vec<(ThinLine, Chain)>) -> Vec<(ThinLine, Chain)> {
+    let gaps: Vec<Vec<[Vec2<f64>; 2]>> = lines.iter().map(|(_, chain)| chain.gaps().collect()).collect();
+    let mut is_behind = alloc::vec![alloc::vec![false; lines.len()]; lines.len()];
+    for a in 0..lines.len() {
+        for b in 0..a {
+            for (one, other) in gaps[a].iter().flat_map(|one| gaps[b].iter().map(move |other| (one, other))) {
+                let Some(at) = crossing(*one, *other) else { continue };
+                let [x, y] = [at.x, at.y].map(|value| value.max(0.0) as usize);
+                let i = y.min(canvas.size[1] - 1) * canvas.size[0] + x.min(canvas.size[0] - 1);
+                let away = [a, b].map(|k| distance(lines[k].0.color, canvas.pixels[i].map(f64::from)));
+                let (front, back) = if away[0] <= away[1] { (a, b) } else { (b, a) };
+                is_behind[back][front] = true;
+            }
+        }
+    }
+    let mut rest: Vec<usize> = (0..lines.len()).collect();
+    let mut order = Vec::new();
+    while !rest.is_empty() {
+        let hindmost = rest.iter().position(|&k| rest.iter().all(|&other| !is_behind[other][k])).unwrap_or(0);
+        order.push(rest.remove(hindmost));
+    }
+    let mut place = alloc::vec![0; order.len()];
+    order.into_iter().enumerate().for_each(|(k, line)| place[line] = k);
+    let mut numbered: Vec<_> = place.into_iter().zip(lines.drain(..)).collect();
+    numbered.sort_by_key(|&(place, _)| place);
+    numbered.into_iter().map(|(_, line)| line).collect()
+}
+
+/// Where two segments cross.
+fn crossing([a, b]: [Vec2<f64>; 2], [c, d]: [Vec2<f64>; 2]) -> Option<Vec2<f64>> {
+    let (u, v, w) = (b - a, d - c, c - a);
+    let cross = u.cross(v);
+    let [s, t] = [w.cross(v) / cross, w.cross(u) / cross];
+    ((0.0..=1.0).contains(&s) && (0.0..=1.0).contains(&t)).then(|| a.lerp(b, s))
+}
+
+/// Of lines that may be wider than what is thin: those that cross one another, or cut what they lie on. A pen draws what is alone.
+pub(super) fn crossing_lines(lines: Vec<(ThinLine, Chain)>) -> Vec<(ThinLine, Chain)> {
+    let gaps: Vec<Vec<[Vec2<f64>; 2]>> = lines.iter().map(|(_, chain)| chain.gaps().collect()).collect();
+    let crosses = |a: usize, b: usize| {
+        let of_marks = lines[b].1.marks.windows(2).map(|pair| [pair[0].point, pair[1].point]).collect::<Vec<_>>();
+        lines[a].0.color != lines[b].0.color
+            && gaps[a].iter().any(|one| of_marks.iter().any(|other| crossing(*one, *other).is_some()))
+    };
+    let n = lines.len();
+    let mut keep = alloc::vec![false; n];
+    for a in (0..n).filter(|&a| !gaps[a].is_empty()) {
+        for b in (0..n).filter(|&b| b != a) {
+            if crosses(a, b) {
+                (keep[a], keep[b]) = (true, true);
+            }
+        }
+    }
+    // What lies on something cuts it in two.
+    let is_on = |chain: &Chain| {
+        let marks = chain.marks.iter().filter(|mark| mark.cross.sides[0] == mark.cross.sides[1] && mark.cross.sides[0] != 0);
+        5 * marks.count() > 4 * chain.marks.len()
+    };
+    lines.into_iter().zip(keep).filter_map(|(line, keep)| (keep || is_on(&line.1)).then_some(line)).collect()
+}
+
+/// Says of every window which colors a line across it may have; the colors, new ones last.
+fn color(canvas: &Canvas<'_>, crosses: &mut [Vec<Vec<Cross>>; 2], palette: &[Color]) -> Vec<Color> {
+    let mut colors = palette.to_vec();
+    let mut rest: Vec<(f64, Along, &mut Cross, Color)> = Vec::new();
+    let [columns, rows] = crosses;
+    let columns = columns.iter_mut().flatten().map(|cross| (Along::Columns, cross));
+    for (along, cross) in columns.chain(rows.iter_mut().flatten().map(|cross| (Along::Rows, cross))) {
+        for (k, &color) in palette.iter().enumerate() {
+            cross.colors |= u128::from(fits(canvas, along, cross, color, palette)) << k;
+        }
+        if cross.colors == 0 {
+            let sides = cross.sides.map(|side| palette[side as usize]);
+            let away = |color: &Color| distance(*color, sides[0]).min(distance(*color, sides[1]));
+            let run = (cross.run[0]..cross.run[1]).map(|at| canvas.color(along, cross.line, at));
+            if let Some(extreme) = run.max_by(|a, b| away(a).total_cmp(&away(b))) {
+                rest.push((away(&extreme), along, cross, extreme));
+            }
+        }
+    }
+    let opens: Vec<Color> = (0..canvas.pixels.len()).filter(|&i| canvas.open[i]).map(|i| canvas.pixels[i].map(f64::from)).collect();
+    for _ in 0..MOST_TRIES {
+        if rest.len() < tuning::THIN_LEAST_LENGTH || colors.len() == 128 {
+            break;
+        }
+        let bin = modal(rest.iter().map(|&(.., extreme)| extreme));
+        let Some(&(away, _, ref cross, extreme)) = rest.iter().find(|&&(.., extreme)| bin_of(extreme) == bin) else { break };
+        let sides = cross.sides.map(|side| palette[side as usize]);
+        let side = if distance(sides[0], extreme) <= distance(sides[1], extreme) { sides[0] } else { sides[1] };
+        let seen = rest.iter().map(|&(.., extreme)| extreme);
+        let own = farthest(side, extreme, seen, canvas.noise);
+        let darkest = farthest(side, own, opens.iter().copied(), canvas.noise);
+        // Where lines of one color cross they are darker: what is no darker elsewhere is nowhere full.
+        let is_more = coverage(darkest, side, own) > 1.15;
+        let candidates = [if is_more { beyond(side, darkest) } else { own }, [0.0; 3], [1.0; 3]];
+        let explains = |color: Color| rest.iter().filter(|(_, along, cross, _)| fits(canvas, *along, cross, color, palette)).count();
+        let counts = candidates.map(explains);
+        let margin = counts[0] + tuning::THIN_LEAST_LENGTH.max(counts[0] / 4);
+        let best = if counts[1].max(counts[2]) < margin { 0 } else if counts[1] >= counts[2] { 1 } else { 2 };
+        if away < tuning::LEAST_CONTRAST || counts[best] < tuning::THIN_LEAST_LENGTH {
+            rest.retain(|&(.., extreme)| bin_of(extreme) != bin);
+            continue;
+        }
+        let (explained, left): (Vec<_>, Vec<_>) =
+            rest.into_iter().partition(|(_, along, cross, _)| fits(canvas, *along, cross, candidates[best], palette));
+        rest = left;
+        for (_, _, cross, _) in explained {
+            cross.colors |= 1 << colors.len();
+        }
+        colors.push(candidates[best]);
+    }
+    colors
+}
+
+/// Colors that are alike, 16 levels to a channel.
+fn bin_of(color: Color) -> [u8; 3] {
+    color.map(|value| (value * 15.0 + 0.5) as u8)
+}
+
+/// The bin with the most colors.
+fn modal(colors: impl Iterator<Item = Color>) -> [u8; 3] {
+    let mut counts: BTreeMap<[u8; 3], usize> = BTreeMap::new();
+    for color in colors {
+        *counts.entry(bin_of(color)).or_default() += 1;
+    }
+    counts.into_iter().max_by_key(|&(_, count)| count).map_or([0; 3], |(bin, _)| bin)
+}
+
+/// The color furthest from `side` on the ray through `through`.
+fn farthest(side: Color, through: Color, colors: impl Iterator<Item = Color>, noise: f64) -> Color {
+    let on_ray = |color: &Color| {
+        let t = coverage(*color, side, through);
+        let misfit = (0..3).map(|c| (color[c] - side[c] - t * (through[c] - side[c])).abs()).fold(0.0, f64::max);
+        (misfit <= noise && t >= 1.0).then_some((t, *color))
+    };
+    colors.filter_map(|color| on_ray(&color)).max_by(|a, b| a.0.total_cmp(&b.0)).map_or(through, |(_, color)| color)
+}
+
+/// What a line that is nowhere full is likely to be: black on gray, white on gray; else as much as is seen.
+fn beyond(side: Color, seen: Color) -> Color {
+    let is_gray = |color: Color| (0..3).all(|c| (color[c] - color[0]).abs() <= tuning::LEAST_CONTRAST);
+    match is_gray(side) && is_gray(seen) {
+        true if seen[0] < side[0] => [0.0; 3],
+        true => [1.0; 3],
+        false => seen,
+    }
+}
+
+fn fits(canvas: &Canvas<'_>, along: Along, cross: &Cross, color: Color, palette: &[Color]) -> bool {
+    canvas.measure(along, cross, color, palette).is_some_and(|[_, width, misfit]| {
+        misfit <= canvas.noise && width <= canvas.widest * core::f64::consts::SQRT_2
+    })
+}
+
+/// Chains of windows side by side with a color in common.
+fn link(canvas: &Canvas<'_>, along: Along, crosses: &[Vec<Cross>], colors: &[Color], palette: &[Color]) -> Vec<Chain> {
+    let mut done: Vec<Chain> = Vec::new();
+    let mut open: Vec<Chain> = Vec::new();
+    for (line, of_line) in crosses.iter().enumerate() {
+        let (live, ended): (Vec<Chain>, Vec<Chain>) = open.into_iter().partition(|chain| chain.last_line() + 1 == line);
+        done.extend(ended);
+        open = live;
+        for cross in of_line.iter().filter(|cross| cross.colors != 0) {
+            let color = colors[cross.colors.trailing_zeros() as usize];
+            let Some([center, width, _]) = canvas.measure(along, cross, color, palette) else { continue };
+            let fit = |chain: &Chain| {
+                let off = (chain.last_center(along) - center).abs();
+                (chain.last_line() + 1 == line && chain.colors & cross.colors != 0 && off <= 1.5).then_some(off)
+            };
+            let best = (0..open.len()).filter_map(|k| Some((fit(&open[k])?, k))).min_by(|a, b| a.0.total_cmp(&b.0));
+            match best {
+                Some((_, k)) => open[k].push(along, *cross, center, width),
+                None => open.push(Chain::new(along, *cross, center, width)),
+            }
+        }
+    }
+    done.extend(open);
+    // One color for all windows of a chain.
+    for chain in &mut done {
+        let color = colors[chain.colors.trailing_zeros() as usize];
+        for mark in &mut chain.marks {
+            if let Some([center, width, _]) = canvas.measure(along, &mark.cross, color, palette) {
+                mark.place(center, width);
+            }
+        }
+    }
+    done
+}
+
+/// The parts of a chain where windows across it are the shorter ones.
+fn level_parts(chain: Chain) -> Vec<Chain> {
+    let n = chain.marks.len();
+    let is_level = |k: usize| {
+        let [a, b] = [chain.marks[k.saturating_sub(3)], chain.marks[(k + 3).min(n - 1)]];
+        let step = b.point - a.point;
+        let axis = a.axis();
+        step.dot(axis).abs() <= 1.03 * step.dot(axis.perp()).abs() + 0.01
+    };
+    let mut parts = Vec::new();
+    let mut k = 0;
+    while k < n {
+        let length = (k..n).take_while(|&j| is_level(j)).count();
+        if length >= 3 {
+            parts.push(Chain { marks: chain.marks[k..k + length].to_vec(), ..chain.clone() });
+        }
+        k += length.max(1);
+    }
+    parts
+}
+
+/// The line that a chain is, if it is long enough and its width the same all along.
+fn constant(chain: &mut Chain, widest: f64) -> Option<ThinChain> {
+    let n = chain.marks.len();
+    if n < tuning::THIN_LEAST_LENGTH {
+        return None;
+    }
+    let at = |k: usize| &chain.marks[k];
+    let widths: Vec<f64> = (0..n)
+        .map(|k| {
+            let step = at((k + 3).min(n - 1)).point - at(k.saturating_sub(3)).point;
+            let along = step.normalized().unwrap_or_default();
+            at(k).width * along.perp().dot(at(k).axis()).abs().max(0.6)
+        })
+        .collect();
+    let median = |values: &[f64]| {
+        let mut sorted = values.to_vec();
+        sorted.sort_by(f64::total_cmp);
+        sorted[sorted.len() / 2]
+    };
+    let width = median(&widths);
+    let tolerance = tuning::THIN_TOLERANCE * width + 0.08;
+    let off = widths.iter().filter(|&&one| (one - width).abs() > tolerance).count();
+    let thirds = [median(&widths[..n.div_ceil(3)]), median(&widths[n - n.div_ceil(3)..])];
+    if !(0.08..=widest).contains(&width) || off * 5 > n || thirds.iter().any(|third| (third - width).abs() > tolerance) {
+        return None;
+    }
+    // Ends that are covered in part say how much further the line goes.
+    let mut keep = [0, n];
+    let mut ends = [0.0; 2];
+    if !chain.is_closed {
+        while keep[0] + 3 < n && widths[keep[0]] < width - tolerance && keep[0] < 2 {
+            ends[0] += widths[keep[0]] / width;
+            keep[0] += 1;
+        }
+        while keep[1] > keep[0] + 3 && widths[keep[1] - 1] < width - tolerance && n - keep[1] < 2 {
+            ends[1] += widths[keep[1] - 1] / width;
+            keep[1] -= 1;
+        }
+    }
+    let is_good = |k: usize| (widths[k] - width).abs() <= 2.0 * tolerance;
+    let samples: Vec<ThinSample> = (keep[0]..keep[1])
+        .filter(|&k| is_good(k))
+        .map(|k| ThinSample { point: at(k).point, axis: at(k).axis(), sigma: sigma(at(k).width), width: at(k).width })
+        .collect();
+    chain.width = width;
+    (samples.len() >= 3).then_some(ThinChain { samples, ends, is_closed: chain.is_closed })
+}
+
+/// Standard deviation of a line's center, pixels: where a line narrower than a pixel lies inside of one cannot be seen.
+fn sigma(width: f64) -> f64 {
+    tuning::THIN_SIGMA + 0.25 * (1.0 - width).max(0.0)
+}
+
