@@ -123,3 +123,6 @@ pub const SOFT_STAINED: f64 = 0.3;
 /// So many times as many blocks that differ a little as blocks that differ much make a picture a coded one, if nobody says so: 384 pictures of the
 /// paper's renderer have up to 1.1 times as many; JPEGs of icons about as many, photographs more.
 pub const CODED_BLOCKS: usize = 2;
+
+/// Bits that a grid must save over the whole drawing: one that saves so many by chance is found in less than one of 200 drawings.
+pub const TIES_GRID_BITS: f64 = 8.0;
