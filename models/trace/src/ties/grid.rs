@@ -58,6 +58,12 @@ impl Grid {
         best
     }
 
+    /// The value of a class, on the grid if that is told with fewer bits.
+    pub(super) fn snap(&self, class: &Class, ruler: &Ruler) -> f64 {
+        let (_, level) = self.price(class, ruler);
+        if level < LEVELS { self.nearest(level, class.value) } else { class.value }
+    }
+
     /// The grid that makes the description of all classes shortest, if it makes it shorter.
     pub(super) fn infer(classes: &[Vec<Class>; 3], ruler: &Ruler) -> Option<Self> {
         let all = || classes.iter().flatten();

@@ -20,7 +20,7 @@ pub(super) struct Place {
 
 /// The places of a drawing.
 pub(super) struct Places<'a> {
-    /// Classes of two numbers and more, by kind.
+    /// Classes of two numbers and more by kind, on the grid where that is likely.
     shared: [Vec<Class>; 3],
     grid: Option<Grid>,
     pub(super) ruler: &'a Ruler,
@@ -28,7 +28,10 @@ pub(super) struct Places<'a> {
 
 impl<'a> Places<'a> {
     pub(super) fn new(classes: &[Vec<Class>; 3], grid: Option<Grid>, ruler: &'a Ruler) -> Self {
-        let shared = |classes: &Vec<Class>| classes.iter().filter(|class| class.count > 1).copied().collect();
+        let shared = |classes: &Vec<Class>| {
+            let on_grid = |class: &Class| Class { value: grid.map_or(class.value, |grid| grid.snap(class, ruler)), ..*class };
+            classes.iter().filter(|class| class.count > 1).map(on_grid).collect()
+        };
         Self { shared: [shared(&classes[0]), shared(&classes[1]), shared(&classes[2])], grid, ruler }
     }
 

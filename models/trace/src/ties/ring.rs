@@ -201,6 +201,10 @@ impl Row<'_> {
         if piece == self.pieces[k] {
             return Some((bits, piece));
         }
+        let chord = |piece: &Piece<f64>| (piece.to() - piece.from()).length();
+        if chord(&piece) < LEAST_LEFT * chord(&self.pieces[k]) {
+            return None;
+        }
         let mut worst = 0.0_f64;
         for t in PROBES {
             worst = worst.max(self.miss(k, piece.point(t)));
@@ -266,6 +270,9 @@ impl Row<'_> {
 
 /// Where along a piece it is asked how far it moved.
 const PROBES: [f64; 3] = [0.25, 0.5, 0.75];
+
+/// A piece keeps this share of its length: its ends do not fall together.
+const LEAST_LEFT: f64 = 0.5;
 
 /// How much further than across a point may go along what is drawn: where a line joins a curve smoothly.
 const SLIDE: f64 = 16.0;
