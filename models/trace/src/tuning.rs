@@ -124,5 +124,6 @@ pub const SOFT_STAINED: f64 = 0.3;
 /// paper's renderer have up to 1.1 times as many; JPEGs of icons about as many, photographs more.
 pub const CODED_BLOCKS: usize = 2;
 
-/// Bits that a grid must save over the whole drawing: one that saves so many by chance is found in less than one of 200 drawings.
-pub const TIES_GRID_BITS: f64 = 8.0;
+/// Bits that a grid must save over the whole drawing, and a class of equal numbers over what telling its members costs: chance saves so
+/// many in less than one of 200 drawings.
+pub const TIES_BITS: f64 = 8.0;

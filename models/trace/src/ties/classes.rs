@@ -25,6 +25,12 @@ pub(super) struct Class {
 /// sorted values.
 pub(super) fn classes(mut numbers: Vec<Number>, ruler: &Ruler) -> Vec<Class> {
     numbers.sort_by(|a, b| a.value.total_cmp(&b.value));
+    // What the fit of an outline has tied already is one number.
+    numbers.dedup_by(|next, kept| {
+        let is_same = (next.value - kept.value).abs() < SAME;
+        kept.sigma = if is_same { kept.sigma.min(next.sigma) } else { kept.sigma };
+        is_same
+    });
     let count = numbers.len();
     // Cheapest bits of the first k numbers, and where the last class of them starts.
     let mut best = vec![(f64::INFINITY, 0); count + 1];
@@ -55,6 +61,9 @@ pub(super) fn classes(mut numbers: Vec<Number>, ruler: &Ruler) -> Vec<Class> {
     classes.reverse();
     classes
 }
+
+/// Values closer than this are one, pixels: the fits end about as close to what they seek.
+const SAME: f64 = 1e-4;
 
 /// Values further apart than this many of their standard deviations together are not equal.
 const REACH: f64 = 3.0;

@@ -81,7 +81,7 @@ impl Grid {
             (all().map(|class| grid.price(class, ruler).0).sum::<f64>() + told, grid)
         });
         let (bits, grid) = priced.min_by(|a, b| a.0.total_cmp(&b.0))?;
-        (bits + tuning::TIES_GRID_BITS < free).then_some(grid)
+        (bits + tuning::TIES_BITS < free).then_some(grid)
     }
 }
 

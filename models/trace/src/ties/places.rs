@@ -2,10 +2,14 @@
 
 use alloc::vec::Vec;
 
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
+
 use super::classes::Class;
 use super::grid::{Grid, LEVELS};
 use super::numbers::{Kind, SIGMA};
 use crate::ruler::Ruler;
+use crate::tuning;
 
 /// What is drawn moves by no more than this, pixels: twice its doubt. The offset of a renderer's lattice is at most 1.73 times its
 /// standard deviation.
@@ -20,7 +24,7 @@ pub(super) struct Place {
 
 /// The places of a drawing.
 pub(super) struct Places<'a> {
-    /// Classes of two numbers and more by kind, on the grid where that is likely.
+    /// Classes of several numbers by kind, on the grid where that is likely.
     shared: [Vec<Class>; 3],
     grid: Option<Grid>,
     pub(super) ruler: &'a Ruler,
@@ -30,7 +34,8 @@ impl<'a> Places<'a> {
     pub(super) fn new(classes: &[Vec<Class>; 3], grid: Option<Grid>, ruler: &'a Ruler) -> Self {
         let shared = |classes: &Vec<Class>| {
             let on_grid = |class: &Class| Class { value: grid.map_or(class.value, |grid| grid.snap(class, ruler)), ..*class };
-            classes.iter().filter(|class| class.count > 1).map(on_grid).collect()
+            let count = classes.iter().map(|class| class.count).sum();
+            classes.iter().filter(|class| is_sure(class, count, ruler)).map(on_grid).collect()
         };
         Self { shared: [shared(&classes[0]), shared(&classes[1]), shared(&classes[2])], grid, ruler }
     }
@@ -76,4 +81,10 @@ impl<'a> Places<'a> {
         let places = self.near(kind, value, limit);
         places.iter().min_by(|a, b| bits(a).total_cmp(&bits(b))).map_or(value, |place| place.value)
     }
+}
+
+/// Whether a class of so many numbers is no coincidence: each of its members but one saves a number, which they are has to be told.
+fn is_sure(class: &Class, count: usize, ruler: &Ruler) -> bool {
+    let told: f64 = (0..class.count).map(|k| ((count - k) as f64 / (k + 1) as f64).log2()).sum();
+    (class.count as f64 - 1.0) * ruler.number(class.sigma) > told + tuning::TIES_BITS
 }

@@ -68,6 +68,19 @@ pub(super) fn tie(ring: &mut PathRing<f64>, places: &Places<'_>) {
     for ((point, states), &state) in ring.points.iter_mut().zip(&row.states).zip(&path) {
         *point = states[state].point.to_array();
     }
+    drop_vanished(ring);
+}
+
+/// Leaves out the pieces of a row whose ends fell together, which had another length.
+fn drop_vanished(ring: &mut PathRing<f64>) {
+    for k in (0..ring.segments.len()).rev() {
+        let next = (k + 1) % ring.points.len();
+        let length = (Vec2::from(ring.points[next]) - Vec2::from(ring.points[k])).length();
+        if length < SAME && ring.segments.len() > 2 && matches!(ring.segments[k], Segment::Line | Segment::Arc { .. }) {
+            ring.segments.remove(k);
+            ring.points.remove(k);
+        }
+    }
 }
 
 /// Ties a ring of arcs of one circle.
@@ -80,7 +93,11 @@ fn tie_circle(ring: &mut PathRing<f64>, pieces: &[Piece<f64>], places: &Places<'
     }
     let moved = Vec2::new(places.cheapest(Kind::X, center.x, LIMIT), places.cheapest(Kind::Y, center.y, LIMIT));
     let scale = places.cheapest(Kind::Length, radius, LIMIT) / radius;
-    ring.points.iter_mut().for_each(|point| *point = (moved + (Vec2::from(*point) - center) * scale).to_array());
+    // Where on the circle its arcs meet is free: above, below or beside the center.
+    let angle = (Vec2::from(ring.points[0]) - center).angle();
+    let quarter = core::f64::consts::FRAC_PI_2;
+    let turn = Vec2::from_angle((angle / quarter).round() * quarter - angle);
+    ring.points.iter_mut().for_each(|point| *point = (moved + (Vec2::from(*point) - center).turned(turn) * scale).to_array());
     true
 }
 
@@ -146,13 +163,13 @@ impl Row<'_> {
             }
         }
         let is_end = !self.closed && (k == 0 || k == self.pieces.len());
-        let miss = |state: &State| {
-            if is_end { (state.point - point).length() } else { self.miss(k.min(self.pieces.len() - 1), state.point) }
-        };
+        // Nothing beside an end of a line says where it is along the line.
+        let [own, limit] = [k.min(self.pieces.len() - 1), if is_end { END_LIMIT } else { LIMIT }];
+        let miss = |state: &State| if is_end { (state.point - point).length() } else { self.miss(own, state.point) };
         let mut rank = 0;
         states.retain(|state| {
             rank += 1;
-            rank == 1 || miss(state) <= LIMIT
+            rank == 1 || miss(state) <= limit
         });
         states
     }
@@ -201,16 +218,25 @@ impl Row<'_> {
         if piece == self.pieces[k] {
             return Some((bits, piece));
         }
-        let chord = |piece: &Piece<f64>| (piece.to() - piece.from()).length();
-        if chord(&piece) < LEAST_LEFT * chord(&self.pieces[k]) {
+        let length = |piece: &Piece<f64>| match piece {
+            Piece::Cubic([a, .., d]) => (*d - *a).length(),
+            piece => piece.length(),
+        };
+        let old = length(&self.pieces[k]);
+        // What is too short to be seen may vanish.
+        let vanishes = old < 2.0 * LIMIT && (piece.to() - piece.from()).length() < SAME;
+        let is_kept = length(&piece) >= LEAST_LEFT * old;
+        if !is_kept && !vanishes {
             return None;
         }
+        let piece = if vanishes { Piece::Line { from: piece.from(), to: piece.to() } } else { piece };
         let mut worst = 0.0_f64;
         for t in PROBES {
-            worst = worst.max(self.miss(k, piece.point(t)));
-            if worst.is_nan() || worst > LIMIT {
+            let miss = self.miss(k, piece.point(t));
+            if miss.is_nan() || miss > LIMIT {
                 return None;
             }
+            worst = worst.max(miss);
         }
         Some((bits + self.places.ruler.misfit((worst / SIGMA).powi(2)), piece))
     }
@@ -270,6 +296,12 @@ impl Row<'_> {
 
 /// Where along a piece it is asked how far it moved.
 const PROBES: [f64; 3] = [0.25, 0.5, 0.75];
+
+/// Ends of lines move by no more than this, pixels: thrice their doubt, as no piece that they belong to holds them.
+const END_LIMIT: f64 = 3.0 * SIGMA;
+
+/// Points closer than this are one, pixels.
+const SAME: f64 = 1e-6;
 
 /// A piece keeps this share of its length: its ends do not fall together.
 const LEAST_LEFT: f64 = 0.5;
