@@ -164,7 +164,8 @@ impl Row<'_> {
         }
         let is_end = !self.closed && (k == 0 || k == self.pieces.len());
         // Nothing beside an end of a line says where it is along the line.
-        let [own, limit] = [k.min(self.pieces.len() - 1), if is_end { END_LIMIT } else { LIMIT }];
+        let own = k.min(self.pieces.len() - 1);
+        let limit = if is_end { END_LIMIT } else { LIMIT };
         let miss = |state: &State| if is_end { (state.point - point).length() } else { self.miss(own, state.point) };
         let mut rank = 0;
         states.retain(|state| {
