@@ -7,12 +7,14 @@
 //! | `grid` | classes | the step of the grid that most of them lie on |
 //! | `places` | classes, a grid | where a number may go, and what saying so costs |
 //! | `figure` | circles, ellipses, rectangles | the same at those places |
+//! | `circle` | arcs | circles at those places |
 //! | `ring` | a row of lines, arcs and cubics | the same at those places: a dynamic programme |
 //!
 //! *Why*: a number that is on a grid needs the bits of one of the grid's places, fewer than one that is told to the precision of
 //! the picture. A number only moves while what is drawn stays where it was within the doubt of its position, so a tie that is true
 //! takes a drawing nearer to the artist's, and one that is not costs no more than what cannot be seen.
 
+mod circle;
 mod classes;
 mod figure;
 mod grid;

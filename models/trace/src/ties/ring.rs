@@ -9,6 +9,7 @@ use dvp_core::shape::{PathRing, Piece, Segment};
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
+use super::circle::{self, Circle};
 use super::figure::circle_of_arc;
 use super::numbers::{AXES, Kind, SIGMA, arc_sigma};
 use super::places::{LIMIT, Place, Places};
@@ -22,14 +23,6 @@ struct State {
     bits: f64,
     /// The arc on whose circle it was put.
     on: Option<usize>,
-}
-
-/// A circle at places of the drawing.
-#[derive(Clone, Copy, Debug)]
-struct Circle {
-    center: Vec2<f64>,
-    radius: f64,
-    bits: f64,
 }
 
 /// A row that may move.
@@ -48,10 +41,10 @@ pub(super) fn tie(ring: &mut PathRing<f64>, places: &Places<'_>) {
     if places.are_none() || pieces.is_empty() || pieces.len() != ring.segments.len() || !ring.segments.iter().all(is_known) {
         return;
     }
-    if tie_circle(ring, &pieces, places) {
+    if circle::tie(ring, &pieces, places) {
         return;
     }
-    let circles = pieces.iter().map(|piece| circle(piece, places)).collect();
+    let circles = pieces.iter().map(|piece| circle::of_arc(piece, places)).collect();
     let mut row = Row { pieces, closed: ring.is_closed(), circles, states: Vec::new(), places };
     row.states = ring.points.iter().enumerate().map(|(k, &point)| row.candidates(k, Vec2::from(point))).collect();
     let path = row.cheapest();
@@ -81,42 +74,6 @@ fn drop_vanished(ring: &mut PathRing<f64>) {
             ring.points.remove(k);
         }
     }
-}
-
-/// Ties a ring of arcs of one circle.
-fn tie_circle(ring: &mut PathRing<f64>, pieces: &[Piece<f64>], places: &Places<'_>) -> bool {
-    let circles: Option<Vec<_>> = pieces.iter().map(circle_of_arc).collect();
-    let Some(circles) = circles.filter(|_| ring.is_closed()) else { return false };
-    let (center, radius) = circles[0];
-    if circles.iter().any(|circle| (circle.0 - center).length() + (circle.1 - radius).abs() > SIGMA) {
-        return false;
-    }
-    let moved = Vec2::new(places.cheapest(Kind::X, center.x, LIMIT), places.cheapest(Kind::Y, center.y, LIMIT));
-    let scale = places.cheapest(Kind::Length, radius, LIMIT) / radius;
-    // Where on the circle its arcs meet is free: above, below or beside the center.
-    let angle = (Vec2::from(ring.points[0]) - center).angle();
-    let quarter = core::f64::consts::FRAC_PI_2;
-    let turn = Vec2::from_angle((angle / quarter).round() * quarter - angle);
-    ring.points.iter_mut().for_each(|point| *point = (moved + (Vec2::from(*point) - center).turned(turn) * scale).to_array());
-    true
-}
-
-/// The circle of an arc at places of the drawing, if the arc is long enough to tell where they are.
-fn circle(piece: &Piece<f64>, places: &Places<'_>) -> Option<Circle> {
-    let Piece::Arc { bulge, .. } = *piece else { return None };
-    let (center, radius) = circle_of_arc(piece)?;
-    let reach = 2.0 * arc_sigma(bulge);
-    let [xs, ys, radii] =
-        [(Kind::X, center.x), (Kind::Y, center.y), (Kind::Length, radius)].map(|(kind, value)| places.near(kind, value, reach));
-    let mut best: Option<Circle> = None;
-    for (x, y, length) in xs.iter().skip(1).flat_map(|x| ys.iter().skip(1).flat_map(|y| radii.iter().skip(1).map(|r| (*x, *y, *r)))) {
-        let circle = Circle { center: Vec2::new(x.value, y.value), radius: length.value, bits: x.bits + y.bits + length.bits };
-        let misses = [0.0, 0.25, 0.5, 0.75, 1.0].map(|t| ((piece.point(t) - circle.center).length() - circle.radius).abs());
-        if misses.iter().all(|&miss| miss <= LIMIT) && best.is_none_or(|best| circle.bits < best.bits) {
-            best = Some(circle);
-        }
-    }
-    best
 }
 
 impl Row<'_> {
@@ -270,10 +227,10 @@ impl Row<'_> {
                     if least >= best[j].0 {
                         continue;
                     }
-                    if let Some((price, _)) = self.step(k, from, to) {
-                        if least + price < best[j].0 {
-                            best[j] = (least + price, i);
-                        }
+                    if let Some((price, _)) = self.step(k, from, to)
+                        && least + price < best[j].0
+                    {
+                        best[j] = (least + price, i);
                     }
                 }
             }

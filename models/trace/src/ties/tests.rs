@@ -1,7 +1,7 @@
 //! Numbers that were on a grid come back exactly; numbers that were not stay.
 
-use std::vec;
-use std::vec::Vec;
+use alloc::vec;
+use alloc::vec::Vec;
 
 use dvp_core::shape::{Cap, Join, PathRing, Segment, Stroke};
 use dvp_core::Vec2;
@@ -164,4 +164,21 @@ fn random_numbers_stay() {
     }
     assert!(grids <= 2, "{grids} grids of 400");
     assert!(200 * moved <= all, "{moved} of {all} moved");
+}
+
+#[test]
+fn rings_of_two_arcs_are_circles() {
+    let unit = SIDE as f64 / 24.0;
+    let ring = |x: f64, y: f64, radius: f64, angle: f64| {
+        let arm = Vec2::from_angle(angle) * radius;
+        let center = Vec2::new(x, y);
+        PathRing { points: vec![(center - arm).to_array(), (center + arm).to_array()], segments: vec![Segment::Arc { bulge: 1.0 }; 2] }
+    };
+    let round = |x: f64, y: f64, radius: f64| stroke(ring(x * unit + 0.03, y * unit - 0.02, radius * unit + 0.05, 0.01), 2.0 * unit);
+    let mut layers = drawing(vec![round(12.0, 12.0, 10.0), round(6.0, 9.0, 3.0), round(17.5, 8.0, 2.0), round(15.0, 20.0, 1.5)]);
+    assert!(tie(&mut layers, [SIDE; 2]).is_some());
+    let Form::Stroked(first) = &layers.layers[0].form else { panic!("no stroke") };
+    for (point, wanted) in first.rings[0].points.iter().zip([[2.0 * unit, 12.0 * unit], [22.0 * unit, 12.0 * unit]]) {
+        assert!((0..2).all(|k| (point[k] - wanted[k]).abs() < 1e-9), "{point:?} {wanted:?}");
+    }
 }
