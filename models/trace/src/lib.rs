@@ -1,7 +1,7 @@
 //! Pictures with clear edges to drawings: what people draw, found again.
 //!
 //! ```text
-//! image -> partition -> boundary -> stroke | outline -> layers -> scene
+//! image -> partition -> boundary -> stroke | outline -> layers -> ties -> scene
 //! ```
 //!
 //! | module | comes in | goes out |
@@ -13,6 +13,7 @@
 //! | `outline` | samples of a boundary | the shortest outline through them: circle, rectangle, path, ... |
 //! | `stroke` | the boundary of a face | the lines of a pen that drew it |
 //! | `layers` | faces and their boundaries | objects, back to front, whole where others hide them |
+//! | `ties` | layers | the same on the grid that they were drawn on, with equal numbers equal |
 //!
 //! Lengths are in pixels (the center of the pixel (row r, column c) is at (c + 0.5, r + 0.5), y down) and prices in bits,
 //! unless a name says otherwise. Everything is computed in f64; images come in f32. The arithmetic of f64 is inherent with std and
@@ -33,6 +34,7 @@ pub mod scene;
 pub mod stroke;
 #[cfg(test)]
 mod tests;
+pub mod ties;
 pub mod tuning;
 
 use dvp_core::{ImageView, Scene};
@@ -86,8 +88,9 @@ pub fn trace(image: &ImageView<'_, f32>, known: &Known) -> Result<Traced, NoDraw
     if stained > tuning::SOFT_STAINED {
         return Err(NoDrawing::Soft { stained });
     }
-    let layers = layers::layers(&partition, &rings, known.matte.map(|matte| matte.map(f64::from)));
+    let mut layers = layers::layers(&partition, &rings, known.matte.map(|matte| matte.map(f64::from)));
     let bits = layers.bits();
+    ties::tie(&mut layers, partition.size);
     Ok(Traced { scene: scene::scene(&layers, image.size(), known.matte.is_some()), bits, stained })
 }
 

@@ -22,7 +22,7 @@ mod branch;
 mod center;
 mod chain;
 mod draw;
-mod piece;
+pub(crate) mod piece;
 mod refine;
 #[cfg(test)]
 mod tests;

@@ -9,7 +9,7 @@ use dvp_core::{Shape as _, Vec2};
 use num_traits::Float as _;
 
 /// The exact pieces of a line, those of open ones without the straight way back; none if its numbers make no sense.
-pub(super) fn pieces(ring: &PathRing<f64>) -> Vec<Piece<f64>> {
+pub(crate) fn pieces(ring: &PathRing<f64>) -> Vec<Piece<f64>> {
     let path = Path { rings: alloc::vec![ring.clone()], ..Path::default() };
     let mut pieces = path.boundary().map(|boundary| boundary.pieces).unwrap_or_default();
     pieces.truncate(ring.segments.len());
@@ -17,7 +17,7 @@ pub(super) fn pieces(ring: &PathRing<f64>) -> Vec<Piece<f64>> {
 }
 
 /// Parameter of the point of a piece nearest to `point`.
-pub(super) fn nearest(piece: &Piece<f64>, point: Vec2<f64>) -> f64 {
+pub(crate) fn nearest(piece: &Piece<f64>, point: Vec2<f64>) -> f64 {
     match *piece {
         Piece::Line { from, to } => LineSegment::new(from, to).nearest(point).share,
         Piece::Arc { from, to, bulge } if bulge.abs() < FLAT => LineSegment::new(from, to).nearest(point).share,
@@ -62,7 +62,7 @@ const STARTS: u8 = 12;
 const STEPS: usize = 8;
 
 /// The direction in which a piece leaves (at 0) and arrives (at 1).
-pub(super) fn direction(piece: &Piece<f64>, t: f64) -> Vec2<f64> {
+pub(crate) fn direction(piece: &Piece<f64>, t: f64) -> Vec2<f64> {
     let inside = if t > 0.5 { t - 1e-3 } else { t + 1e-3 };
     piece.velocity(t).normalized().or_else(|| piece.velocity(inside).normalized()).unwrap_or_default()
 }
