@@ -92,7 +92,11 @@ pub fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<Color>) 
     }
     // Thin lines were taken out of what they lie on.
     let lines = partition.lines.iter().filter_map(|line| Some((line.color, fit_thin(&line.chain, &ruler)?)));
-    layers.extend(lines.map(|(color, stroke)| Layer { color, form: Form::Stroked(stroke) }));
+    layers.extend(lines.map(|(color, stroke)| {
+        let points: usize = stroke.rings.iter().map(|ring| ring.points.len()).sum();
+        let bits = (2 * points + 1) as f64 * ruler.number(tuning::CRACK_SIGMA);
+        Layer { color, form: Form::Stroked(stroke), bits }
+    }));
     Layers { background: partition.color(background), layers }
 }
 

@@ -42,8 +42,8 @@ pub(super) fn cut(size: [usize; 2], pixels: Vec<[f32; 3]>, mut mixed: Mixed) -> 
 
 fn partition(size: [usize; 2], pixels: Vec<[f32; 3]>, mixed: Mixed, labels: Vec<u32>, faces: Vec<Face>) -> Partition {
     let Mixed { shares, palette, unexplained, noise, .. } = mixed;
-    Partition { size, pixels, labels, shares, faces, palette, coded: false, mix_noise: noise, unexplained }
-    Partition { size, pixels, labels, shares, faces, lines: Vec::new(), palette, mix_noise: noise, unexplained }
+    let lines = Vec::new();
+    Partition { size, pixels, labels, shares, faces, lines, palette, coded: false, mix_noise: noise, unexplained }
 }
 
 /// Whether, of four pixels around a corner whose diagonals are of two colors, the diagonal from upper left to lower right is

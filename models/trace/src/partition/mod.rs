@@ -79,10 +79,8 @@ impl Partition {
     /// [`NoPartition`] if it is no drawing of flat colors.
     pub fn of(image: &ImageView<'_, f32>, coded: bool) -> Result<Self, NoPartition> {
         let size = [image.size().width(), image.size().height()];
-        let pixels: Vec<[f32; 3]> = (0..image.size().pixels()).map(|i| image.pixel(i)).collect();
-        let noise = flat::Noise::of(&pixels, size, coded)?;
         let mut pixels: Vec<[f32; 3]> = (0..image.size().pixels()).map(|i| image.pixel(i)).collect();
-        let noise = flat::Noise::of(&pixels, size);
+        let noise = flat::Noise::of(&pixels, size, coded)?;
         let flats = flat::find(&pixels, size, &noise);
         let share = flats.pure_count() as f64 / pixels.len() as f64;
         if share < tuning::LEAST_FLAT {
@@ -103,8 +101,7 @@ impl Partition {
             colors = palette::Palette::of(&flats, &noise)?;
         }
         let mixed = mix::explain(&pixels, size, &flats, colors, &noise);
-        Ok(Self { coded: noise.is_coded(), ..faces::cut(size, pixels, mixed) })
-        Ok(Self { lines, ..faces::cut(size, pixels, mixed) })
+        Ok(Self { coded: noise.is_coded(), lines, ..faces::cut(size, pixels, mixed) })
     }
 
     /// Color of a face.
