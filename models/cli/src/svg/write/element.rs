@@ -8,6 +8,7 @@ use dvp_core::shape::{
 use dvp_core::{Object, Pose};
 
 use super::curves::smooth;
+use super::figure::figure;
 use super::number::{FITTED, KNOWN, push, rounded, short};
 use super::path_data::PathData;
 
@@ -33,11 +34,11 @@ pub(super) struct Element {
 }
 
 impl Element {
-    fn new(tag: &'static str) -> Self {
+    pub(super) fn new(tag: &'static str) -> Self {
         Self { tag, geometry: String::new(), is_stroke: false }
     }
 
-    fn numbers(mut self, numbers: &[(&str, f64)]) -> Self {
+    pub(super) fn numbers(mut self, numbers: &[(&str, f64)]) -> Self {
         for &(name, value) in numbers {
             self.geometry.push(' ');
             self.geometry.push_str(name);
@@ -168,8 +169,9 @@ fn stroke(stroke: &Stroke<f64>, pose: &Pose<f64>, reach: f64) -> Result<Element,
         Join::Bevel => (Some("bevel"), None),
     };
     let boundary = placed(Path { rings: stroke.rings.clone(), fill: FillRule::EvenOdd }.boundary()?, pose);
-    let data = lines(&boundary, &stroke.rings, false);
-    let mut element = Element::new("path").text("fill", "none").numbers(&[("stroke-width", width)]);
+    let whole = if stroke.rings.len() == 1 && stroke.rings[0].is_closed() { figure(&boundary.pieces) } else { None };
+    let element = whole.unwrap_or_else(|| Element::new("path").text("d", &lines(&boundary, &stroke.rings, false)));
+    let mut element = element.text("fill", "none").numbers(&[("stroke-width", width)]);
     for (name, value) in [("stroke-linecap", cap), ("stroke-linejoin", join)] {
         if let Some(value) = value {
             element = element.text(name, value);
@@ -178,7 +180,7 @@ fn stroke(stroke: &Stroke<f64>, pose: &Pose<f64>, reach: f64) -> Result<Element,
     if let Some(limit) = limit {
         element = element.numbers(&[("stroke-miterlimit", limit)]);
     }
-    Ok(Element { is_stroke: true, ..element.text("d", &data) })
+    Ok(Element { is_stroke: true, ..element })
 }
 
 fn closed_path(boundary: &Boundary<f64>, decimals: usize) -> Element {

@@ -5,6 +5,7 @@
 //! | `document` | the text of the file, [`to_svg`] and [`to_svg_numbered`] |
 //! | `drawn` | objects with their colors, opacities and names |
 //! | `element` | an object as `<circle>`, `<ellipse>`, `<rect>`, `<polygon>` or `<path>` |
+//! | `figure` | closed lines that are circles or rectangles |
 //! | `path_data` | lines, arcs and cubics as path data |
 //! | `curves` | outlines of descriptors as few smooth curves |
 //! | `mixture` | the colors of overlaps under `blend` |
@@ -15,6 +16,7 @@ mod curves;
 mod document;
 mod drawn;
 mod element;
+mod figure;
 mod mixture;
 mod number;
 mod overlap;
