@@ -1,8 +1,8 @@
 //! Every number that was chosen: its unit, why it is what it is.
 
-/// Positions that renderers with a lattice of sub-pixels give are off by up to this, pixels, the same along an edge: samples
-/// are not trusted further. A quarter of the step of the coarsest lattice in use (4 x 4: resvg and tiny-skia).
-pub const RENDERER_SIGMA: f64 = 0.02;
+/// Positions that renderers with a lattice of sub-pixels (4 x 4: resvg and tiny-skia) give are off by about this, pixels, the same along an
+/// edge: samples are not trusted further. Counted once, by what fits lines to samples; less makes corners of the lattice's steps.
+pub const RENDERER_SIGMA: f64 = 0.028;
 
 /// Places at which the boundary of a face is asked how wide the face is, before more is spent on it.
 pub const STROKE_PROBES: usize = 96;

@@ -39,9 +39,12 @@ pub(super) fn mend(fitted: &Fitted, track: &Track, ruler: &Ruler) -> Option<Fitt
         return None;
     }
     let bits = |fitted: &Fitted, off: &[f64]| off.iter().sum::<f64>() + fitted.number_bits(ruler);
-    let mended = Fitted::of(with_polygons(fitted.chain.clone(), &bad, track)?, track, ruler, &[])?;
-    let is_shorter = || bits(&mended, &misfits(&mended.chain, track, ruler)) < bits(fitted, &off);
-    (is_flat(&fitted.chain) && !is_flat(&mended.chain) || is_shorter()).then_some(mended)
+    // Polygons beside curves that pull on them may do no better: then all around.
+    [bad, vec![true; fitted.chain.curves.len()]].iter().find_map(|bad| {
+        let mended = Fitted::of(with_polygons(fitted.chain.clone(), bad, track)?, track, ruler, &[])?;
+        let is_shorter = || bits(&mended, &misfits(&mended.chain, track, ruler)) < bits(fitted, &off);
+        (is_flat(&fitted.chain) && !is_flat(&mended.chain) || is_shorter()).then_some(mended)
+    })
 }
 
 /// Bits of what the chain misses each sample by; unlike lines and circles its curves have ends.

@@ -28,6 +28,9 @@ pub(super) struct FittedPath {
     pub(super) misfit: f64,
 }
 
+/// How often stretches that are still far off are drawn anew: polygons beside what is bad may pull on what was good.
+const MOST_MENDS: usize = 4;
+
 /// A path before its numbers are tied.
 pub(super) struct Draft {
     fitted: Fitted,
@@ -72,7 +75,13 @@ impl Draft {
 
     /// The path with polygons where it would be far off; none if it is not.
     pub(super) fn mended(&self, track: &Track, ruler: &Ruler) -> Option<FittedPath> {
-        let mended = mend(&self.fitted, track, ruler)?;
+        let mut mended = mend(&self.fitted, track, ruler)?;
+        for _ in 1..MOST_MENDS {
+            let Some(next) = mend(&mended, track, ruler) else {
+                break;
+            };
+            mended = next;
+        }
         let again = revised(mended.clone(), self.pieces, track, ruler);
         let fitted = if mend(&again, track, ruler).is_none() { again } else { mended };
         Some(finish(tie(fitted, track, ruler), ruler))

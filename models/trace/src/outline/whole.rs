@@ -23,6 +23,8 @@ const FIRST_LOOKS: usize = 48;
 const STEPS: usize = 8;
 /// Mean squared misfit of samples below which a picture is exact: renderers that round their coverage have a half to two.
 const EXACT: f64 = 0.1;
+/// Second derivative of an outline along a window, 1/px, from which on the position in its middle is not known to a thousandth of a pixel.
+const MOST_BEND: f64 = 0.5 * tuning::MOST_BEND;
 /// Step of differences, pixels and radians.
 const STEP: f64 = 1e-6;
 
@@ -288,6 +290,9 @@ impl Trial<'_> {
         for sample in self.track.samples.iter().step_by(every) {
             let sigma = if self.renderer > 0.0 { sample.sigma } else { Track::own_sigma(sample) };
             let (distance, normal) = self.figure.distance(numbers, sample.point);
+            if self.renderer <= 0.0 && self.figure.bend(numbers, sample) > MOST_BEND {
+                continue;
+            }
             let scale = 1.0 / (normal.dot(sample.axis).abs().max(LEAST_COSINE) * sigma);
             let misfit = distance * scale;
             if corners.iter().any(|&corner| sample.holds(corner)) {
