@@ -108,7 +108,7 @@ pub(super) fn join(canvas: &Canvas<'_>, chains: Vec<Chain>) -> Vec<Chain> {
             let [[from, out], [to, other_out]] = [tips[a], tips[b]];
             let gap = to - from;
             let distance = gap.length();
-            if distance > longest || chains[a / 2].colors & chains[b / 2].colors == 0 || a / 2 == b / 2 && chains[a / 2].marks.len() < 8 {
+            if distance > longest || chains[a / 2].colors & chains[b / 2].colors == 0 || a / 2 == b / 2 && (chains[a / 2].marks.len() as f64) < 8.0 + 4.0 * distance {
                 continue;
             }
             let turn = (-out.dot(other_out)).clamp(-1.0, 1.0).acos();

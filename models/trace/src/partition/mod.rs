@@ -14,6 +14,8 @@ mod flat;
 mod mix;
 mod palette;
 mod seam;
+#[cfg(test)]
+mod tests;
 mod thin;
 
 use alloc::vec::Vec;

@@ -44,8 +44,6 @@ pub(super) fn find(canvas: &Canvas<'_>, palette: &[Color]) -> Vec<(ThinLine, Cha
     let mut lines = Vec::new();
     for mut chain in chains {
         let color = colors[chain.colors.trailing_zeros() as usize];
-        #[cfg(feature = "dbg")]
-        { extern crate std; std::eprintln!("chain n {} colors {:b} {:?} closed {} from {:?} to {:?} -> {:?}", chain.marks.len(), chain.colors, color.map(|c| (c * 255.0) as u8), chain.is_closed, chain.marks[0].point, chain.marks[chain.marks.len()-1].point, constant(&mut chain.clone(), canvas.widest).map(|t| (t.samples.len(), t.ends))); }
         if let Some(thin) = constant(&mut chain, canvas.widest) {
             lines.push((ThinLine { color, chain: thin }, chain));
         }
@@ -107,12 +105,15 @@ pub(super) fn crossing_lines(lines: Vec<(ThinLine, Chain)>) -> Vec<(ThinLine, Ch
             }
         }
     }
+    // What the same pen has drawn belongs to them.
+    let pens: Vec<f64> = lines.iter().zip(&keep).filter(|&(_, &keep)| keep).map(|(line, _)| line.1.width).collect();
+    let is_of_pen = |chain: &Chain| pens.iter().any(|width| (width - chain.width).abs() <= 0.05 * width);
     // What lies on something cuts it in two.
     let is_on = |chain: &Chain| {
         let marks = chain.marks.iter().filter(|mark| mark.cross.sides[0] == mark.cross.sides[1] && mark.cross.sides[0] != 0);
         5 * marks.count() > 4 * chain.marks.len()
     };
-    lines.into_iter().zip(keep).filter_map(|(line, keep)| (keep || is_on(&line.1)).then_some(line)).collect()
+    lines.into_iter().zip(keep).filter_map(|(line, keep)| (keep || is_of_pen(&line.1) || is_on(&line.1)).then_some(line)).collect()
 }
 
 /// Says of every window which colors a line across it may have; the colors, new ones last.

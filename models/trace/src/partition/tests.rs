@@ -1,0 +1,108 @@
+use alloc::vec::Vec;
+
+use dvp_core::{Image, ImageSize, Vec2};
+use proptest::prelude::{ProptestConfig, prop_assert, prop_assert_eq, prop_assume, proptest};
+
+use super::*;
+
+const SIDE: usize = 96;
+
+/// A picture of exact coverage but for a lattice of 16 x 16 points, rounded to 8 bits.
+fn drawn(color_at: impl Fn(Vec2<f64>) -> Color) -> Partition {
+    const STEPS: usize = 16;
+    let mut data = Vec::new();
+    for y in 0..SIDE {
+        for x in 0..SIDE {
+            let mut sum = [0.0; 3];
+            for k in 0..STEPS * STEPS {
+                let at = |whole: usize, part: usize| whole as f64 + (part as f64 + 0.5) / STEPS as f64;
+                let color = color_at(Vec2::new(at(x, k % STEPS), at(y, k / STEPS)));
+                (0..3).for_each(|c| sum[c] += color[c]);
+            }
+            data.extend(sum.map(|total| ((total / (STEPS * STEPS) as f64 * 255.0).round() / 255.0) as f32));
+        }
+    }
+    partition(&data)
+}
+
+fn partition(data: &[f32]) -> Partition {
+    let image = Image::from_interleaved(ImageSize::new(SIDE, SIDE).unwrap(), data).unwrap();
+    Partition::of(&image.view()).unwrap()
+}
+
+const WHITE: Color = [1.0; 3];
+const BLACK: Color = [0.0; 3];
+const BLUE: Color = [0.2, 0.4, 0.8];
+const RED: Color = [0.8, 0.2, 0.2];
+
+/// Whether a point is on a line of some width.
+fn is_on(at: Vec2<f64>, [from, to]: [Vec2<f64>; 2], width: f64) -> bool {
+    let along = to - from;
+    let length = along.length();
+    let [t, off] = [(at - from).dot(along) / length, (at - from).cross(along) / length];
+    (0.0..=length).contains(&t) && off.abs() <= 0.5 * width
+}
+
+#[test]
+fn fields_of_a_chess_board_are_apart() {
+    let partition = drawn(|at| if (at.x < 48.3) == (at.y < 40.6) { BLUE } else { RED });
+    assert_eq!((partition.faces.len(), partition.lines.len()), (4, 0));
+}
+
+#[test]
+fn seams_are_edges() {
+    // Blue is painted over white, red beside it: both cover their share of what is there.
+    let slope = |x: f64| 30.2 + 0.37 * x;
+    let mut data = Vec::new();
+    for y in 0..SIDE {
+        for x in 0..SIDE {
+            let share = (0..16).map(|k| (slope(x as f64 + (f64::from(k) + 0.5) / 16.0) - y as f64).clamp(0.0, 1.0)).sum::<f64>() / 16.0;
+            let is_margin = x < 8 || x >= SIDE - 8;
+            data.extend([0, 1, 2].map(|c| {
+                let under = share * BLUE[c] + (1.0 - share) * WHITE[c];
+                let value = if is_margin { WHITE[c] } else { (1.0 - share) * RED[c] + share * under };
+                ((value * 255.0).round() / 255.0) as f32
+            }));
+        }
+    }
+    let partition = partition(&data);
+    assert_eq!((partition.faces.len(), partition.lines.len()), (4, 0));
+}
+
+#[test]
+fn a_frame_over_a_bar_leaves_the_bar_whole() {
+    let corners = [[10.3, 10.3], [85.6, 10.3], [85.6, 80.7], [10.3, 80.7]].map(Vec2::from);
+    let sides: Vec<[Vec2<f64>; 2]> = (0..4).map(|k| [corners[k], corners[(k + 1) % 4]]).collect();
+    let partition = drawn(|at| {
+        if sides.iter().any(|&side| is_on(at, side, 0.9)) {
+            BLACK
+        } else if at.x > 30.0 && at.x < 50.0 && at.y > 30.5 && at.y < 80.7 {
+            BLUE
+        } else {
+            WHITE
+        }
+    });
+    let colors: Vec<Color> = (0..partition.faces.len() as u32).map(|face| partition.color(face)).collect();
+    assert_eq!(colors.len(), 2, "{colors:?}");
+    assert!(partition.lines.iter().all(|line| line.color == BLACK) && !partition.lines.is_empty());
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 40, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn a_thin_line_comes_back(from in [12.0..84.0, 12.0..84.0], to in [12.0..84.0, 12.0..84.0], width in 0.9..1.9) {
+        let ends = [from, to].map(|point| Vec2::new(point[0], point[1]));
+        prop_assume!((ends[1] - ends[0]).length() > 30.0);
+        let partition = drawn(|at| if is_on(at, ends, width) { BLUE } else if at.x < 8.0 { BLACK } else { WHITE });
+        prop_assert_eq!(partition.lines.len(), 1);
+        let samples = &partition.lines[0].chain.samples;
+        let along = (ends[1] - ends[0]).normalized().unwrap();
+        for sample in samples {
+            let miss = (sample.point - ends[0]).cross(along);
+            prop_assert!(miss.abs() < 0.3, "{miss} at {sample:?}");
+        }
+        let mean = samples.iter().map(|sample| sample.width * along.perp().dot(sample.axis).abs()).sum::<f64>() / samples.len() as f64;
+        prop_assert!((mean - width).abs() < 0.15, "{mean}");
+    }
+}
