@@ -57,12 +57,16 @@ pub(super) fn of_arc(piece: &Piece<f64>, places: &Places<'_>) -> Option<Circle> 
     let Piece::Arc { bulge, .. } = *piece else { return None };
     let (center, radius) = circle_of_arc(piece)?;
     let reach = 2.0 * arc_sigma(bulge);
-    let [xs, ys, radii] =
-        [(Kind::X, center.x), (Kind::Y, center.y), (Kind::Length, radius)].map(|(kind, value)| places.near(kind, value, reach));
+    let [xs, ys, radii] = [(Kind::X, center.x), (Kind::Y, center.y), (Kind::Length, radius)]
+        .map(|(kind, value)| places.near(kind, value, reach));
     let mut best: Option<Circle> = None;
-    for (x, y, length) in xs.iter().skip(1).flat_map(|x| ys.iter().skip(1).flat_map(|y| radii.iter().skip(1).map(|r| (*x, *y, *r)))) {
-        let circle = Circle { center: Vec2::new(x.value, y.value), radius: length.value, bits: x.bits + y.bits + length.bits };
-        let misses = [0.0, 0.25, 0.5, 0.75, 1.0].map(|t| ((piece.point(t) - circle.center).length() - circle.radius).abs());
+    for (x, y, length) in
+        xs.iter().skip(1).flat_map(|x| ys.iter().skip(1).flat_map(|y| radii.iter().skip(1).map(|r| (*x, *y, *r))))
+    {
+        let circle =
+            Circle { center: Vec2::new(x.value, y.value), radius: length.value, bits: x.bits + y.bits + length.bits };
+        let misses =
+            [0.0, 0.25, 0.5, 0.75, 1.0].map(|t| ((piece.point(t) - circle.center).length() - circle.radius).abs());
         if misses.iter().all(|&miss| miss <= LIMIT) && best.is_none_or(|best| circle.bits < best.bits) {
             best = Some(circle);
         }

@@ -6,6 +6,7 @@ use alloc::vec::Vec;
 use num_traits::Float as _;
 
 use super::classes::Class;
+use super::places::LIMIT;
 use crate::ruler::Ruler;
 use crate::tuning;
 
@@ -40,7 +41,9 @@ impl Grid {
         let all: f64 = uses.iter().sum();
         let mut grid = Self { step, bits: uses.map(|uses| (all / uses).log2()) };
         for level in 0..LEVELS {
-            grid.bits[level] += (ruler.extent / grid.step_of(level)).max(1.0).log2();
+            let step = grid.step_of(level);
+            let is_told = step >= LEAST_STEP * LIMIT;
+            grid.bits[level] += if is_told { (ruler.extent / step).max(1.0).log2() } else { f64::INFINITY };
         }
         grid
     }
@@ -84,6 +87,9 @@ impl Grid {
         (bits + tuning::TIES_BITS < free).then_some(grid)
     }
 }
+
+/// Places closer than this many times what a number may move by are none: more than a quarter of all numbers would get to one.
+const LEAST_STEP: f64 = 8.0;
 
 /// Rounds after which the uses of the levels do not change any more.
 const ROUNDS: usize = 3;

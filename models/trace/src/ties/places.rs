@@ -33,7 +33,8 @@ pub(super) struct Places<'a> {
 impl<'a> Places<'a> {
     pub(super) fn new(classes: &[Vec<Class>; 3], grid: Option<Grid>, ruler: &'a Ruler) -> Self {
         let shared = |classes: &Vec<Class>| {
-            let on_grid = |class: &Class| Class { value: grid.map_or(class.value, |grid| grid.snap(class, ruler)), ..*class };
+            let on_grid =
+                |class: &Class| Class { value: grid.map_or(class.value, |grid| grid.snap(class, ruler)), ..*class };
             let count = classes.iter().map(|class| class.count).sum();
             classes.iter().filter(|class| is_sure(class, count, ruler)).map(on_grid).collect()
         };
@@ -56,12 +57,14 @@ impl<'a> Places<'a> {
         let mut places = Vec::from([Place { value, bits: free }]);
         let mut push = |place: Place| {
             // What is there already is cheaper.
-            if (place.value - value).abs() <= reach && places.iter().skip(1).all(|other| (other.value - place.value).abs() > 1e-6) {
+            if (place.value - value).abs() <= reach
+                && places.iter().skip(1).all(|other| (other.value - place.value).abs() > 1e-6)
+            {
                 places.push(place);
             }
         };
         if let Some(grid) = self.grid {
-            for level in 0..LEVELS {
+            for level in (0..LEVELS).filter(|&level| grid.bits[level].is_finite()) {
                 push(Place { value: grid.nearest(level, value), bits: grid.bits[level] });
             }
         }

@@ -36,9 +36,14 @@ struct Row<'a> {
 
 /// Puts the numbers of a row where the drawing has its places, as far as nothing moves that can be seen.
 pub(super) fn tie(ring: &mut PathRing<f64>, places: &Places<'_>) {
-    let is_known = |segment: &Segment<f64>| matches!(segment, Segment::Line | Segment::Arc { .. } | Segment::Cubic { .. });
+    let is_known =
+        |segment: &Segment<f64>| matches!(segment, Segment::Line | Segment::Arc { .. } | Segment::Cubic { .. });
     let pieces = pieces(ring);
-    if places.are_none() || pieces.is_empty() || pieces.len() != ring.segments.len() || !ring.segments.iter().all(is_known) {
+    if places.are_none()
+        || pieces.is_empty()
+        || pieces.len() != ring.segments.len()
+        || !ring.segments.iter().all(is_known)
+    {
         return;
     }
     if circle::tie(ring, &pieces, places) {
@@ -109,7 +114,8 @@ impl Row<'_> {
             };
             let arm = point - circle.center;
             push(arm * (circle.radius / arm.length()), free);
-            let across = |along: f64, side: f64| (circle.radius.powi(2) - along * along).max(0.0).sqrt() * side.signum();
+            let across =
+                |along: f64, side: f64| (circle.radius.powi(2) - along * along).max(0.0).sqrt() * side.signum();
             for place in xs.iter().skip(1) {
                 let along = place.value - circle.center.x;
                 push(Vec2::new(along, across(along, arm.y)), place.bits);
@@ -124,10 +130,16 @@ impl Row<'_> {
         let own = k.min(self.pieces.len() - 1);
         let limit = if is_end { END_LIMIT } else { LIMIT };
         let miss = |state: &State| if is_end { (state.point - point).length() } else { self.miss(own, state.point) };
+        // What reaches the border of the picture still does.
+        let border = |value: f64| value.abs() < LIMIT || (value - self.places.ruler.extent).abs() < LIMIT;
+        let leaves = |state: &State| {
+            let [old, new] = [point.to_array(), state.point.to_array()];
+            state.on.is_some() && (0..2).any(|axis| border(old[axis]) && (new[axis] - old[axis]).abs() > SAME)
+        };
         let mut rank = 0;
         states.retain(|state| {
             rank += 1;
-            rank == 1 || miss(state) <= limit
+            rank == 1 || (miss(state) <= limit && !leaves(state))
         });
         states
     }
@@ -165,9 +177,9 @@ impl Row<'_> {
             let minor = half / (value + height);
             bulges.extend([minor, minor.recip()].map(|size| (size * bulge.signum(), bits)));
         }
-        let arcs = bulges.into_iter().filter_map(|(bulge, bits)| {
-            self.judged(k, Piece::Arc { from: from.point, to: to.point, bulge }, bits)
-        });
+        let arcs = bulges
+            .into_iter()
+            .filter_map(|(bulge, bits)| self.judged(k, Piece::Arc { from: from.point, to: to.point, bulge }, bits));
         arcs.min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
@@ -190,7 +202,10 @@ impl Row<'_> {
         let piece = if vanishes { Piece::Line { from: piece.from(), to: piece.to() } } else { piece };
         let mut worst = 0.0_f64;
         for t in PROBES {
-            let miss = self.miss(k, piece.point(t));
+            let point = piece.point(t);
+            // The middle stays on its own piece: the other arc of a circle may run along those beside it.
+            let own = (self.pieces[k].point(nearest(&self.pieces[k], point)) - point).length();
+            let miss = if t == MIDDLE { own } else { own.min(self.miss(k, point)) };
             if miss.is_nan() || miss > LIMIT {
                 return None;
             }
@@ -215,7 +230,9 @@ impl Row<'_> {
     /// The cheapest states along so many pieces from the first one on, from a state to the same one if one is given.
     fn walk(&self, length: usize, fixed: Option<usize>) -> Vec<usize> {
         let count = self.states.len();
-        let start = |state: usize| if fixed.is_none_or(|fixed| fixed == state) { self.states[0][state].bits } else { f64::INFINITY };
+        let start = |state: usize| {
+            if fixed.is_none_or(|fixed| fixed == state) { self.states[0][state].bits } else { f64::INFINITY }
+        };
         let mut bits: Vec<f64> = (0..self.states[0].len()).map(start).collect();
         let mut back: Vec<Vec<usize>> = Vec::with_capacity(length);
         for position in 0..length {
@@ -253,7 +270,8 @@ impl Row<'_> {
 }
 
 /// Where along a piece it is asked how far it moved.
-const PROBES: [f64; 3] = [0.25, 0.5, 0.75];
+const PROBES: [f64; 3] = [0.25, MIDDLE, 0.75];
+const MIDDLE: f64 = 0.5;
 
 /// Ends of lines move by no more than this, pixels: thrice their doubt, as no piece that they belong to holds them.
 const END_LIMIT: f64 = 3.0 * SIGMA;

@@ -3,8 +3,8 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use dvp_core::shape::{Cap, Join, PathRing, Segment, Stroke};
 use dvp_core::Vec2;
+use dvp_core::shape::{Cap, Join, PathRing, Segment, Stroke};
 use proptest::prelude::*;
 
 use super::classes::classes;
@@ -18,7 +18,7 @@ const SIDE: usize = 256;
 const RULER: Ruler = Ruler { extent: SIDE as f64 };
 
 fn drawing(forms: Vec<Form>) -> Layers {
-    let layers = forms.into_iter().map(|form| Layer { color: [0.0; 3], form }).collect();
+    let layers = forms.into_iter().map(|form| Layer { color: [0.0; 3], form, bits: 0.0 }).collect();
     Layers { background: [1.0; 3], layers }
 }
 
@@ -172,13 +172,37 @@ fn rings_of_two_arcs_are_circles() {
     let ring = |x: f64, y: f64, radius: f64, angle: f64| {
         let arm = Vec2::from_angle(angle) * radius;
         let center = Vec2::new(x, y);
-        PathRing { points: vec![(center - arm).to_array(), (center + arm).to_array()], segments: vec![Segment::Arc { bulge: 1.0 }; 2] }
+        PathRing {
+            points: vec![(center - arm).to_array(), (center + arm).to_array()],
+            segments: vec![Segment::Arc { bulge: 1.0 }; 2],
+        }
     };
-    let round = |x: f64, y: f64, radius: f64| stroke(ring(x * unit + 0.03, y * unit - 0.02, radius * unit + 0.05, 0.01), 2.0 * unit);
-    let mut layers = drawing(vec![round(12.0, 12.0, 10.0), round(6.0, 9.0, 3.0), round(17.5, 8.0, 2.0), round(15.0, 20.0, 1.5)]);
+    let round = |x: f64, y: f64, radius: f64| {
+        stroke(ring(x * unit + 0.03, y * unit - 0.02, radius * unit + 0.05, 0.01), 2.0 * unit)
+    };
+    let mut layers =
+        drawing(vec![round(12.0, 12.0, 10.0), round(6.0, 9.0, 3.0), round(17.5, 8.0, 2.0), round(15.0, 20.0, 1.5)]);
     assert!(tie(&mut layers, [SIDE; 2]).is_some());
     let Form::Stroked(first) = &layers.layers[0].form else { panic!("no stroke") };
     for (point, wanted) in first.rings[0].points.iter().zip([[2.0 * unit, 12.0 * unit], [22.0 * unit, 12.0 * unit]]) {
         assert!((0..2).all(|k| (point[k] - wanted[k]).abs() < 1e-9), "{point:?} {wanted:?}");
     }
+}
+
+/// A crescent: the long arc of one circle and the short one of another that lies nearly as the other arc of the first would.
+#[test]
+fn long_arcs_stay_long() {
+    let ends = [[146.05, 127.41], [146.05, 64.59]];
+    let ring = PathRing {
+        points: ends.to_vec(),
+        segments: vec![Segment::Arc { bulge: 1.2092 }, Segment::Arc { bulge: -0.826 }],
+    };
+    let Form::Filled(outlines) = filled(vec![OutlineShape::Path(ring), rectangle([48.0, 48.0, 208.0, 144.0])]) else {
+        panic!()
+    };
+    let mut layers = drawing(vec![Form::Filled(outlines)]);
+    tie(&mut layers, [256, 192]);
+    let OutlineShape::Path(found) = shapes(&layers)[0] else { panic!("no path") };
+    let Segment::Arc { bulge } = found.segments[0] else { panic!("no arc") };
+    assert!(bulge > 1.1, "{bulge}");
 }
