@@ -12,6 +12,7 @@ use dvp_core::contour::Crack;
 
 use crate::partition::Partition;
 use crate::sample::Sample;
+use crate::tuning;
 
 /// A step along the boundary of a face.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,7 +50,7 @@ impl Ring {
 pub fn rings(partition: &Partition) -> Vec<Vec<Ring>> {
     let mut rings = ring::walk_faces(partition);
     for ring in rings.iter_mut().flatten() {
-        window::read(partition, ring);
+        read(partition, ring);
     }
     rings
 }
@@ -60,7 +61,16 @@ pub fn rings(partition: &Partition) -> Vec<Vec<Ring>> {
 pub fn walk_mask(partition: &Partition, inside: impl Fn([usize; 2]) -> bool, bounds: [usize; 4]) -> Vec<Ring> {
     let mut rings = ring::walk_mask(partition, inside, bounds);
     for ring in &mut rings {
-        window::read(partition, ring);
+        read(partition, ring);
     }
     rings
+}
+
+fn read(partition: &Partition, ring: &mut Ring) {
+    window::read(partition, ring);
+    if partition.is_hard {
+        for sample in ring.steps.iter_mut().filter_map(|step| step.sample.as_mut()) {
+            sample.sigma = sample.sigma.max(tuning::CRACK_SIGMA);
+        }
+    }
 }
