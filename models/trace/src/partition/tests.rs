@@ -27,7 +27,7 @@ fn drawn(color_at: impl Fn(Vec2<f64>) -> Color) -> Partition {
 
 fn partition(data: &[f32]) -> Partition {
     let image = Image::from_interleaved(ImageSize::new(SIDE, SIDE).unwrap(), data).unwrap();
-    Partition::of(&image.view()).unwrap()
+    Partition::of(&image.view(), false).unwrap()
 }
 
 const WHITE: Color = [1.0; 3];
