@@ -41,6 +41,8 @@ pub(super) fn fit_plain(track: &Track, ruler: &Ruler) -> Option<Outline> {
     let mut best: Option<Outline> = None;
     for (figure, start, free) in starts {
         let limit = best.as_ref().map_or(f64::INFINITY, |best| best.bits + best.misfit);
+        // What misses more by far is given up early.
+        let limit = limit.min(most + as_f64(figure.number_count()) * ruler.number(0.0) + tuning::OUTLINE_PIECE_BITS);
         let trial = Trial { track, ruler, figure, free, renderer: tuning::RENDERER_SIGMA };
         best = trial.run(start, limit).filter(|found| found.misfit < most).or(best);
     }
