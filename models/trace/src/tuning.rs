@@ -158,3 +158,16 @@ pub const CODED_BLOCKS: usize = 2;
 /// Bits that a grid must save over the whole drawing, and a class of equal numbers over what telling its members costs: chance saves so
 /// many in less than one of 200 drawings.
 pub const TIES_BITS: f64 = 8.0;
+
+/// Least share of a face in a pixel for the pixel to show that face alone: what else is in it is less than rounding at the border of a
+/// pure one.
+pub const PURE_SHARE: f32 = 0.9;
+/// Most pixels of a face without a flat one that may be a mixture of what lies further off than beside it: a wedge between two edges at
+/// a sharp angle ends in so many.
+pub const MOST_SPECK: usize = 6;
+/// Most turns of a boundary behind what hides it, in squared radians (bending of the smoothest way), for what is seen on both sides of one
+/// color to be one thing: an arc of 70 degrees.
+pub const MOST_TURN: f64 = 1.5;
+/// Share of the places along edges that may have mixed pixels in a picture of hard edges: upright ones on whole pixels have none either,
+/// but hardly a whole picture is made of them alone.
+pub const MOST_HARD: f64 = 0.05;

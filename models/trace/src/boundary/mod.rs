@@ -13,6 +13,7 @@ use dvp_core::contour::Crack;
 
 use crate::partition::Partition;
 use crate::sample::Sample;
+use crate::tuning;
 
 pub use profile::stained;
 
@@ -52,7 +53,7 @@ impl Ring {
 pub fn rings(partition: &Partition) -> Vec<Vec<Ring>> {
     let mut rings = ring::walk_faces(partition);
     for ring in rings.iter_mut().flatten() {
-        window::read(partition, ring);
+        read(partition, ring);
     }
     rings
 }
@@ -63,7 +64,16 @@ pub fn rings(partition: &Partition) -> Vec<Vec<Ring>> {
 pub fn walk_mask(partition: &Partition, inside: impl Fn([usize; 2]) -> bool, bounds: [usize; 4]) -> Vec<Ring> {
     let mut rings = ring::walk_mask(partition, inside, bounds);
     for ring in &mut rings {
-        window::read(partition, ring);
+        read(partition, ring);
     }
     rings
+}
+
+fn read(partition: &Partition, ring: &mut Ring) {
+    window::read(partition, ring);
+    if partition.is_hard {
+        for sample in ring.steps.iter_mut().filter_map(|step| step.sample.as_mut()) {
+            sample.sigma = sample.sigma.max(tuning::CRACK_SIGMA);
+        }
+    }
 }

@@ -3,16 +3,18 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
+use dvp_core::Vec2;
 use dvp_core::shape::{FillRule, Outline as Polygons, Path, PathRing, Shape as _};
 
 use super::visible::{self, Hidden};
-use super::raster;
+use super::{link, raster};
 use crate::boundary::{Ring, Step, walk_mask};
 use crate::outline::{Outline, OutlineShape, fit_closed};
 use crate::partition::{OUTSIDE, Partition};
 use crate::ruler::Ruler;
 use crate::sample::RingSamples;
 use crate::stroke::StrokeFit;
+use crate::tuning;
 
 /// What outlines follow from.
 pub(super) struct Completion<'a> {
@@ -56,6 +58,17 @@ pub(super) struct Completed {
 }
 
 impl Completed {
+    /// Two layers as one that covers what both do.
+    pub(super) fn with(&self, other: &Self) -> Self {
+        let outlines = self.outlines.iter().chain(&other.outlines).cloned().collect();
+        Self::new(outlines, self.agrees && other.agrees)
+    }
+
+    /// Nothing to complete.
+    pub(super) fn none() -> Self {
+        Self { outlines: Vec::new(), bits: 0.0, agrees: true }
+    }
+
     fn new(outlines: Vec<Outline>, agrees: bool) -> Self {
         let bits = outlines.iter().map(|outline| outline.bits + outline.misfit).sum();
         Self { outlines, bits, agrees }
@@ -68,9 +81,17 @@ impl Completion<'_> {
         self.rank[face as usize]
     }
 
+    /// Puts faces where the hindmost of them is.
+    pub(super) fn sink(&mut self, faces: &[u32]) {
+        let hindmost = self.hindmost(faces);
+        for &face in faces {
+            self.rank[face as usize] = hindmost;
+        }
+    }
+
     /// The outlines of faces that are painted together, at the place of the hindmost of them.
     pub(super) fn outlines(&self, group: &[u32]) -> Completed {
-        let rank = group.iter().map(|&face| self.rank(face)).min().unwrap_or(0);
+        let rank = self.hindmost(group);
         let walked;
         let rings: &[Ring] = match group {
             [face] => &self.rings[*face as usize],
@@ -79,24 +100,19 @@ impl Completion<'_> {
                 &walked
             }
         };
-        let wanted = |label: u32| {
-            if group.contains(&label) {
-                Some(true)
-            } else if self.rank(label) > rank {
-                None
-            } else {
-                Some(false)
-            }
-        };
+        let wanted = |label: u32| self.wanted(label, group, rank);
         for policy in [Policy::Free, Policy::Border, Policy::Pinned] {
             let hidden = |step: &Step| self.hidden(step, group, rank);
             // A hole that is filled by what lies in front of it is none.
             let is_ring = |ring: &&Ring| ring.area > 0.0 || ring.steps.iter().any(|step| hidden(step).is_none());
             let needed = |step: &Step| hidden(step).and_then(|hidden| policy.of(step, hidden));
-            let fits = rings.iter().filter(is_ring).filter_map(|ring| fit_closed(&visible::samples(ring, needed), &self.ruler));
-            let outlines: Vec<Outline> = fits.collect();
-            if self.agrees(&outlines, wanted) {
-                return Completed::new(outlines, true);
+            let samples: Vec<RingSamples> = rings.iter().filter(is_ring).map(|ring| visible::samples(ring, needed)).collect();
+            // What is not hidden has no boundary but its own.
+            let is_seen = |at: Vec2<f64>| self.pure_face(at).is_some_and(|face| wanted(face).is_some());
+            let ways = [link::relinked(&samples, is_seen), Some(samples)];
+            let completed = ways.iter().flatten().filter_map(|samples| self.fit(samples, wanted));
+            if let Some(best) = completed.min_by(|a, b| a.bits.total_cmp(&b.bits)) {
+                return best;
             }
         }
         if group.len() > 1 {
@@ -109,6 +125,47 @@ impl Completion<'_> {
             return Completed::new(seen, true);
         }
         Completed::new(rings.iter().map(|ring| self.traced(ring)).collect(), false)
+    }
+
+    /// Whether a layer of the faces `group` at place `rank` must show a face, must not hide it, or may (none).
+    fn wanted(&self, face: u32, group: &[u32], rank: usize) -> Option<bool> {
+        let is_own = group.contains(&face);
+        (is_own || self.rank(face) <= rank).then_some(is_own)
+    }
+
+    /// Whether what was completed still covers what it should and hides nothing; what the order did not change since is as it was.
+    pub(super) fn holds(&self, group: &[u32], completed: &Completed) -> bool {
+        let rank = self.hindmost(group);
+        !completed.agrees || completed.outlines.is_empty() || self.agrees(&completed.outlines, |face| self.wanted(face, group, rank))
+    }
+
+    /// Whether the boundary of some faces goes on smoothly as that of others, behind what lies in front of both.
+    pub(super) fn is_related(&self, parts: [&[u32]; 2]) -> bool {
+        let all: Vec<u32> = parts.concat();
+        let rank = self.hindmost(&all);
+        let samples = parts.map(|part| {
+            let rings = part.iter().flat_map(|&face| &self.rings[face as usize]);
+            rings.map(|ring| visible::samples(ring, |step| self.hidden(step, &all, rank))).collect::<Vec<_>>()
+        });
+        let is_seen = |at: Vec2<f64>| self.pure_face(at).is_some_and(|face| self.wanted(face, &all, rank).is_some());
+        link::relation([&samples[0], &samples[1]], is_seen).is_some_and(|price| price < tuning::MOST_TURN)
+    }
+
+    fn hindmost(&self, faces: &[u32]) -> usize {
+        faces.iter().map(|&face| self.rank(face)).min().unwrap_or(0)
+    }
+
+    /// The outlines through samples if they agree with what is seen.
+    fn fit(&self, samples: &[RingSamples], wanted: impl Fn(u32) -> Option<bool>) -> Option<Completed> {
+        let outlines: Vec<Outline> = samples.iter().filter_map(|samples| fit_closed(samples, &self.ruler)).collect();
+        self.agrees(&outlines, wanted).then(|| Completed::new(outlines, true))
+    }
+
+    /// The face at a place if nothing else has a share there.
+    fn pure_face(&self, at: Vec2<f64>) -> Option<u32> {
+        let [x, y] = [at.x as usize, at.y as usize];
+        let face = self.partition.face_at([x, y]);
+        (face != OUTSIDE && self.partition.shares[y * self.partition.size[0] + x] >= tuning::PURE_SHARE).then_some(face)
     }
 
     /// How a step of a layer's boundary is hidden, if it is.

@@ -6,54 +6,92 @@ use alloc::vec::Vec;
 
 use dvp_core::geometry::DisjointSets;
 
-use super::complete::Completion;
+use super::complete::{Completed, Completion};
 use crate::outline::Outline;
 use crate::partition::OUTSIDE;
 
 /// What is painted, from back to front: faces that are one thing, with their outlines (none for what a pen draws).
 pub(super) fn groups(completion: &mut Completion<'_>) -> Vec<(Vec<u32>, Vec<Outline>)> {
-    let mut groups: Vec<Vec<u32>> = Vec::new();
+    let mut groups: Vec<Group> = Vec::new();
     for candidates in candidates(completion) {
-        if candidates.len() > 1 && join(completion, &candidates) {
-            groups.push(candidates);
-        } else {
-            groups.extend(candidates.into_iter().map(|face| vec![face]));
-        }
+        groups.extend(join(completion, &candidates));
     }
-    let mut painted: Vec<(usize, Vec<u32>, Vec<Outline>)> = Vec::new();
+    let mut painted: Vec<(usize, Group)> = Vec::new();
     for group in groups {
-        let rank = completion.rank(group[0]);
-        if completion.pens[group[0] as usize].is_some() {
-            painted.push((rank, group, Vec::new()));
+        let rank = completion.rank(group.faces[0]);
+        // What was joined after this group lies further back than it did: the group may hide it now.
+        if completion.holds(&group.faces, &group.completed) {
+            painted.push((rank, group));
             continue;
         }
-        let completed = completion.outlines(&group);
-        if completed.agrees || group.len() == 1 {
-            painted.push((rank, group, completed.outlines));
+        let again = Group::of(completion, group.faces);
+        if again.completed.agrees || again.faces.len() == 1 {
+            painted.push((rank, again));
         } else {
-            painted.extend(group.into_iter().map(|face| (rank, vec![face], completion.outlines(&[face]).outlines)));
+            painted.extend(again.faces.iter().map(|&face| (rank, Group::of(completion, vec![face]))));
         }
     }
-    painted.sort_by_key(|&(rank, ..)| rank);
-    painted.into_iter().map(|(_, group, outlines)| (group, outlines)).collect()
+    painted.sort_by_key(|&(rank, _)| rank);
+    painted.into_iter().map(|(_, group)| (group.faces, group.completed.outlines)).collect()
 }
 
-/// Whether faces take fewer bits together than each alone; they have one place in the order then, that of the hindmost.
-fn join(completion: &mut Completion<'_>, faces: &[u32]) -> bool {
-    let alone: f64 = faces.iter().map(|&face| completion.outlines(&[face]).bits + COLOR_BITS).sum();
-    let ranks: Vec<usize> = faces.iter().map(|&face| completion.rank(face)).collect();
-    let hindmost = ranks.iter().copied().min().unwrap_or(0);
-    for &face in faces {
-        completion.rank[face as usize] = hindmost;
+/// Faces that are painted together.
+struct Group {
+    faces: Vec<u32>,
+    completed: Completed,
+}
+
+impl Group {
+    fn of(completion: &Completion<'_>, faces: Vec<u32>) -> Self {
+        let is_pen = completion.pens[faces[0] as usize].is_some();
+        let completed = if is_pen { Completed::none() } else { completion.outlines(&faces) };
+        Self { faces, completed }
     }
-    let joined = completion.outlines(faces);
-    if joined.agrees && joined.bits + COLOR_BITS < alone {
-        return true;
+
+    /// Both as one, at the place of the hindmost in the order, with the bits that are saved; none if that is no shorter and nothing tells
+    /// that they belong together.
+    fn join(&self, other: &Self, completion: &mut Completion<'_>) -> Option<(f64, Self)> {
+        let faces: Vec<u32> = self.faces.iter().chain(&other.faces).copied().collect();
+        let ranks: Vec<usize> = faces.iter().map(|&face| completion.rank(face)).collect();
+        completion.sink(&faces);
+        let completed = completion.outlines(&faces);
+        for (&face, rank) in faces.iter().zip(ranks) {
+            completion.rank[face as usize] = rank;
+        }
+        let saved = self.completed.bits + other.completed.bits + COLOR_BITS - completed.bits;
+        if completed.agrees && saved > 0.0 {
+            return Some((saved, Self { faces, completed }));
+        }
+        // What no outline explains may be one thing all the same.
+        let parts = [&self.faces[..], &other.faces];
+        completion.is_related(parts).then(|| (0.0, Self { completed: self.completed.with(&other.completed), faces }))
     }
-    for (&face, rank) in faces.iter().zip(ranks) {
-        completion.rank[face as usize] = rank;
+}
+
+/// The faces of `candidates` in groups: again and again those two become one that save most by it.
+fn join(completion: &mut Completion<'_>, candidates: &[u32]) -> Vec<Group> {
+    let mut groups: Vec<Group> = candidates.iter().map(|&face| Group::of(completion, vec![face])).collect();
+    // What was found for two groups holds as long as both are there.
+    let mut pairs: Vec<(u32, u32, Option<(f64, Group)>)> = Vec::new();
+    loop {
+        for a in 0..groups.len() {
+            for b in 0..a {
+                let key = (groups[a].faces[0], groups[b].faces[0]);
+                if !pairs.iter().any(|&(first, second, _)| (first, second) == key) {
+                    let joined = groups[a].join(&groups[b], completion);
+                    pairs.push((key.0, key.1, joined));
+                }
+            }
+        }
+        let saved = |pair: &(u32, u32, Option<(f64, Group)>)| pair.2.as_ref().map_or(-1.0, |&(saved, _)| saved);
+        let best = (0..pairs.len()).max_by(|&a, &b| saved(&pairs[a]).total_cmp(&saved(&pairs[b])));
+        let Some((a, b, Some((_, joined)))) = best.map(|best| pairs.swap_remove(best)) else { return groups };
+        completion.sink(&joined.faces);
+        let is_part = |face: u32| face == a || face == b;
+        pairs.retain(|&(first, second, _)| !is_part(first) && !is_part(second));
+        groups.retain(|group| !is_part(group.faces[0]));
+        groups.push(joined);
     }
-    false
 }
 
 /// What a color costs: three numbers of 8 bits.

@@ -7,12 +7,14 @@
 //! | `pen` | faces that a pen has drawn |
 //! | `join` | faces of one color that are one thing behind another |
 //! | `visible` | what of a boundary is a layer's own |
+//! | `link` | which visible stretch goes on as which behind others |
 //! | `complete` | outlines through what is seen |
 //! | `raster` | the check that an outline hides nothing |
 
 mod complete;
 mod join;
 mod junction;
+mod link;
 mod order;
 mod pen;
 mod raster;
@@ -73,8 +75,8 @@ impl Layers {
 pub fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<Color>) -> Layers {
     let ruler = Ruler { extent: partition.size[0].max(partition.size[1]) as f64 };
     let background = background(partition, rings, matte);
-    let pens = pen::find(partition, rings, background, &ruler);
-    let order = Order::of(partition, rings, background, matte.is_some(), &pens);
+    let mut pens = pen::find(partition, rings, background, &ruler);
+    let order = Order::of(partition, rings, background, matte.is_some(), &mut pens);
     let mut completion = Completion { partition, rings, rank: order.rank, pens: &pens, ruler };
     let mut layers = Vec::new();
     for (group, outlines) in join::groups(&mut completion) {

@@ -18,8 +18,14 @@ pub(super) struct Order {
 }
 
 impl Order {
-    pub(super) fn of(partition: &Partition, rings: &[Vec<Ring>], background: u32, clear: bool, pens: &[Option<StrokeFit>]) -> Self {
+    pub(super) fn of(partition: &Partition, rings: &[Vec<Ring>], background: u32, clear: bool, pens: &mut [Option<StrokeFit>]) -> Self {
         let mut votes = votes(rings);
+        // Lines end at what lies in front of them as if a pen had ended there: they are things that go on behind it.
+        for (&(_, behind), _) in votes.iter().filter(|&(&(front, behind), &bits)| {
+            bits - votes.get(&(behind, front)).copied().unwrap_or(0.0) >= 0.5 * tuning::MOST_VOTE
+        }) {
+            pens[behind as usize] = None;
+        }
         add_pens(rings, pens, &mut votes);
         add_enclosures(partition, rings, background, clear, &mut votes);
         let n = partition.faces.len();
@@ -77,16 +83,30 @@ fn add_pens(rings: &[Vec<Ring>], pens: &[Option<StrokeFit>], votes: &mut Votes) 
 }
 
 /// A face with one neighbor only lies on it. What has the color of the background is a hole where all around it lies on the background,
-/// and for sure if nothing is painted there (`clear`).
+/// or other faces of the same colors do; what has the color of another face beside its only neighbor is that other face, seen through a
+/// hole. Both are sure if nothing is painted there (`clear`).
 fn add_enclosures(partition: &Partition, rings: &[Vec<Ring>], background: u32, clear: bool, votes: &mut Votes) {
     let neighbors: Vec<Vec<u32>> = rings.iter().map(|rings| neighbors_along(rings.iter())).collect();
     let back = partition.faces[background as usize].color;
     let is_back = |face: u32| partition.faces[face as usize].color == back;
+    let mut on_back = vec![false; partition.palette.len()];
+    for &face in &neighbors[background as usize] {
+        on_back[partition.faces[face as usize].color] = true;
+    }
     for (face, rings) in rings.iter().enumerate() {
         let around: Vec<u32> = neighbors_along(rings.iter().take(1));
-        let lies_on_back = |other: &u32| neighbors[*other as usize].iter().any(|&next| next == background);
-        if is_back(face as u32) && (clear || around.iter().all(lies_on_back)) {
-            let bits = if clear { 1e9 } else { tuning::ENCLOSED_VOTE };
+        let lies_on_back = |other: &u32| on_back[partition.faces[*other as usize].color];
+        let shows = |other: &u32| {
+            let has_color = |next: &u32| *next as usize != face && partition.faces[*next as usize].color == partition.faces[face].color;
+            neighbors[*other as usize].iter().any(has_color)
+        };
+        let is_hole = if is_back(face as u32) { clear || around.len() > 1 || around.iter().all(lies_on_back) } else { around.len() == 1 && around.iter().all(shows) };
+        if is_hole {
+            let bits = match is_back(face as u32) {
+                true if clear => 1e9,
+                true => tuning::MOST_VOTE,
+                false => tuning::ENCLOSED_VOTE,
+            };
             for neighbor in around {
                 *votes.entry((neighbor, face as u32)).or_default() += bits;
             }

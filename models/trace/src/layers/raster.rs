@@ -4,7 +4,7 @@ use alloc::collections::BTreeMap;
 use alloc::vec::Vec;
 use core::ops::Range;
 
-use crate::partition::Partition;
+use crate::partition::{OUTSIDE, Partition};
 use crate::tuning;
 
 /// Whether what polygons (pixels, even-odd) cover is what they should cover, but for few pixels: of all pixels that are `wanted`
@@ -34,7 +34,7 @@ pub(super) fn agrees(partition: &Partition, polygons: &[Vec<[f64; 2]>], wanted: 
                 crossed += 1;
             }
             let i = y * width + x;
-            if partition.shares[i] < 0.9 {
+            if partition.shares[i] < tuning::PURE_SHARE || partition.is_hard && is_at_edge(partition, [x, y]) {
                 continue;
             }
             match (wanted(partition.labels[i]), crossed % 2 == 1) {
@@ -48,6 +48,13 @@ pub(super) fn agrees(partition: &Partition, polygons: &[Vec<[f64; 2]>], wanted: 
     let own = partition.faces.iter().enumerate().filter(|&(face, _)| wanted(face as u32) == Some(true));
     let area = own.map(|(_, face)| face.area).sum::<usize>();
     few(missed, area) && hidden.iter().all(|(&face, &count)| few(count, partition.faces[face as usize].area))
+}
+
+/// Whether a pixel lies beside another face: where edges are hard an outline may take it or leave it.
+fn is_at_edge(partition: &Partition, [x, y]: [usize; 2]) -> bool {
+    let own = partition.face_at([x, y]);
+    let beside = [[x + 1, y], [x.wrapping_sub(1), y], [x, y + 1], [x, y.wrapping_sub(1)]];
+    beside.into_iter().map(|at| partition.face_at(at)).any(|face| face != own && face != OUTSIDE)
 }
 
 /// The rows that the polygons, or faces that are wanted, reach.

@@ -28,14 +28,13 @@ pub struct Face {
 
 /// Cuts a picture into faces; specks that a mixture of their neighbors explains nearly as well are given to these.
 pub(super) fn cut(size: [usize; 2], pixels: Vec<[f32; 3]>, mut mixed: Mixed) -> Partition {
-    let (labels, faces) = label(size, &mixed);
-    if remove_specks(size, &pixels, &mut mixed, &labels, &faces) {
-        // What was given away may be a speck beside another one.
-        let (mut labels, mut faces) = label(size, &mixed);
-        if remove_specks(size, &pixels, &mut mixed, &labels, &faces) {
-            (labels, faces) = label(size, &mixed);
+    let (mut labels, mut faces) = label(size, &mixed);
+    // What is given away may leave specks behind.
+    for _ in 0..2 {
+        if !remove_specks(size, &pixels, &mut mixed, &labels, &faces) {
+            break;
         }
-        return partition(size, pixels, mixed, labels, faces);
+        (labels, faces) = label(size, &mixed);
     }
     partition(size, pixels, mixed, labels, faces)
 }
@@ -43,7 +42,16 @@ pub(super) fn cut(size: [usize; 2], pixels: Vec<[f32; 3]>, mut mixed: Mixed) -> 
 fn partition(size: [usize; 2], pixels: Vec<[f32; 3]>, mixed: Mixed, labels: Vec<u32>, faces: Vec<Face>) -> Partition {
     let Mixed { shares, palette, unexplained, noise, .. } = mixed;
     let lines = Vec::new();
-    Partition { size, pixels, labels, shares, faces, lines, palette, coded: false, mix_noise: noise, unexplained }
+    let [width, _] = size;
+    let is_edge = |&i: &usize| i % width > 0 && labels[i - 1] != labels[i] || i >= width && labels[i - width] != labels[i];
+    let is_mixed = |&i: &usize| {
+        let before = [Some(i), i.checked_sub(1), i.checked_sub(width)];
+        before.into_iter().flatten().any(|j| shares[j] < tuning::PURE_SHARE)
+    };
+    let edges = (0..labels.len()).filter(is_edge).count();
+    let mixed = (0..labels.len()).filter(is_edge).filter(is_mixed).count();
+    let is_hard = (mixed as f64) < tuning::MOST_HARD * edges as f64;
+    Partition { size, pixels, labels, shares, faces, lines, palette, coded: false, mix_noise: noise, is_hard, unexplained }
 }
 
 /// Whether, of four pixels around a corner whose diagonals are of two colors, the diagonal from upper left to lower right is
@@ -103,7 +111,6 @@ fn label([width, height]: [usize; 2], mixed: &Mixed) -> (Vec<u32>, Vec<Face>) {
 /// Gives specks, faces without a flat pixel, to the faces around them where mixtures of those are the shorter description.
 /// Whether there were any.
 fn remove_specks(size: [usize; 2], pixels: &[[f32; 3]], mixed: &mut Mixed, labels: &[u32], faces: &[Face]) -> bool {
-    let [width, height] = size;
     let mut of_speck: Vec<Vec<usize>> = vec![Vec::new(); faces.len()];
     for (i, &label) in labels.iter().enumerate() {
         if faces[label as usize].flat == 0 {
@@ -113,22 +120,20 @@ fn remove_specks(size: [usize; 2], pixels: &[[f32; 3]], mixed: &mut Mixed, label
     let mut changed = false;
     let mut around: Vec<u16> = Vec::new();
     for (face, speck) in of_speck.iter().enumerate().filter(|(_, speck)| !speck.is_empty()) {
-        around.clear();
-        for &i in speck {
-            let (x, y) = (i % width, i / width);
-            for row in y.saturating_sub(1)..(y + 2).min(height) {
-                for j in (row * width + x.saturating_sub(1))..(row * width + (x + 2).min(width)) {
-                    let (other, color) = (labels[j] as usize, mixed.colors[j]);
-                    if other != face && (faces[other].flat > 0 || faces[other].area > faces[face].area) && usize::from(color) != faces[face].color && !around.contains(&color) {
-                        around.push(color);
-                    }
-                }
-            }
+        // What lies further off may have a share in a pixel where a wedge of it ends, and where faces meet a few pixels may be mixtures
+        // of more than three colors, or their ends: they are no things of their own.
+        let is_other = |other: usize| other != face && (faces[other].flat > 0 || faces[other].area > speck.len());
+        let reach = if speck.len() <= tuning::MOST_SPECK { 3 } else { 1 };
+        colors_around(size, mixed, labels, (speck, reach), is_other, &mut around);
+        let is_lost = around.len() > 1 && speck.len() <= around.len();
+        if is_lost {
+            colors_around(size, mixed, labels, (speck, 1), is_other, &mut around);
         }
+        around.retain(|&color| usize::from(color) != faces[face].color);
         let mixtures: Option<Vec<_>> =
             speck.iter().map(|&i| best_mixture(pixels[i].map(f64::from), &around, &mixed.palette)).collect();
         let bits = |misfit: f64| 1.5 * core::f64::consts::LOG2_E * (misfit / mixed.noise).powi(2);
-        let mixtures = mixtures.filter(|mixtures| mixtures.iter().map(|mixture| bits(mixture.misfit)).sum::<f64>() < tuning::SPECK_BITS);
+        let mixtures = mixtures.filter(|mixtures| is_lost || mixtures.iter().map(|mixture| bits(mixture.misfit)).sum::<f64>() < tuning::SPECK_BITS);
         if let Some(mixtures) = mixtures {
             for (&i, mixture) in speck.iter().zip(mixtures) {
                 mixed.colors[i] = mixture.color;
@@ -138,6 +143,28 @@ fn remove_specks(size: [usize; 2], pixels: &[[f32; 3]], mixed: &mut Mixed, label
         }
     }
     changed
+}
+
+/// The colors of the faces that are `wanted` within some pixels' reach.
+fn colors_around(
+    [width, height]: [usize; 2],
+    mixed: &Mixed,
+    labels: &[u32],
+    (speck, reach): (&[usize], usize),
+    wanted: impl Fn(usize) -> bool,
+    around: &mut Vec<u16>,
+) {
+    around.clear();
+    for &i in speck {
+        let (x, y) = (i % width, i / width);
+        for row in y.saturating_sub(reach)..(y + reach + 1).min(height) {
+            for j in (row * width + x.saturating_sub(reach))..(row * width + (x + reach + 1).min(width)) {
+                if wanted(labels[j] as usize) && !around.contains(&mixed.colors[j]) {
+                    around.push(mixed.colors[j]);
+                }
+            }
+        }
+    }
 }
 
 impl Partition {

@@ -53,6 +53,8 @@ pub struct Partition {
     pub coded: bool,
     /// Most difference of a channel between a pixel and the mixture that explains it.
     pub mix_noise: f64,
+    /// Whether edges are steps from pixel to pixel, without mixtures: boundaries are then known no better than the cracks between pixels.
+    pub is_hard: bool,
     /// Share of the pixels that no mixture of the palette explains, [0, 1].
     pub unexplained: f64,
 }
