@@ -171,3 +171,5 @@ pub const MOST_TURN: f64 = 1.5;
 /// Share of the places along edges that may have mixed pixels in a picture of hard edges: upright ones on whole pixels have none either,
 /// but hardly a whole picture is made of them alone.
 pub const MOST_HARD: f64 = 0.05;
+/// Most faces of one color behind the same that are joined pair by pair: more take too long, and are all one thing or none.
+pub const MOST_PAIRED: usize = 5;

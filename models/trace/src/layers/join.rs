@@ -9,6 +9,7 @@ use dvp_core::geometry::DisjointSets;
 use super::complete::{Completed, Completion};
 use crate::outline::Outline;
 use crate::partition::OUTSIDE;
+use crate::tuning;
 
 /// What is painted, from back to front: faces that are one thing, with their outlines (none for what a pen draws).
 pub(super) fn groups(completion: &mut Completion<'_>) -> Vec<(Vec<u32>, Vec<Outline>)> {
@@ -71,6 +72,9 @@ impl Group {
 /// The faces of `candidates` in groups: again and again those two become one that save most by it.
 fn join(completion: &mut Completion<'_>, candidates: &[u32]) -> Vec<Group> {
     let mut groups: Vec<Group> = candidates.iter().map(|&face| Group::of(completion, vec![face])).collect();
+    if groups.len() > tuning::MOST_PAIRED {
+        return together(completion, groups);
+    }
     // What was found for two groups holds as long as both are there.
     let mut pairs: Vec<(u32, u32, Option<(f64, Group)>)> = Vec::new();
     loop {
@@ -92,6 +96,22 @@ fn join(completion: &mut Completion<'_>, candidates: &[u32]) -> Vec<Group> {
         groups.retain(|group| !is_part(group.faces[0]));
         groups.push(joined);
     }
+}
+
+/// Many groups as one if that is shorter; else as they are.
+fn together(completion: &mut Completion<'_>, groups: Vec<Group>) -> Vec<Group> {
+    let faces: Vec<u32> = groups.iter().flat_map(|group| &group.faces).copied().collect();
+    let alone: f64 = groups.iter().map(|group| group.completed.bits + COLOR_BITS).sum();
+    let ranks: Vec<usize> = faces.iter().map(|&face| completion.rank(face)).collect();
+    completion.sink(&faces);
+    let completed = completion.outlines(&faces);
+    if completed.agrees && completed.bits + COLOR_BITS < alone {
+        return alloc::vec![Group { faces, completed }];
+    }
+    for (&face, rank) in faces.iter().zip(ranks) {
+        completion.rank[face as usize] = rank;
+    }
+    groups
 }
 
 /// What a color costs: three numbers of 8 bits.
