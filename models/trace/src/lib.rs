@@ -37,9 +37,12 @@ mod tests;
 pub mod ties;
 pub mod tuning;
 
+use alloc::vec::Vec;
+
 use dvp_core::{ImageView, Scene};
 
 use crate::partition::{NoPartition, Partition};
+pub use crate::scene::PoseDeviation;
 
 /// A picture as a drawing.
 #[derive(Clone, Debug)]
@@ -47,6 +50,8 @@ use crate::partition::{NoPartition, Partition};
 pub struct Traced {
     /// The drawing.
     pub scene: Scene<f32>,
+    /// How far the poses of its objects may be off, where that is known.
+    pub deviations: Vec<Option<PoseDeviation>>,
     /// Description length of its outlines, and of what they miss, bits.
     pub bits: f64,
     /// Share of the pixels just beyond edges that still show the other side, [0, 1]: near 0 if edges are of area coverage, as the
@@ -91,7 +96,8 @@ pub fn trace(image: &ImageView<'_, f32>, known: &Known) -> Result<Traced, NoDraw
     let mut layers = layers::layers(&partition, &rings, known.matte.map(|matte| matte.map(f64::from)));
     let bits = layers.bits();
     ties::tie(&mut layers, partition.size);
-    Ok(Traced { scene: scene::scene(&layers, image.size(), known.matte.is_some()), bits, stained })
+    let (scene, deviations) = scene::scene(&layers, image.size(), known.matte.is_some());
+    Ok(Traced { scene, deviations, bits, stained })
 }
 
 impl core::fmt::Display for NoDrawing {

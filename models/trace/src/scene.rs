@@ -2,6 +2,9 @@
 
 use alloc::vec::Vec;
 
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
+
 use dvp_core::render::{Compositing, EdgeProfile};
 use dvp_core::shape::{AnyShape, Circle, Ellipse, FillRule, Path, PathRing, Rectangle, RegularPolygon, Segment, Star, Stroke};
 use dvp_core::{ImageSize, Object, Pose, Real as _, Scene};
@@ -9,17 +12,40 @@ use dvp_core::{ImageSize, Object, Pose, Real as _, Scene};
 use crate::layers::{Form, Layer, Layers};
 use crate::outline::{Outline, OutlineShape};
 
-/// The scene that layers make of a picture of some size.
+/// The scene that layers make of a picture of some size, and how far the poses of its objects may be off.
 #[must_use]
-pub fn scene(layers: &Layers, size: ImageSize, transparent: bool) -> Scene<f32> {
+pub fn scene(layers: &Layers, size: ImageSize, transparent: bool) -> (Scene<f32>, Vec<Option<PoseDeviation>>) {
     let unit = size.unit_px() as f64;
-    Scene {
-        background: layers.background.map(|value| f32::of(value.clamp(0.0, 1.0))),
-        transparent,
-        objects: layers.layers.iter().filter_map(|layer| object(layer, unit)).collect(),
-        edge: EdgeProfile::area(),
-        compositing: Compositing::Over,
-    }
+    let objects = layers.layers.iter().filter_map(|layer| Some((object(layer, unit)?, deviation(layer, unit))));
+    let (objects, deviations) = objects.unzip();
+    let background = layers.background.map(|value| f32::of(value.clamp(0.0, 1.0)));
+    (Scene { background, transparent, objects, edge: EdgeProfile::area(), compositing: Compositing::Over }, deviations)
+}
+
+/// How far the pose of an object may be off: standard deviations.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PoseDeviation {
+    /// Of the middle, scene units.
+    pub translation: [f64; 2],
+    /// Of the logarithm of the size.
+    pub log_scale: f64,
+    /// Of the angle, radians; none of what looks alike at every angle.
+    pub rotation: Option<f64>,
+}
+
+/// What is known of the pose of a layer's object, if it is a whole outline.
+fn deviation(layer: &Layer, unit: f64) -> Option<PoseDeviation> {
+    let Form::Filled(outlines) = &layer.form else { return None };
+    let [Outline { shape, deviations, .. }] = &outlines[..] else { return None };
+    let (log_scale, rotation) = match (shape, &deviations[..]) {
+        (OutlineShape::Circle { radius, .. }, &[_, _, of_radius]) => (of_radius / radius, None),
+        (OutlineShape::Ellipse { radii, .. }, &[_, _, of_first, of_second, of_angle]) => {
+            // The logarithm of the square root of the product of both radii.
+            (0.5 * (of_first / radii[0]).hypot(of_second / radii[1]), Some(of_angle))
+        }
+        _ => return None,
+    };
+    Some(PoseDeviation { translation: [deviations[0] / unit, deviations[1] / unit], log_scale, rotation })
 }
 
 /// The object of a layer; none if it has no outline.

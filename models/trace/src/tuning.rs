@@ -158,6 +158,7 @@ pub const CODED_BLOCKS: usize = 2;
 /// Bits that a grid must save over the whole drawing, and a class of equal numbers over what telling its members costs: chance saves so
 /// many in less than one of 200 drawings.
 pub const TIES_BITS: f64 = 8.0;
+
 /// Least share of a face in a pixel for the pixel to show that face alone: what else is in it is less than rounding at the border of a
 /// pure one.
 pub const PURE_SHARE: f32 = 0.9;

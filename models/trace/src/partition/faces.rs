@@ -9,7 +9,7 @@ use num_traits::Float as _;
 use dvp_core::geometry::DisjointSets;
 
 use super::flat::{NONE, index};
-use super::mix::{Mixed, Mixture, best_mixture};
+use super::mix::{Mixed, best_mixture};
 use super::Partition;
 use crate::tuning;
 
@@ -41,6 +41,7 @@ pub(super) fn cut(size: [usize; 2], pixels: Vec<[f32; 3]>, mut mixed: Mixed) -> 
 
 fn partition(size: [usize; 2], pixels: Vec<[f32; 3]>, mixed: Mixed, labels: Vec<u32>, faces: Vec<Face>) -> Partition {
     let Mixed { shares, palette, unexplained, noise, .. } = mixed;
+    let lines = Vec::new();
     let [width, _] = size;
     let is_edge = |&i: &usize| i % width > 0 && labels[i - 1] != labels[i] || i >= width && labels[i - width] != labels[i];
     let is_mixed = |&i: &usize| {
@@ -50,7 +51,6 @@ fn partition(size: [usize; 2], pixels: Vec<[f32; 3]>, mixed: Mixed, labels: Vec<
     let edges = (0..labels.len()).filter(is_edge).count();
     let mixed = (0..labels.len()).filter(is_edge).filter(is_mixed).count();
     let is_hard = (mixed as f64) < tuning::MOST_HARD * edges as f64;
-    let lines = Vec::new();
     Partition { size, pixels, labels, shares, faces, lines, palette, coded: false, mix_noise: noise, is_hard, unexplained }
 }
 
@@ -122,19 +122,18 @@ fn remove_specks(size: [usize; 2], pixels: &[[f32; 3]], mixed: &mut Mixed, label
     for (face, speck) in of_speck.iter().enumerate().filter(|(_, speck)| !speck.is_empty()) {
         // What lies further off may have a share in a pixel where a wedge of it ends, and where faces meet a few pixels may be mixtures
         // of more than three colors, or their ends: they are no things of their own.
+        let is_other = |other: usize| other != face && (faces[other].flat > 0 || faces[other].area > speck.len());
         let reach = if speck.len() <= tuning::MOST_SPECK { 3 } else { 1 };
-        let is_larger = |other: usize| other != face && (faces[other].flat > 0 || faces[other].area > faces[face].area);
-        colors_around(size, mixed, labels, (speck, reach), is_larger, &mut around);
+        colors_around(size, mixed, labels, (speck, reach), is_other, &mut around);
         let is_lost = around.len() > 1 && speck.len() <= around.len();
         if is_lost {
-            colors_around(size, mixed, labels, (speck, 1), is_larger, &mut around);
+            colors_around(size, mixed, labels, (speck, 1), is_other, &mut around);
         }
         around.retain(|&color| usize::from(color) != faces[face].color);
         let mixtures: Option<Vec<_>> =
             speck.iter().map(|&i| best_mixture(pixels[i].map(f64::from), &around, &mixed.palette)).collect();
         let bits = |misfit: f64| 1.5 * core::f64::consts::LOG2_E * (misfit / mixed.noise).powi(2);
-        let is_cheap = |mixtures: &Vec<Mixture>| mixtures.iter().map(|mixture| bits(mixture.misfit)).sum::<f64>() < tuning::SPECK_BITS;
-        let mixtures = mixtures.filter(|mixtures| is_lost || is_cheap(mixtures));
+        let mixtures = mixtures.filter(|mixtures| is_lost || mixtures.iter().map(|mixture| bits(mixture.misfit)).sum::<f64>() < tuning::SPECK_BITS);
         if let Some(mixtures) = mixtures {
             for (&i, mixture) in speck.iter().zip(mixtures) {
                 mixed.colors[i] = mixture.color;

@@ -7,14 +7,14 @@ use std::path::PathBuf;
 
 use anyhow::{Result, bail};
 use clap::ValueEnum;
-use dvp_core::Scene;
+use dvp_core::{Real as _, Scene};
 use dvp_core::loss::{ImagePair, Loss as _};
 use dvp_core::render::PixelLoss;
 use dvp_fit::opt_iter::OptIter;
 use dvp_fit::refine::{Refine, RefineScratch};
-use dvp_fit::{Bank, Fit, FitOptions, FitScratch, Fitter, StopReason};
+use dvp_fit::{Ambiguity, Bank, Fit, FitOptions, FitScratch, Fitter, StopReason};
 use dvp_net::propose::Proposer;
-use dvp_trace::Known;
+use dvp_trace::{Known, PoseDeviation};
 
 use crate::format::{Picture, Place, read_scene};
 use crate::method;
@@ -164,11 +164,34 @@ impl Solver {
         let painted = painter.paint_in(&traced.scene, image.size(), &mut scratch.paint)?;
         let loss = PixelLoss::Mae.value(ImagePair::new(painted.view(), image)?, &mut ())?;
         let fit = Fit::of_painted(traced.scene, &drawing, &image, painted.data());
-        let drawn = Fit { loss, bits: traced.bits, stop: StopReason::Converged, ..fit };
+        let (covariance, ambiguity) = doubt_of_poses(&traced.deviations);
+        let drawn = Fit { loss, bits: traced.bits, stop: StopReason::Converged, covariance, ambiguity, ..fit };
         if traced.stained > DOUBTFUL_EDGES {
             let segments = self.fitter.fit(image, &mut scratch.fit)?;
             return Ok(if segments.loss < CLEARLY_WORSE * drawn.loss { segments } else { drawn });
         }
         Ok(drawn)
     }
+}
+
+/// What is known of poses as a fit says it: covariances of (x, y, log scale, rotation), NaN where nothing is known, and which objects
+/// look alike at every angle.
+fn doubt_of_poses(deviations: &[Option<PoseDeviation>]) -> (Vec<[f32; 16]>, Vec<Ambiguity>) {
+    if deviations.iter().all(Option::is_none) {
+        return (Vec::new(), Vec::new());
+    }
+    let mut ambiguity = Vec::new();
+    let covariance = deviations.iter().enumerate().map(|(object, deviation)| {
+        let Some(PoseDeviation { translation: [x, y], log_scale, rotation }) = *deviation else { return [f32::NAN; 16] };
+        if rotation.is_none() {
+            ambiguity.push(Ambiguity::Symmetry { object, order: 0 });
+        }
+        let mut covariance = [0.0_f32; 16];
+        for (at, deviation) in [x, y, log_scale, rotation.unwrap_or(0.0)].into_iter().enumerate() {
+            covariance[5 * at] = f32::of(deviation * deviation);
+        }
+        covariance
+    });
+    let covariance = covariance.collect();
+    (covariance, ambiguity)
 }
