@@ -117,6 +117,9 @@ fn remove_specks(size: [usize; 2], pixels: &[[f32; 3]], mixed: &mut Mixed, label
             of_speck[label as usize].push(i);
         }
     }
+    // A picture of more specks than anything else means them.
+    let flat = faces.iter().filter(|face| face.flat > 0).count();
+    let is_detailed = faces.len() > 3 * flat;
     let mut changed = false;
     let mut around: Vec<u16> = Vec::new();
     for (face, speck) in of_speck.iter().enumerate().filter(|(_, speck)| !speck.is_empty()) {
@@ -125,7 +128,7 @@ fn remove_specks(size: [usize; 2], pixels: &[[f32; 3]], mixed: &mut Mixed, label
         let is_other = |other: usize| other != face && (faces[other].flat > 0 || faces[other].area > speck.len());
         let reach = if speck.len() <= tuning::MOST_SPECK { 3 } else { 1 };
         colors_around(size, mixed, labels, (speck, reach), is_other, &mut around);
-        let is_lost = around.len() > 1 && speck.len() <= around.len();
+        let is_lost = !is_detailed && around.len() > 1 && speck.len() <= around.len();
         if is_lost {
             colors_around(size, mixed, labels, (speck, 1), is_other, &mut around);
         }
