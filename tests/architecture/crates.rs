@@ -18,7 +18,11 @@ const PLAN: [(&str, &str, &[&str]); 9] = [
     ("dvp-net", "models/net", &["dvp-core", "dvp-fit"]),
     // The adapters behind features that the default build leaves out, as another test here shows.
     ("dvp", "models/cli", &["dvp-core", "dvp-burn", "dvp-candle", "dvp-trace", "dvp-fit", "dvp-double", "dvp-net"]),
-    ("dvp-tests", "tests", &["dvp-core", "dvp-burn", "dvp-candle", "dvp-trace", "dvp-fit", "dvp-double", "dvp-net", "dvp"]),
+    (
+        "dvp-tests",
+        "tests",
+        &["dvp-core", "dvp-burn", "dvp-candle", "dvp-trace", "dvp-fit", "dvp-double", "dvp-net", "dvp"],
+    ),
 ];
 
 /// How names of tensor frameworks, and of the compilers and drivers below them, begin.

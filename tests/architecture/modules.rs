@@ -103,7 +103,9 @@ fn violations(order: Order, path: &str, text: &str, reexports: &[(String, String
     if module == "lib" {
         return Vec::new();
     }
-    let Some(own) = row(order, module) else { return vec![format!("{path}: module {module} has no place in the order")] };
+    let Some(own) = row(order, module) else {
+        return vec![format!("{path}: module {module} has no place in the order")];
+    };
     let depth = if parts.last() == Some(&"mod") { parts.len() - 1 } else { parts.len() };
     let mut found = Vec::new();
     for (line, name) in names_from_root(text, depth) {

@@ -19,6 +19,12 @@
 //! unless a name says otherwise. Everything is computed in f64; images come in f32. The arithmetic of f64 is inherent with std and
 //! that of `num_traits` without.
 #![no_std]
+#![allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "pixels and faces are fewer than 2^32, since sizes of images are; coordinates become indices where they are not negative"
+)]
+#![allow(clippy::float_cmp, reason = "axes and colors that are compared are copies of one another, or differ")]
 
 extern crate alloc;
 #[cfg(test)]
@@ -110,7 +116,9 @@ impl core::fmt::Display for NoDrawing {
             Self::Partition(NoPartition::TooManyColors) => {
                 write!(f, "the picture has more than {} flat colors", tuning::MOST_COLORS)
             }
-            Self::Soft { stained } => write!(f, "edges are soft: {:.0} % of the pixels beside them are stained", 100.0 * stained),
+            Self::Soft { stained } => {
+                write!(f, "edges are soft: {:.0} % of the pixels beside them are stained", 100.0 * stained)
+            }
         }
     }
 }

@@ -4,7 +4,6 @@
 //! the numbers cost that are needed to say where the outline is. A number that the picture pins down to sigma is worth the
 //! logarithm of how many places it could have been told apart from; one that cannot be seen costs nothing.
 
-
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 

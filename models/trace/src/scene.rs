@@ -6,7 +6,9 @@ use alloc::vec::Vec;
 use num_traits::Float as _;
 
 use dvp_core::render::{Compositing, EdgeProfile};
-use dvp_core::shape::{AnyShape, Circle, Ellipse, FillRule, Path, PathRing, Rectangle, RegularPolygon, Segment, Star, Stroke};
+use dvp_core::shape::{
+    AnyShape, Circle, Ellipse, FillRule, Path, PathRing, Rectangle, RegularPolygon, Segment, Star, Stroke,
+};
 use dvp_core::{ImageSize, Object, Pose, Real as _, Scene};
 
 use crate::layers::{Form, Layer, Layers};

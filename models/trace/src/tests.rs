@@ -1,9 +1,9 @@
 //! From pictures to drawings and back: what is painted by exact coverage is found again.
 
+use alloc::string::ToString as _;
 use alloc::vec;
 use alloc::vec::Vec;
 use std::eprintln;
-use std::string::ToString as _;
 
 use dvp_core::render::{Compositing, EdgeProfile, ExactArea, ExactRenderer, Renderer as _};
 use dvp_core::shape::{AnyShape, Circle, OutlineBasis, Rectangle, Star};
@@ -23,7 +23,11 @@ fn size() -> ImageSize {
 /// An object whose numbers are in pixels.
 fn object(shape: AnyShape<f64>, [x, y]: [f64; 2], rotation: f64, color: [f32; 3]) -> Object<f32> {
     let unit = SIZE as f64;
-    let pose = Pose { translation: [(x / unit) as f32, (y / unit) as f32], scale: (1.0 / unit) as f32, rotation: rotation as f32 };
+    let pose = Pose {
+        translation: [(x / unit) as f32, (y / unit) as f32],
+        scale: (1.0 / unit) as f32,
+        rotation: rotation as f32,
+    };
     Object { shape: shape.cast(), pose, paint: color.into(), confidence: 1.0 }
 }
 
@@ -45,7 +49,9 @@ fn paint(scene: &Scene<f32>) -> Image<f32> {
     let mut drawing = Drawing::default();
     scene.draw(&basis, &mut drawing).unwrap();
     let mut pixels = vec![0.0; 3 * SIZE * SIZE];
-    ExactRenderer { coverage: ExactArea, compositing: scene.compositing }.render(&drawing, size(), &mut Default::default(), &mut pixels).unwrap();
+    ExactRenderer { coverage: ExactArea, compositing: scene.compositing }
+        .render(&drawing, size(), &mut Default::default(), &mut pixels)
+        .unwrap();
     Image::from_planar(size(), pixels.into_iter().map(|value: f32| (value * 255.0).round() / 255.0).collect()).unwrap()
 }
 
@@ -77,7 +83,8 @@ fn a_disk_is_a_circle() {
 #[test]
 fn what_is_hidden_is_completed() {
     // A bar over a disk: the disk is cut in two, and is one circle behind the bar.
-    let objects = vec![object(circle(25.0), [48.0, 48.0], 0.0, RED), object(rectangle(90.0, 12.0), [48.0, 50.0], 0.3, BLUE)];
+    let objects =
+        vec![object(circle(25.0), [48.0, 48.0], 0.0, RED), object(rectangle(90.0, 12.0), [48.0, 50.0], 0.3, BLUE)];
     let picture = paint(&scene(WHITE, objects));
     let found = found(&picture);
     assert_eq!(found.objects.len(), 2);
@@ -144,7 +151,8 @@ fn any_object() -> impl Strategy<Value = Object<f32>> {
         }),
     ];
     let color = prop::array::uniform3(0_u8..6).prop_map(|c| c.map(|level| f32::from(level) * 0.2));
-    (shape, [10.0..86.0, 10.0..86.0], 0.0..3.0, color).prop_map(|(shape, place, turn, color)| object(shape, place, turn, color))
+    (shape, [10.0..86.0, 10.0..86.0], 0.0..3.0, color)
+        .prop_map(|(shape, place, turn, color)| object(shape, place, turn, color))
 }
 
 proptest! {

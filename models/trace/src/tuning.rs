@@ -97,10 +97,8 @@ pub const OUTLINE_SPOILED: usize = 2;
 /// What leaving out one of them costs, bits: as a sample that is 2.9 sigma off.
 pub const OUTLINE_SPOILED_BITS: f64 = 6.0;
 
-
 /// Fewest samples of a cubic: one more than its numbers.
 pub const OUTLINE_CUBIC_SAMPLES: usize = 9;
-
 
 /// The curves beside a hidden stretch are drawn out to where they meet if that is no further than this many times the chord over
 /// it: else the corner would be a spike that nothing speaks for.

@@ -137,7 +137,14 @@ fn translucent<T: Real, V: Copy>(
     let ground = Ground::of(pixels.clone());
     let image = planar(size, pixels.map(|pixel| ground.under(pixel)))?;
     let matte = ground.under([0.0; 4]).map(T::of);
-    Ok(Picture { image, transparent: ground != Ground::Opaque, matte, visible: ground != Ground::Invisible, bits, coded: false })
+    Ok(Picture {
+        image,
+        transparent: ground != Ground::Opaque,
+        matte,
+        visible: ground != Ground::Invisible,
+        bits,
+        coded: false,
+    })
 }
 
 fn planar<T: Real>(size: ImageSize, pixels: impl Iterator<Item = [f64; 3]>) -> Result<Image<T>, ImageError> {

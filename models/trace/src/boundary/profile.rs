@@ -27,7 +27,9 @@ pub fn stained(partition: &Partition, rings: &[Vec<Ring>]) -> Option<f64> {
         for k in (0..n).filter(|_| n > 2 * BESIDE) {
             // A slanted boundary has cracks of the other axis between, which have no sample.
             let Some(here) = ring.steps[k].sample else { continue };
-            let Some(before) = (1..=BESIDE).find_map(|offset| ring.steps[(k + n - offset) % n].sample) else { continue };
+            let Some(before) = (1..=BESIDE).find_map(|offset| ring.steps[(k + n - offset) % n].sample) else {
+                continue;
+            };
             let Some(behind) = (1..=BESIDE).find_map(|offset| ring.steps[(k + offset) % n].sample) else { continue };
             let Some(slope) = slope(&here, &before, &behind) else { continue };
             for share in shares_beyond(partition, &ring.steps[k], &here, slope) {

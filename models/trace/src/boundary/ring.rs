@@ -20,7 +20,8 @@ pub(super) fn walk_faces(partition: &Partition) -> Vec<Vec<Ring>> {
             if visited[y * width + x] || (y > 0 && partition.labels[(y - 1) * width + x] == face) {
                 continue;
             }
-            let ring = walk(Crack { start: [x, y], heading: Heading::PlusX }, |at| partition.face_at(at) == face, partition);
+            let ring =
+                walk(Crack { start: [x, y], heading: Heading::PlusX }, |at| partition.face_at(at) == face, partition);
             mark(&ring, width, &mut visited);
             rings[face as usize].push(ring);
         }

@@ -41,7 +41,8 @@ pub(super) fn read(partition: &Partition, ring: &mut Ring) {
         if is_flat == is_column {
             ring.steps[k].sample = sample(partition, &ring.steps[k]);
         }
-        let ([x, y], [gone_x, gone_y]) = (unit(&ring.steps[(k + AROUND + 1) % n]), unit(&ring.steps[(k + n - AROUND) % n]));
+        let ([x, y], [gone_x, gone_y]) =
+            (unit(&ring.steps[(k + AROUND + 1) % n]), unit(&ring.steps[(k + n - AROUND) % n]));
         along = [along[0] + x - gone_x, along[1] + y - gone_y];
     }
     straighten(partition, ring);
@@ -114,7 +115,8 @@ fn straighten(partition: &Partition, ring: &mut Ring) {
     let read = |k: usize| raw[k].or_else(|| sample(partition, &ring.steps[k]));
     let mut corrected = alloc::vec::Vec::new();
     for (k, here) in raw.iter().enumerate().filter_map(|(k, here)| Some((k, (*here)?))) {
-        let at = |neighbor: Option<usize>| neighbor.and_then(&read).map(|other| (other.point - here.point).dot(here.axis));
+        let at =
+            |neighbor: Option<usize>| neighbor.and_then(&read).map(|other| (other.point - here.point).dot(here.axis));
         let sides = [false, true].map(|ahead| beside(ring, k, ahead));
         let [Some(before), Some(behind)] = sides.map(at) else {
             continue;
@@ -148,7 +150,8 @@ fn beside(ring: &Ring, k: usize, ahead: bool) -> Option<usize> {
             return Some(at);
         }
         // A boundary that turns back has no window beside this one.
-        let is_across = matches!(heading, Heading::PlusX | Heading::MinusX) != matches!(other, Heading::PlusX | Heading::MinusX);
+        let is_across =
+            matches!(heading, Heading::PlusX | Heading::MinusX) != matches!(other, Heading::PlusX | Heading::MinusX);
         if !is_across {
             return None;
         }

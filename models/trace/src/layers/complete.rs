@@ -106,7 +106,8 @@ impl Completion<'_> {
             // A hole that is filled by what lies in front of it is none.
             let is_ring = |ring: &&Ring| ring.area > 0.0 || ring.steps.iter().any(|step| hidden(step).is_none());
             let needed = |step: &Step| hidden(step).and_then(|hidden| policy.of(step, hidden));
-            let samples: Vec<RingSamples> = rings.iter().filter(is_ring).map(|ring| visible::samples(ring, needed)).collect();
+            let samples: Vec<RingSamples> =
+                rings.iter().filter(is_ring).map(|ring| visible::samples(ring, needed)).collect();
             // What is not hidden has no boundary but its own.
             let is_seen = |at: Vec2<f64>| self.pure_face(at).is_some_and(|face| wanted(face).is_some());
             let ways = [link::relinked(&samples, is_seen), Some(samples)];
@@ -136,7 +137,9 @@ impl Completion<'_> {
     /// Whether what was completed still covers what it should and hides nothing; what the order did not change since is as it was.
     pub(super) fn holds(&self, group: &[u32], completed: &Completed) -> bool {
         let rank = self.hindmost(group);
-        !completed.agrees || completed.outlines.is_empty() || self.agrees(&completed.outlines, |face| self.wanted(face, group, rank))
+        !completed.agrees
+            || completed.outlines.is_empty()
+            || self.agrees(&completed.outlines, |face| self.wanted(face, group, rank))
     }
 
     /// Whether the boundary of some faces goes on smoothly as that of others, behind what lies in front of both.

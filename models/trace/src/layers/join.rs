@@ -69,6 +69,9 @@ impl Group {
     }
 }
 
+/// The first faces of two groups; what joining them saves, bits, and the group that they make, if they make one.
+type Pair = (u32, u32, Option<(f64, Group)>);
+
 /// The faces of `candidates` in groups: again and again those two become one that save most by it.
 fn join(completion: &mut Completion<'_>, candidates: &[u32]) -> Vec<Group> {
     let mut groups: Vec<Group> = candidates.iter().map(|&face| Group::of(completion, vec![face])).collect();
@@ -76,7 +79,7 @@ fn join(completion: &mut Completion<'_>, candidates: &[u32]) -> Vec<Group> {
         return together(completion, groups);
     }
     // What was found for two groups holds as long as both are there.
-    let mut pairs: Vec<(u32, u32, Option<(f64, Group)>)> = Vec::new();
+    let mut pairs: Vec<Pair> = Vec::new();
     loop {
         for a in 0..groups.len() {
             for b in 0..a {
@@ -87,7 +90,7 @@ fn join(completion: &mut Completion<'_>, candidates: &[u32]) -> Vec<Group> {
                 }
             }
         }
-        let saved = |pair: &(u32, u32, Option<(f64, Group)>)| pair.2.as_ref().map_or(-1.0, |&(saved, _)| saved);
+        let saved = |pair: &Pair| pair.2.as_ref().map_or(-1.0, |&(saved, _)| saved);
         let best = (0..pairs.len()).max_by(|&a, &b| saved(&pairs[a]).total_cmp(&saved(&pairs[b])));
         let Some((a, b, Some((_, joined)))) = best.map(|best| pairs.swap_remove(best)) else { return groups };
         completion.sink(&joined.faces);

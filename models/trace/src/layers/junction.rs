@@ -29,7 +29,9 @@ struct Turn {
 /// The votes of all junctions.
 pub(super) fn votes(rings: &[Vec<Ring>]) -> Votes {
     let mut junctions: BTreeMap<[u32; 3], Vec<Turn>> = BTreeMap::new();
-    for (face, ring) in rings.iter().enumerate().flat_map(|(face, rings)| rings.iter().map(move |ring| (face as u32, ring))) {
+    for (face, ring) in
+        rings.iter().enumerate().flat_map(|(face, rings)| rings.iter().map(move |ring| (face as u32, ring)))
+    {
         let n = ring.steps.len();
         for k in 0..n {
             let [here, next] = [ring.steps[k], ring.steps[(k + 1) % n]];
@@ -49,9 +51,9 @@ pub(super) fn votes(rings: &[Vec<Ring>]) -> Votes {
     for (faces, turns) in &junctions {
         for turn in turns {
             // The other faces' walks past the same junction; one that could not be measured is no rival.
-            let rivals = turns.iter().filter(|other| {
-                other.face != turn.face && (other.at - turn.at).length() <= tuning::JUNCTION_SIZE
-            });
+            let rivals = turns
+                .iter()
+                .filter(|other| other.face != turn.face && (other.at - turn.at).length() <= tuning::JUNCTION_SIZE);
             let Some(best_rival) = rivals.map(|rival| rival.misfit).min_by(f64::total_cmp) else { continue };
             let gain = (best_rival - turn.misfit).min(tuning::MOST_VOTE);
             if gain > 0.0 && turn.misfit < tuning::MOST_VOTE {
@@ -144,8 +146,9 @@ fn solve(mut matrix: [[f64; 3]; 3], mut right: [f64; 3]) -> Option<[f64; 3]> {
         right.swap(i, pivot);
         for j in i + 1..3 {
             let factor = matrix[j][i] / matrix[i][i];
-            for k in i..3 {
-                matrix[j][k] -= factor * matrix[i][k];
+            let above = matrix[i];
+            for (value, above) in matrix[j].iter_mut().zip(above).skip(i) {
+                *value -= factor * above;
             }
             right[j] -= factor * right[i];
         }

@@ -30,7 +30,8 @@ pub(super) fn relinked(rings: &[RingSamples], is_seen: impl Fn(Vec2<f64>) -> boo
     if count < 2 {
         return None;
     }
-    let tips: Vec<[Tip; 2]> = runs.iter().map(|run| Some([Tip::of(run.iter())?, Tip::of(run.iter().rev())?])).collect::<Option<_>>()?;
+    let tips: Vec<[Tip; 2]> =
+        runs.iter().map(|run| Some([Tip::of(run.iter())?, Tip::of(run.iter().rev())?])).collect::<Option<_>>()?;
     let price = |from: usize, to: usize| tips[from][1].price(&tips[to][0], &is_seen);
     let prices: Vec<f64> = (0..count * count).map(|k| price(k / count, k % count)).collect();
     let mut is_changed = false;

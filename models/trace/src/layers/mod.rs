@@ -28,8 +28,8 @@ use crate::boundary::Ring;
 use crate::outline::Outline;
 use crate::partition::{Color, OUTSIDE, Partition};
 use crate::ruler::Ruler;
-use crate::tuning;
 use crate::stroke::fit_thin;
+use crate::tuning;
 use complete::Completion;
 use order::Order;
 
@@ -84,7 +84,11 @@ pub fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<Color>) 
         match &pens[group[0] as usize] {
             Some(pen) => {
                 let bits = (pen.bits + pen.misfit) / pen.strokes.len().max(1) as f64;
-                layers.extend(pen.strokes.iter().map(|stroke| Layer { color, form: Form::Stroked(stroke.clone()), bits }));
+                layers.extend(pen.strokes.iter().map(|stroke| Layer {
+                    color,
+                    form: Form::Stroked(stroke.clone()),
+                    bits,
+                }));
             }
             None => {
                 let bits = outlines.iter().map(|outline| outline.bits + outline.misfit).sum();

@@ -18,7 +18,13 @@ pub(super) struct Order {
 }
 
 impl Order {
-    pub(super) fn of(partition: &Partition, rings: &[Vec<Ring>], background: u32, clear: bool, pens: &mut [Option<StrokeFit>]) -> Self {
+    pub(super) fn of(
+        partition: &Partition,
+        rings: &[Vec<Ring>],
+        background: u32,
+        clear: bool,
+        pens: &mut [Option<StrokeFit>],
+    ) -> Self {
         let mut votes = votes(rings);
         // Lines end at what lies in front of them as if a pen had ended there: they are things that go on behind it.
         for (&(_, behind), _) in votes.iter().filter(|&(&(front, behind), &bits)| {
@@ -50,7 +56,8 @@ impl Order {
             let open = (0..n).filter(|&face| order.rank[face] == usize::MAX);
             // Larger faces first where nothing else decides.
             let key = |face: &usize| (held[*face].max(0.0), core::cmp::Reverse(partition.faces[*face].area));
-            next = open.min_by(|a, b| key(a).0.total_cmp(&key(b).0).then(key(a).1.cmp(&key(b).1))).map(|face| face as u32);
+            next =
+                open.min_by(|a, b| key(a).0.total_cmp(&key(b).0).then(key(a).1.cmp(&key(b).1))).map(|face| face as u32);
         }
         order.sink_holes(partition, rings, background);
         order
@@ -97,10 +104,16 @@ fn add_enclosures(partition: &Partition, rings: &[Vec<Ring>], background: u32, c
         let around: Vec<u32> = neighbors_along(rings.iter().take(1));
         let lies_on_back = |other: &u32| on_back[partition.faces[*other as usize].color];
         let shows = |other: &u32| {
-            let has_color = |next: &u32| *next as usize != face && partition.faces[*next as usize].color == partition.faces[face].color;
+            let has_color = |next: &u32| {
+                *next as usize != face && partition.faces[*next as usize].color == partition.faces[face].color
+            };
             neighbors[*other as usize].iter().any(has_color)
         };
-        let is_hole = if is_back(face as u32) { clear || around.len() > 1 || around.iter().all(lies_on_back) } else { around.len() == 1 && around.iter().all(shows) };
+        let is_hole = if is_back(face as u32) {
+            clear || around.len() > 1 || around.iter().all(lies_on_back)
+        } else {
+            around.len() == 1 && around.iter().all(shows)
+        };
         if is_hole {
             let bits = match is_back(face as u32) {
                 true if clear => 1e9,
@@ -118,7 +131,8 @@ fn add_enclosures(partition: &Partition, rings: &[Vec<Ring>], background: u32, c
 
 /// The faces along rings.
 fn neighbors_along<'a>(rings: impl Iterator<Item = &'a Ring>) -> Vec<u32> {
-    let mut all: Vec<u32> = rings.flat_map(|ring| &ring.steps).map(|step| step.other).filter(|&other| other != OUTSIDE).collect();
+    let mut all: Vec<u32> =
+        rings.flat_map(|ring| &ring.steps).map(|step| step.other).filter(|&other| other != OUTSIDE).collect();
     all.sort_unstable();
     all.dedup();
     all

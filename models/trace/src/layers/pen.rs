@@ -26,7 +26,8 @@ pub(super) fn find(
         }
         let samples: Vec<RingSamples> = rings.iter().map(|ring| visible::samples(ring, |_| None)).collect();
         pens[face] = fit_strokes(&samples, ruler).filter(|pen| {
-            let outlines = samples.iter().map(|samples| fit_closed(samples, ruler).map(|outline| outline.bits + outline.misfit));
+            let outlines =
+                samples.iter().map(|samples| fit_closed(samples, ruler).map(|outline| outline.bits + outline.misfit));
             outlines.sum::<Option<f64>>().is_none_or(|bits| pen.bits + pen.misfit < bits)
         });
     }

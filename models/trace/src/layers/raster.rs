@@ -44,7 +44,9 @@ pub(super) fn agrees(partition: &Partition, polygons: &[Vec<[f64; 2]>], wanted: 
             }
         }
     }
-    let few = |count: usize, area: usize| (count as f64) <= (tuning::MOST_WRONG * area as f64).clamp(1.0, tuning::MOST_WRONG_PIXELS);
+    let few = |count: usize, area: usize| {
+        (count as f64) <= (tuning::MOST_WRONG * area as f64).clamp(1.0, tuning::MOST_WRONG_PIXELS)
+    };
     let own = partition.faces.iter().enumerate().filter(|&(face, _)| wanted(face as u32) == Some(true));
     let area = own.map(|(_, face)| face.area).sum::<usize>();
     few(missed, area) && hidden.iter().all(|(&face, &count)| few(count, partition.faces[face as usize].area))
@@ -60,9 +62,8 @@ fn is_at_edge(partition: &Partition, [x, y]: [usize; 2]) -> bool {
 /// The rows that the polygons, or faces that are wanted, reach.
 fn rows(partition: &Partition, polygons: &[Vec<[f64; 2]>], wanted: impl Fn(u32) -> Option<bool>) -> Range<usize> {
     let own = partition.faces.iter().enumerate().filter(|&(face, _)| wanted(face as u32) == Some(true));
-    let (mut top, mut bottom) = own.fold((usize::MAX, 0), |(top, bottom), (_, face)| {
-        (top.min(face.bounds[1]), bottom.max(face.bounds[3]))
-    });
+    let (mut top, mut bottom) =
+        own.fold((usize::MAX, 0), |(top, bottom), (_, face)| (top.min(face.bounds[1]), bottom.max(face.bounds[3])));
     for [_, y] in polygons.iter().flatten() {
         top = top.min(y.max(0.0) as usize);
         bottom = bottom.max(y.max(0.0) as usize + 1);

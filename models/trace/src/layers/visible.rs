@@ -96,7 +96,8 @@ fn moved(sample: Sample, step: &Step, hidden: Option<Hidden>) -> Sample {
 fn push(run: &mut Vec<Sample>, sample: Sample) {
     if let [.., before, last] = run[..] {
         let along = last.point - before.point;
-        if (sample.point - last.point).dot(along) <= 0.2 * along.length() && (sample.point - last.point).length() < 1.0 {
+        if (sample.point - last.point).dot(along) <= 0.2 * along.length() && (sample.point - last.point).length() < 1.0
+        {
             return;
         }
     }

@@ -29,7 +29,8 @@ pub(super) fn mend(fitted: &Fitted, track: &Track, ruler: &Ruler) -> Option<Fitt
     let is_flat = |chain: &Chain| {
         chain.closed
             && chain.curves.len() <= 2
-            && (0..chain.curves.len()).all(|k| chain.curves[k] == Curve::Line && !samples_of(chain, track.len(), k).is_empty())
+            && (0..chain.curves.len())
+                .all(|k| chain.curves[k] == Curve::Line && !samples_of(chain, track.len(), k).is_empty())
     };
     let mut bad = bad_curves(&fitted.chain, &off, track.len());
     if is_flat(&fitted.chain) {

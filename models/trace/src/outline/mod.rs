@@ -144,9 +144,12 @@ pub fn fit_closed(ring: &RingSamples, ruler: &Ruler) -> Option<Outline> {
     let whole = whole::fit(&track, &path, ruler);
     let path = draft.mended(&track, ruler).unwrap_or(path);
     let FittedPath { ring, bits, misfit } = path;
-    whole
-        .filter(|whole| whole.bits + whole.misfit <= bits + misfit)
-        .or(Some(Outline { shape: OutlineShape::Path(ring), bits, misfit, deviations: Vec::new() }))
+    whole.filter(|whole| whole.bits + whole.misfit <= bits + misfit).or(Some(Outline {
+        shape: OutlineShape::Path(ring),
+        bits,
+        misfit,
+        deviations: Vec::new(),
+    }))
 }
 
 /// The shortest description of an open line through samples.

@@ -60,7 +60,8 @@ impl Reviser<'_> {
     fn better(&self, chain: &Chain, k: usize) -> Option<Chain> {
         let first = k - 1;
         // A line over a hidden stretch explains nothing, and nothing that is seen explains it.
-        let seen = (first..chain.curves.len()).take_while(|&k| !samples_of(chain, self.track.len(), k).is_empty()).count();
+        let seen =
+            (first..chain.curves.len()).take_while(|&k| !samples_of(chain, self.track.len(), k).is_empty()).count();
         if seen == 0 {
             return None;
         }

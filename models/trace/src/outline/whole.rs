@@ -238,7 +238,8 @@ impl Trial<'_> {
         if matches!(self.figure, Figure::Polygon { .. } | Figure::Star { .. }) {
             return None;
         }
-        let variance = |equations: &Equations| equations.chi2 / (as_f64(self.track.len()) - as_f64(self.count_free())).max(1.0);
+        let variance =
+            |equations: &Equations| equations.chi2 / (as_f64(self.track.len()) - as_f64(self.count_free())).max(1.0);
         let exact = Trial { renderer: 0.0, ..*self };
         let polished = (variance(found) < EXACT && self.renderer > 0.0).then(|| exact.descend(numbers, 1)).flatten();
         let (numbers, found) = polished.as_ref().map_or((numbers, found), |(numbers, found)| (*numbers, found));

@@ -79,7 +79,10 @@ impl Chain {
 
     /// Where windows are missing between two of them.
     pub(super) fn gaps(&self) -> impl Iterator<Item = [Vec2<f64>; 2]> {
-        self.marks.windows(2).map(|pair| [pair[0].point, pair[1].point]).filter(|[from, to]| (*to - *from).length() > 2.5)
+        self.marks
+            .windows(2)
+            .map(|pair| [pair[0].point, pair[1].point])
+            .filter(|[from, to]| (*to - *from).length() > 2.5)
     }
 
     /// The first or last point, and the direction out of the line there.
@@ -108,16 +111,21 @@ pub(super) fn join(canvas: &Canvas<'_>, chains: Vec<Chain>) -> Vec<Chain> {
             let [[from, out], [to, other_out]] = [tips[a], tips[b]];
             let gap = to - from;
             let distance = gap.length();
-            if distance > longest || chains[a / 2].colors & chains[b / 2].colors == 0 || a / 2 == b / 2 && (chains[a / 2].marks.len() as f64) < 8.0 + 4.0 * distance {
+            if distance > longest
+                || chains[a / 2].colors & chains[b / 2].colors == 0
+                || a / 2 == b / 2 && (chains[a / 2].marks.len() as f64) < 8.0 + 4.0 * distance
+            {
                 continue;
             }
             let turn = (-out.dot(other_out)).clamp(-1.0, 1.0).acos();
             let aside = out.cross(gap).abs().max(other_out.cross(gap).abs());
             // Where columns give way to rows both have read the same stretch.
             let overlap = if chains[a / 2].marks[0].along == chains[b / 2].marks[0].along { 0.5 } else { longest };
-            let is_straight = turn < tuning::STROKE_STRAIGHT_TURN && out.dot(gap) > -overlap && aside < 1.0 + 0.25 * distance;
+            let is_straight =
+                turn < tuning::STROKE_STRAIGHT_TURN && out.dot(gap) > -overlap && aside < 1.0 + 0.25 * distance;
             let is_corner = distance < 3.5 && turn < 2.4 && out.dot(gap) > -1.5 && other_out.dot(gap) < 1.5;
-            let [leave, arrive] = [out.cross(gap).atan2(out.dot(gap)), gap.cross(-other_out).atan2(-gap.dot(other_out))];
+            let [leave, arrive] =
+                [out.cross(gap).atan2(out.dot(gap)), gap.cross(-other_out).atan2(-gap.dot(other_out))];
             let is_bend = distance > 3.5 && (leave - arrive).abs() < 0.35 && (leave + arrive).abs() < 1.3;
             if (is_straight || is_corner || is_bend) && is_covered(canvas, from, to) {
                 joints.push(Joint { cost: distance + 4.0 * turn + aside, ends: [a, b] });
@@ -178,7 +186,8 @@ pub(super) fn join(canvas: &Canvas<'_>, chains: Vec<Chain>) -> Vec<Chain> {
 /// Appends marks; those that go back behind where the line has come are left out.
 fn append<'a>(marks: &mut Vec<Mark>, more: impl Iterator<Item = &'a Mark>) {
     let n = marks.len();
-    let ahead = (n >= 2).then(|| (marks[n - 1].point, (marks[n - 1].point - marks[n - 2].point).normalized().unwrap_or_default()));
+    let ahead = (n >= 2)
+        .then(|| (marks[n - 1].point, (marks[n - 1].point - marks[n - 2].point).normalized().unwrap_or_default()));
     let mut is_ahead = false;
     for mark in more {
         is_ahead |= ahead.is_none_or(|(at, out)| {

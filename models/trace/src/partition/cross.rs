@@ -6,10 +6,10 @@ use alloc::vec::Vec;
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
+use super::Color;
 use super::flat::NONE;
 use super::mix::coverage;
 use super::palette::distance;
-use super::Color;
 use crate::tuning;
 
 /// The longest run, pixels: the widest line that is asked for at 45 degrees, and a mixed pixel on both sides.
@@ -94,7 +94,13 @@ impl Canvas<'_> {
     }
 
     /// Center and width of a line of color `line_color` in a window, pixels, and what is left, the most that a channel differs.
-    pub(super) fn measure(&self, along: Along, cross: &Cross, line_color: Color, palette: &[Color]) -> Option<[f64; 3]> {
+    pub(super) fn measure(
+        &self,
+        along: Along,
+        cross: &Cross,
+        line_color: Color,
+        palette: &[Color],
+    ) -> Option<[f64; 3]> {
         let sides = cross.sides.map(|side| palette[side as usize]);
         if sides.iter().any(|&side| distance(side, line_color) < tuning::LEAST_CONTRAST) {
             return None;
@@ -121,7 +127,13 @@ impl Canvas<'_> {
         })?;
         let mut worst = 0.0_f64;
         for (k, misfit) in misfits.iter().enumerate().take(count) {
-            worst = worst.max(if k < peak { misfit[0] } else if k > peak { misfit[1] } else { 0.0 });
+            worst = worst.max(if k < peak {
+                misfit[0]
+            } else if k > peak {
+                misfit[1]
+            } else {
+                0.0
+            });
         }
         let middle = self.peak(self.color(along, cross.line, from + peak), sides, line_color);
         worst = worst.max(middle[2]);
@@ -131,7 +143,8 @@ impl Canvas<'_> {
         // The edges: full pixels between them, or, if the line is nowhere full, the middle of what is covered.
         let place = from as f64 + peak as f64;
         let center = if sides[0] == sides[1] {
-            let centroid = (0..count).map(|k| shares[k][0] * (k as f64 + 0.5)).sum::<f64>() / width.max(1e-9) + from as f64;
+            let centroid =
+                (0..count).map(|k| shares[k][0] * (k as f64 + 0.5)).sum::<f64>() / width.max(1e-9) + from as f64;
             let covered = shares[..count].iter().filter(|share| share[0] > 0.03).count();
             if covered == 2 && (before > 0.03 || after > 0.03) && width > 0.7 {
                 // Both pixels beside a crack: what is covered begins and ends in them.
@@ -145,7 +158,13 @@ impl Canvas<'_> {
             }
         } else {
             // What of the peak is the first side's comes first.
-            let first = if before > 0.03 { 0.0 } else if after > 0.03 { 1.0 - middle[0] } else { middle[1] };
+            let first = if before > 0.03 {
+                0.0
+            } else if after > 0.03 {
+                1.0 - middle[0]
+            } else {
+                middle[1]
+            };
             place + first - before + 0.5 * width
         };
         Some([center, width, worst])

@@ -117,7 +117,12 @@ impl Eraser<'_> {
         loop {
             let near = |i: usize| {
                 let (x, y) = (i % width, i / width);
-                let beside = [(x > 0).then(|| i - 1), (x + 1 < width).then_some(i + 1), (y > 0).then(|| i - width), (y + 1 < height).then_some(i + width)];
+                let beside = [
+                    (x > 0).then(|| i - 1),
+                    (x + 1 < width).then_some(i + 1),
+                    (y > 0).then(|| i - width),
+                    (y + 1 < height).then_some(i + width),
+                ];
                 beside.into_iter().flatten().find(|&j| self.known[j])
             };
             let filled: Vec<(usize, usize)> = holes.iter().filter_map(|&i| Some((i, near(i)?))).collect();

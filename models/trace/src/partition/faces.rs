@@ -8,9 +8,9 @@ use num_traits::Float as _;
 
 use dvp_core::geometry::DisjointSets;
 
+use super::Partition;
 use super::flat::{NONE, index};
 use super::mix::{Mixed, best_mixture};
-use super::Partition;
 use crate::tuning;
 
 /// A connected part of the picture of one color.
@@ -43,7 +43,8 @@ fn partition(size: [usize; 2], pixels: Vec<[f32; 3]>, mixed: Mixed, labels: Vec<
     let Mixed { shares, palette, unexplained, noise, .. } = mixed;
     let lines = Vec::new();
     let [width, _] = size;
-    let is_edge = |&i: &usize| i % width > 0 && labels[i - 1] != labels[i] || i >= width && labels[i - width] != labels[i];
+    let is_edge =
+        |&i: &usize| i % width > 0 && labels[i - 1] != labels[i] || i >= width && labels[i - width] != labels[i];
     let is_mixed = |&i: &usize| {
         let before = [Some(i), i.checked_sub(1), i.checked_sub(width)];
         before.into_iter().flatten().any(|j| shares[j] < tuning::PURE_SHARE)
@@ -51,7 +52,19 @@ fn partition(size: [usize; 2], pixels: Vec<[f32; 3]>, mixed: Mixed, labels: Vec<
     let edges = (0..labels.len()).filter(is_edge).count();
     let mixed = (0..labels.len()).filter(is_edge).filter(is_mixed).count();
     let is_hard = (mixed as f64) < tuning::MOST_HARD * edges as f64;
-    Partition { size, pixels, labels, shares, faces, lines, palette, coded: false, mix_noise: noise, is_hard, unexplained }
+    Partition {
+        size,
+        pixels,
+        labels,
+        shares,
+        faces,
+        lines,
+        palette,
+        coded: false,
+        mix_noise: noise,
+        is_hard,
+        unexplained,
+    }
 }
 
 /// Whether, of four pixels around a corner whose diagonals are of two colors, the diagonal from upper left to lower right is
@@ -136,7 +149,9 @@ fn remove_specks(size: [usize; 2], pixels: &[[f32; 3]], mixed: &mut Mixed, label
         let mixtures: Option<Vec<_>> =
             speck.iter().map(|&i| best_mixture(pixels[i].map(f64::from), &around, &mixed.palette)).collect();
         let bits = |misfit: f64| 1.5 * core::f64::consts::LOG2_E * (misfit / mixed.noise).powi(2);
-        let mixtures = mixtures.filter(|mixtures| is_lost || mixtures.iter().map(|mixture| bits(mixture.misfit)).sum::<f64>() < tuning::SPECK_BITS);
+        let mixtures = mixtures.filter(|mixtures| {
+            is_lost || mixtures.iter().map(|mixture| bits(mixture.misfit)).sum::<f64>() < tuning::SPECK_BITS
+        });
         if let Some(mixtures) = mixtures {
             for (&i, mixture) in speck.iter().zip(mixtures) {
                 mixed.colors[i] = mixture.color;
@@ -161,9 +176,10 @@ fn colors_around(
     for &i in speck {
         let (x, y) = (i % width, i / width);
         for row in y.saturating_sub(reach)..(y + reach + 1).min(height) {
-            for j in (row * width + x.saturating_sub(reach))..(row * width + (x + reach + 1).min(width)) {
-                if wanted(labels[j] as usize) && !around.contains(&mixed.colors[j]) {
-                    around.push(mixed.colors[j]);
+            let range = (row * width + x.saturating_sub(reach))..(row * width + (x + reach + 1).min(width));
+            for (&label, color) in labels[range.clone()].iter().zip(&mixed.colors[range]) {
+                if wanted(label as usize) && !around.contains(color) {
+                    around.push(*color);
                 }
             }
         }

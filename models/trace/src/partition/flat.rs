@@ -70,7 +70,8 @@ fn ranges(pixels: &[[f32; 3]], [width, height]: [usize; 2]) -> impl Iterator<Ite
     blocks.map(move |i| {
         let four = [pixels[i], pixels[i + 1], pixels[i + width], pixels[i + width + 1]];
         let range = |c: usize| {
-            let [low, high] = four.iter().fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], p| [low.min(p[c]), high.max(p[c])]);
+            let [low, high] =
+                four.iter().fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], p| [low.min(p[c]), high.max(p[c])]);
             high - low
         };
         (i, range(0).max(range(1)).max(range(2)))

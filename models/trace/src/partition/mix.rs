@@ -6,9 +6,9 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
+use super::Color;
 use super::flat::{Flats, NONE, Noise};
 use super::palette::{Palette, distance};
-use super::Color;
 use crate::tuning;
 
 /// The main color of every pixel.
@@ -37,13 +37,7 @@ pub(super) struct Mixture {
 /// How far (pixels) from a mixed pixel the colors that it is made of are looked for.
 const REACH: usize = 2;
 
-pub(super) fn explain(
-    pixels: &[[f32; 3]],
-    size: [usize; 2],
-    flats: &Flats,
-    palette: Palette,
-    noise: &Noise,
-) -> Mixed {
+pub(super) fn explain(pixels: &[[f32; 3]], size: [usize; 2], flats: &Flats, palette: Palette, noise: &Noise) -> Mixed {
     let of_region: Vec<u16> = palette.of_region.iter().map(|&color| narrow(color)).collect();
     let mut mixed = Mixed {
         colors: vec![u16::MAX; pixels.len()],
@@ -87,13 +81,7 @@ impl Mixed {
     }
 
     /// Explains the pixels of `open` as mixtures of a color nearby and any other, new ones included; what is left stays in `open`.
-    fn explain_thin(
-        &mut self,
-        pixels: &[[f32; 3]],
-        size: [usize; 2],
-        flat_colors: &[u16],
-        open: &mut Vec<usize>,
-    ) {
+    fn explain_thin(&mut self, pixels: &[[f32; 3]], size: [usize; 2], flat_colors: &[u16], open: &mut Vec<usize>) {
         let mut near = Vec::new();
         let mut tried_from = 0;
         let mut given_up = Vec::new();
@@ -123,7 +111,8 @@ impl Mixed {
                     continue;
                 }
                 left.push(i);
-                let away = bases.iter().map(|&k| distance(self.palette[k as usize], pixel)).fold(f64::INFINITY, f64::min);
+                let away =
+                    bases.iter().map(|&k| distance(self.palette[k as usize], pixel)).fold(f64::INFINITY, f64::min);
                 if extreme.is_none_or(|(most, _)| away > most) {
                     extreme = Some((away, i));
                 }
@@ -239,11 +228,18 @@ impl Near {
 }
 
 /// The pixels that no mixture of flat colors nearby explains.
-pub(super) fn open(pixels: &[[f32; 3]], size: [usize; 2], flat_colors: &[u16], palette: &[Color], noise: f64) -> Vec<bool> {
+pub(super) fn open(
+    pixels: &[[f32; 3]],
+    size: [usize; 2],
+    flat_colors: &[u16],
+    palette: &[Color],
+    noise: f64,
+) -> Vec<bool> {
     let mut near = Near::default();
     let is_open = |(i, pixel): (usize, &[f32; 3])| {
         flat_colors[i] == u16::MAX
-            && best_mixture(pixel.map(f64::from), near.around(flat_colors, size, i), palette).is_none_or(|best| best.misfit > noise)
+            && best_mixture(pixel.map(f64::from), near.around(flat_colors, size, i), palette)
+                .is_none_or(|best| best.misfit > noise)
     };
     pixels.iter().enumerate().map(is_open).collect()
 }

@@ -12,7 +12,14 @@ use crate::tuning;
 const BEHIND: usize = 3;
 
 /// Mends the pixels of `open` that are seams; they are open no more.
-pub(super) fn mend(pixels: &mut [[f32; 3]], size: [usize; 2], flat: &[u16], open: &mut [bool], palette: &[Color], noise: f64) {
+pub(super) fn mend(
+    pixels: &mut [[f32; 3]],
+    size: [usize; 2],
+    flat: &[u16],
+    open: &mut [bool],
+    palette: &[Color],
+    noise: f64,
+) {
     let mut near = Near::default();
     for i in 0..pixels.len() {
         if !open[i] {
@@ -25,7 +32,9 @@ pub(super) fn mend(pixels: &mut [[f32; 3]], size: [usize; 2], flat: &[u16], open
             for &b in &colors[..k] {
                 for behind in (0..palette.len().min(BEHIND) as u16).filter(|&behind| behind != a && behind != b) {
                     for [front, other] in [[a, b], [b, a]].map(|pair| pair.map(|color| palette[color as usize])) {
-                        let Some((share, misfit)) = seam(pixel, front, other, palette[behind as usize]) else { continue };
+                        let Some((share, misfit)) = seam(pixel, front, other, palette[behind as usize]) else {
+                            continue;
+                        };
                         if misfit < best.0 {
                             best = (misfit, Some((front, other, share)));
                         }

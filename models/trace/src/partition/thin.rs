@@ -1,7 +1,6 @@
 //! Lines thinner than two pixels: found across, chained along, and taken out of the picture, so that what they lie on meets in
 //! their middle as if they were not there.
 
-
 use alloc::collections::BTreeMap;
 use alloc::vec::Vec;
 
@@ -10,11 +9,11 @@ use num_traits::Float as _;
 
 use dvp_core::Vec2;
 
+use super::Color;
 use super::chain::{Chain, join};
 use super::cross::{Along, Canvas, Cross};
 use super::mix::coverage;
 use super::palette::distance;
-use super::Color;
 use crate::stroke::{ThinChain, ThinSample};
 use crate::tuning;
 
@@ -110,10 +109,15 @@ pub(super) fn crossing_lines(lines: Vec<(ThinLine, Chain)>) -> Vec<(ThinLine, Ch
     let is_of_pen = |chain: &Chain| pens.iter().any(|width| (width - chain.width).abs() <= 0.05 * width);
     // What lies on something cuts it in two.
     let is_on = |chain: &Chain| {
-        let marks = chain.marks.iter().filter(|mark| mark.cross.sides[0] == mark.cross.sides[1] && mark.cross.sides[0] != 0);
+        let marks =
+            chain.marks.iter().filter(|mark| mark.cross.sides[0] == mark.cross.sides[1] && mark.cross.sides[0] != 0);
         5 * marks.count() > 4 * chain.marks.len()
     };
-    lines.into_iter().zip(keep).filter_map(|(line, keep)| (keep || is_of_pen(&line.1) || is_on(&line.1)).then_some(line)).collect()
+    lines
+        .into_iter()
+        .zip(keep)
+        .filter_map(|(line, keep)| (keep || is_of_pen(&line.1) || is_on(&line.1)).then_some(line))
+        .collect()
 }
 
 /// Says of every window which colors a line across it may have; the colors, new ones last.
@@ -135,13 +139,16 @@ fn color(canvas: &Canvas<'_>, crosses: &mut [Vec<Vec<Cross>>; 2], palette: &[Col
             }
         }
     }
-    let opens: Vec<Color> = (0..canvas.pixels.len()).filter(|&i| canvas.open[i]).map(|i| canvas.pixels[i].map(f64::from)).collect();
+    let opens: Vec<Color> =
+        (0..canvas.pixels.len()).filter(|&i| canvas.open[i]).map(|i| canvas.pixels[i].map(f64::from)).collect();
     for _ in 0..MOST_TRIES {
         if rest.len() < tuning::THIN_LEAST_LENGTH || colors.len() == 128 {
             break;
         }
         let bin = modal(rest.iter().map(|&(.., extreme)| extreme));
-        let Some(&(away, _, ref cross, extreme)) = rest.iter().find(|&&(.., extreme)| bin_of(extreme) == bin) else { break };
+        let Some(&(away, _, ref cross, extreme)) = rest.iter().find(|&&(.., extreme)| bin_of(extreme) == bin) else {
+            break;
+        };
         let sides = cross.sides.map(|side| palette[side as usize]);
         let side = if distance(sides[0], extreme) <= distance(sides[1], extreme) { sides[0] } else { sides[1] };
         let seen = rest.iter().map(|&(.., extreme)| extreme);
@@ -150,10 +157,18 @@ fn color(canvas: &Canvas<'_>, crosses: &mut [Vec<Vec<Cross>>; 2], palette: &[Col
         // Where lines of one color cross they are darker: what is no darker elsewhere is nowhere full.
         let is_more = coverage(darkest, side, own) > 1.15;
         let candidates = [if is_more { beyond(side, darkest) } else { own }, [0.0; 3], [1.0; 3]];
-        let explains = |color: Color| rest.iter().filter(|(_, along, cross, _)| fits(canvas, *along, cross, color, palette)).count();
+        let explains = |color: Color| {
+            rest.iter().filter(|(_, along, cross, _)| fits(canvas, *along, cross, color, palette)).count()
+        };
         let counts = candidates.map(explains);
         let margin = counts[0] + tuning::THIN_LEAST_LENGTH.max(counts[0] / 4);
-        let best = if counts[1].max(counts[2]) < margin { 0 } else if counts[1] >= counts[2] { 1 } else { 2 };
+        let best = if counts[1].max(counts[2]) < margin {
+            0
+        } else if counts[1] >= counts[2] {
+            1
+        } else {
+            2
+        };
         if away < tuning::LEAST_CONTRAST || counts[best] < tuning::THIN_LEAST_LENGTH {
             rest.retain(|&(.., extreme)| bin_of(extreme) != bin);
             continue;
@@ -204,9 +219,9 @@ fn beyond(side: Color, seen: Color) -> Color {
 }
 
 fn fits(canvas: &Canvas<'_>, along: Along, cross: &Cross, color: Color, palette: &[Color]) -> bool {
-    canvas.measure(along, cross, color, palette).is_some_and(|[_, width, misfit]| {
-        misfit <= canvas.noise && width <= canvas.widest * core::f64::consts::SQRT_2
-    })
+    canvas
+        .measure(along, cross, color, palette)
+        .is_some_and(|[_, width, misfit]| misfit <= canvas.noise && width <= canvas.widest * core::f64::consts::SQRT_2)
 }
 
 /// Chains of windows side by side with a color in common.
@@ -288,7 +303,8 @@ fn constant(chain: &mut Chain, widest: f64) -> Option<ThinChain> {
     let tolerance = tuning::THIN_TOLERANCE * width + 0.08;
     let off = widths.iter().filter(|&&one| (one - width).abs() > tolerance).count();
     let thirds = [median(&widths[..n.div_ceil(3)]), median(&widths[n - n.div_ceil(3)..])];
-    if !(0.08..=widest).contains(&width) || off * 5 > n || thirds.iter().any(|third| (third - width).abs() > tolerance) {
+    if !(0.08..=widest).contains(&width) || off * 5 > n || thirds.iter().any(|third| (third - width).abs() > tolerance)
+    {
         return None;
     }
     // Ends that are covered in part say how much further the line goes.
@@ -317,4 +333,3 @@ fn constant(chain: &mut Chain, widest: f64) -> Option<ThinChain> {
 fn sigma(width: f64) -> f64 {
     tuning::THIN_SIGMA + 0.25 * (1.0 - width).max(0.0)
 }
-

@@ -47,7 +47,8 @@ pub fn fit_thin(chain: &ThinChain, ruler: &Ruler) -> Option<Stroke<f64>> {
     let mut samples: Vec<_> =
         thin.iter().map(|thin| Sample { point: thin.point, axis: thin.axis, sigma: thin.sigma }).collect();
     let mut ring = if chain.is_closed {
-        let area: f64 = (0..samples.len()).map(|k| samples[k].point.cross(samples[(k + 1) % samples.len()].point)).sum();
+        let area: f64 =
+            (0..samples.len()).map(|k| samples[k].point.cross(samples[(k + 1) % samples.len()].point)).sum();
         if area < 0.0 {
             samples.reverse();
         }

@@ -23,7 +23,9 @@ fn drawing(forms: Vec<Form>) -> Layers {
 }
 
 fn filled(shapes: Vec<OutlineShape>) -> Form {
-    Form::Filled(shapes.into_iter().map(|shape| Outline { shape, bits: 0.0, misfit: 0.0, deviations: Vec::new() }).collect())
+    Form::Filled(
+        shapes.into_iter().map(|shape| Outline { shape, bits: 0.0, misfit: 0.0, deviations: Vec::new() }).collect(),
+    )
 }
 
 fn rectangle(sides: [f64; 4]) -> OutlineShape {

@@ -7,9 +7,9 @@ use std::path::PathBuf;
 
 use anyhow::{Result, bail};
 use clap::ValueEnum;
-use dvp_core::{Real as _, Scene};
 use dvp_core::loss::{ImagePair, Loss as _};
 use dvp_core::render::PixelLoss;
+use dvp_core::{Real as _, Scene};
 use dvp_fit::opt_iter::OptIter;
 use dvp_fit::refine::{Refine, RefineScratch};
 use dvp_fit::{Ambiguity, Bank, Fit, FitOptions, FitScratch, Fitter, StopReason};
@@ -182,7 +182,9 @@ fn doubt_of_poses(deviations: &[Option<PoseDeviation>]) -> (Vec<[f32; 16]>, Vec<
     }
     let mut ambiguity = Vec::new();
     let covariance = deviations.iter().enumerate().map(|(object, deviation)| {
-        let Some(PoseDeviation { translation: [x, y], log_scale, rotation }) = *deviation else { return [f32::NAN; 16] };
+        let Some(PoseDeviation { translation: [x, y], log_scale, rotation }) = *deviation else {
+            return [f32::NAN; 16];
+        };
         if rotation.is_none() {
             ambiguity.push(Ambiguity::Symmetry { object, order: 0 });
         }

@@ -14,7 +14,9 @@ pub(super) fn figure(pieces: &[Piece<f64>]) -> Option<Element> {
 }
 
 fn circle(pieces: &[Piece<f64>]) -> Option<Element> {
-    let [Piece::Arc { from, to, bulge }, Piece::Arc { from: back, to: end, bulge: other }] = *pieces else { return None };
+    let [Piece::Arc { from, to, bulge }, Piece::Arc { from: back, to: end, bulge: other }] = *pieces else {
+        return None;
+    };
     let is_whole = (end - from).length() < TOLERANCE && (back - to).length() < TOLERANCE;
     let is_half = |bulge: f64| (bulge.abs() - 1.0).abs() < 1e-9;
     if !is_whole || !is_half(bulge) || !is_half(other) || bulge * other < 0.0 {
@@ -36,7 +38,9 @@ fn rectangle(pieces: &[Piece<f64>]) -> Option<Element> {
     let (mut sides, mut turn) = (0, 0.0_f64);
     for piece in pieces {
         match *piece {
-            Piece::Line { from, to } if (to.x - from.x).abs() < TOLERANCE || (to.y - from.y).abs() < TOLERANCE => sides += 1,
+            Piece::Line { from, to } if (to.x - from.x).abs() < TOLERANCE || (to.y - from.y).abs() < TOLERANCE => {
+                sides += 1
+            }
             Piece::Arc { from, to, bulge } if (bulge.abs() - quarter).abs() < 1e-6 => {
                 let span = to - from;
                 if (span.x.abs() - span.y.abs()).abs() > TOLERANCE {

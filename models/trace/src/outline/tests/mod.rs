@@ -95,7 +95,12 @@ fn lines_of_an_arrow_come_back_with_sharp_corners() {
     assert_corners(&found, &arrow, 0.03);
     // Five of its sides lie along the axes, to the last bit.
     let next = found.points.iter().cycle().skip(1);
-    let straight = found.points.iter().zip(next).filter(|(a, b)| (0..2).any(|axis| a[axis].to_bits() == b[axis].to_bits())).count();
+    let straight = found
+        .points
+        .iter()
+        .zip(next)
+        .filter(|(a, b)| (0..2).any(|axis| a[axis].to_bits() == b[axis].to_bits()))
+        .count();
     assert_eq!(straight, 5);
 }
 
