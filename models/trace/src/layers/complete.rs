@@ -101,13 +101,21 @@ impl Completion<'_> {
             }
         };
         let wanted = |label: u32| self.wanted(label, group, rank);
-        for policy in [Policy::Free, Policy::Border, Policy::Pinned] {
+        // A face without a flat pixel is too small to tell how it goes on.
+        let is_small = group.iter().all(|&face| self.partition.faces[face as usize].flat == 0);
+        let policies = [Policy::Free, Policy::Border, Policy::Pinned];
+        let mut tried: Vec<RingSamples> = Vec::new();
+        for &policy in if is_small { &policies[2..] } else { &policies[..] } {
             let hidden = |step: &Step| self.hidden(step, group, rank);
             // A hole that is filled by what lies in front of it is none.
             let is_ring = |ring: &&Ring| ring.area > 0.0 || ring.steps.iter().any(|step| hidden(step).is_none());
             let needed = |step: &Step| hidden(step).and_then(|hidden| policy.of(step, hidden));
             let samples: Vec<RingSamples> =
                 rings.iter().filter(is_ring).map(|ring| visible::samples(ring, needed)).collect();
+            if samples == tried {
+                continue;
+            }
+            tried.clone_from(&samples);
             // What is not hidden has no boundary but its own.
             let is_seen = |at: Vec2<f64>| self.pure_face(at).is_some_and(|face| wanted(face).is_some());
             let ways = [link::relinked(&samples, is_seen), Some(samples)];
@@ -120,8 +128,12 @@ impl Completion<'_> {
             return Completed::new(Vec::new(), false);
         }
         // Nothing is completed: all around what is seen.
-        let seen: Vec<Outline> =
-            rings.iter().filter_map(|ring| fit_closed(&visible::samples(ring, |_| None), &self.ruler)).collect();
+        let around: Vec<RingSamples> = rings.iter().map(|ring| visible::samples(ring, |_| None)).collect();
+        let seen: Vec<Outline> = if around == tried {
+            Vec::new()
+        } else {
+            around.iter().filter_map(|ring| fit_closed(ring, &self.ruler)).collect()
+        };
         if self.agrees(&seen, wanted) {
             return Completed::new(seen, true);
         }

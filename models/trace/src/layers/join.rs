@@ -135,7 +135,8 @@ fn candidates(completion: &Completion<'_>) -> Vec<Vec<u32>> {
         neighbors.dedup();
         let is_in_front = |other: &u32| completion.rank(*other) > completion.rank(face);
         painted.push(face);
-        if completion.pens[face as usize].is_some() {
+        // A face without a flat pixel is too small to tell what it is a part of.
+        if completion.pens[face as usize].is_some() || partition.faces[face as usize].flat == 0 {
             continue;
         }
         for front in neighbors.into_iter().filter(is_in_front) {
