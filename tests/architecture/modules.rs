@@ -1,5 +1,5 @@
 //! Inside crates. Core: `real, dims, simd, optim -> geometry, diff_op -> tensor, image -> contour -> shape -> scene -> render, matching -> loss
-//! -> metric`. Trace: `tuning -> ruler, sample, partition -> boundary, outline -> stroke -> layers -> ties -> scene`.
+//! -> metric`. Trace: `tuning -> ruler, sample -> outline -> stroke -> partition -> boundary -> layers -> ties -> scene`.
 
 use crate::source::{code_lines, rust_sources};
 
@@ -21,12 +21,15 @@ const CORE: Order = &[
 
 const TRACE: Order = &[
     &["tuning"],
-    &["ruler", "sample", "partition"],
-    &["boundary", "outline"],
+    &["ruler", "sample"],
+    &["outline"],
     &["stroke"],
+    &["partition"],
+    &["boundary"],
     &["layers"],
     &["ties"],
     &["scene"],
+    &["tests"],
 ];
 
 fn row(order: Order, module: &str) -> Option<usize> {

@@ -87,7 +87,7 @@ fn one_run_writes_every_file_and_all_of_them_agree() {
     picture().save(&path).unwrap();
     let every = ["--scale", "0.5mm/px", "--harmonics", "8", "--labels", "--whole", "--roi", "--geojson"];
     let files = ["--table", text(&table), "--efd", text(&efd), "--coco", text(&coco)];
-    dvp_done(["fit", text(&path), "--out", text(&out)].into_iter().chain(every).chain(files));
+    dvp_done(["fit", text(&path), "--out", text(&out), "--compositing", "over"].into_iter().chain(every).chain(files));
     let written = ["geojson", "json", "labels.png", "png", "rois.zip", "svg", "whole.png"];
     assert_eq!(names(&out), written.map(|ending| format!("boxes.{ending}")));
 

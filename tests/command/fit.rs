@@ -119,7 +119,8 @@ fn what_is_hidden_and_marginal_gains_are_said() {
     let image = dvp_core::Image::from_planar(image.size(), values).unwrap();
     let (picture, out) = (folder.path().join("half.png"), folder.path().join("out"));
     fs::write(&picture, encode_png(image.view(), BitDepth::Eight).unwrap()).unwrap();
-    let arguments = ["fit", text(&picture), "--out", text(&out)];
+    // A compositing that is told asks for segments, which say what completed them.
+    let arguments = ["fit", text(&picture), "--out", text(&out), "--compositing", "over"];
     let said: Value = serde_json::from_str(&dvp_done(arguments.into_iter().chain(["--json"]))).unwrap();
     let found = &said["images"][0];
     let known = found["known"].as_array().unwrap();

@@ -70,7 +70,10 @@ impl<T: Real> Fit<T> {
     pub fn doubts(&self) -> Doubts {
         let is_wide = |(block, object): (&[T; 16], &Object<T>)| {
             let [x, y, size] = [0, 5, 10].map(|k| block[k].as_f64().max(0.0));
-            x.max(y) > WIDE_POSITION * WIDE_POSITION * squared_radius(object) || size > WIDE_SIZE * WIDE_SIZE
+            let radius = squared_radius(object);
+            // Only descriptors tell a radius here.
+            let is_loose = radius > 0.0 && x.max(y) > WIDE_POSITION * WIDE_POSITION * radius;
+            is_loose || size > WIDE_SIZE * WIDE_SIZE
         };
         let is_open = |ambiguity: &Ambiguity| !matches!(ambiguity, Ambiguity::Symmetry { .. });
         let is_faint = |object: &Object<T>| distance(object.color(), self.scene.background) < T::of(FAINT);

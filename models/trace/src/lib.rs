@@ -95,14 +95,14 @@ pub fn trace(image: &ImageView<'_, f32>, known: &Known) -> Result<Traced, NoDraw
     let partition = Partition::of(image, known.coded).map_err(NoDrawing::Partition)?;
     let rings = boundary::rings(&partition);
     // Coders of photographs stain what is beside an edge, whatever its profile is.
-    let stained = if partition.coded { 0.0 } else { boundary::stained(&partition, &rings).unwrap_or(0.0) };
+    let stained = if partition.coded { 0.0 } else { boundary::stained(&partition, &rings).unwrap_or(tuning::UNKNOWN_STAINED) };
     if stained > tuning::SOFT_STAINED {
         return Err(NoDrawing::Soft { stained });
     }
     let mut layers = layers::layers(&partition, &rings, known.matte.map(|matte| matte.map(f64::from)));
     let bits = layers.bits();
     ties::tie(&mut layers, partition.size);
-    let (scene, deviations) = scene::scene(&layers, image.size(), known.matte.is_some());
+    let (scene, deviations) = scene::scene(&layers, image.size(), known.matte.is_some(), partition.is_hard);
     Ok(Traced { scene, deviations, bits, stained })
 }
 

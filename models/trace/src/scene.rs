@@ -14,14 +14,16 @@ use dvp_core::{ImageSize, Object, Pose, Real as _, Scene};
 use crate::layers::{Form, Layer, Layers};
 use crate::outline::{Outline, OutlineShape};
 
-/// The scene that layers make of a picture of some size, and how far the poses of its objects may be off.
+/// The scene that layers make of a picture of some size, and how far the poses of its objects may be off. `is_hard`: no
+/// pixel of the picture is mixed.
 #[must_use]
-pub fn scene(layers: &Layers, size: ImageSize, transparent: bool) -> (Scene<f32>, Vec<Option<PoseDeviation>>) {
+pub fn scene(layers: &Layers, size: ImageSize, transparent: bool, is_hard: bool) -> (Scene<f32>, Vec<Option<PoseDeviation>>) {
     let unit = size.unit_px() as f64;
     let objects = layers.layers.iter().filter_map(|layer| Some((object(layer, unit)?, deviation(layer, unit))));
     let (objects, deviations) = objects.unzip();
     let background = layers.background.map(|value| f32::of(value.clamp(0.0, 1.0)));
-    (Scene { background, transparent, objects, edge: EdgeProfile::area(), compositing: Compositing::Over }, deviations)
+    let edge = if is_hard { EdgeProfile::hard(f32::of(unit)) } else { EdgeProfile::area() };
+    (Scene { background, transparent, objects, edge, compositing: Compositing::Over }, deviations)
 }
 
 /// How far the pose of an object may be off: standard deviations.
@@ -53,11 +55,12 @@ fn deviation(layer: &Layer, unit: f64) -> Option<PoseDeviation> {
 /// The object of a layer; none if it has no outline.
 fn object(layer: &Layer, unit: f64) -> Option<Object<f32>> {
     let (shape, pose) = match &layer.form {
+        Form::Stroked(stroke) if stroke.width.is_nan() || stroke.width <= 0.0 => return None,
         Form::Stroked(stroke) => stroked(stroke, unit),
         Form::Filled(outlines) => filled(outlines, unit)?,
     };
     let [x, y, rotation] = pose;
-    let pose = Pose { translation: [x / unit, y / unit].map(f32::of), scale: 1.0, rotation: f32::of(rotation) };
+    let pose = Pose { translation: [x / unit, y / unit].map(f32::of), scale: 1.0, rotation: f32::of(rotation % core::f64::consts::TAU) };
     let color = layer.color.map(|value| f32::of(value.clamp(0.0, 1.0)));
     Some(Object { shape: shape.cast(), pose, paint: color.into(), confidence: 1.0 })
 }

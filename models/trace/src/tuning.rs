@@ -171,3 +171,5 @@ pub const MOST_TURN: f64 = 1.5;
 pub const MOST_HARD: f64 = 0.05;
 /// Most faces of one color behind the same that are joined pair by pair: more take too long, and are all one thing or none.
 pub const MOST_PAIRED: usize = 5;
+/// Share of stained pixels that is supposed where no edge is long and straight enough to tell: what leaves a doubt.
+pub const UNKNOWN_STAINED: f64 = 0.1;

@@ -24,7 +24,7 @@ impl Palette {
         let mut of_region = vec![0; flats.means.len()];
         for region in order {
             let (mean, count) = flats.means[region];
-            let known = colors.iter().position(|(color, _)| distance(*color, mean) <= f64::from(noise.mixed));
+            let known = colors.iter().position(|(color, _)| distance(*color, mean) <= f64::from(noise.flat));
             of_region[region] = known.unwrap_or(colors.len());
             match known {
                 None if colors.len() == tuning::MOST_COLORS => return Err(NoPartition::TooManyColors),

@@ -27,6 +27,9 @@ const DOUBTFUL_EDGES: f64 = 0.04;
 /// Where edges leave a doubt segments are taken, whose edges are fitted, unless they miss the picture by so many times as much.
 const CLEARLY_WORSE: f32 = 2.0;
 
+/// In a coded picture, which tells nothing of its edges, segments are taken unless they miss it by so many times as much.
+const WORSE: f32 = 1.2;
+
 /// How a scene is found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub(super) enum Method {
@@ -166,11 +169,13 @@ impl Solver {
         let fit = Fit::of_painted(traced.scene, &drawing, &image, painted.data());
         let (covariance, ambiguity) = doubt_of_poses(&traced.deviations);
         let drawn = Fit { loss, bits: traced.bits, stop: StopReason::Converged, covariance, ambiguity, ..fit };
-        if traced.stained > DOUBTFUL_EDGES {
-            let segments = self.fitter.fit(image, &mut scratch.fit)?;
-            return Ok(if segments.loss < CLEARLY_WORSE * drawn.loss { segments } else { drawn });
-        }
-        Ok(drawn)
+        let clearly_worse = match (traced.stained > DOUBTFUL_EDGES, picture.coded) {
+            (true, _) => CLEARLY_WORSE,
+            (_, true) => WORSE,
+            _ => return Ok(drawn),
+        };
+        let segments = self.fitter.fit(image, &mut scratch.fit)?;
+        Ok(if segments.loss < clearly_worse * drawn.loss { segments } else { drawn })
     }
 }
 

@@ -170,7 +170,8 @@ fn stroke(stroke: &Stroke<f64>, pose: &Pose<f64>, reach: f64) -> Result<Element,
     };
     let boundary = placed(Path { rings: stroke.rings.clone(), fill: FillRule::EvenOdd }.boundary()?, pose);
     let whole = if stroke.rings.len() == 1 && stroke.rings[0].is_closed() { figure(&boundary.pieces) } else { None };
-    let element = whole.unwrap_or_else(|| Element::new("path").text("d", &lines(&boundary, &stroke.rings, false)));
+    let data = whole.is_none().then(|| lines(&boundary, &stroke.rings, false));
+    let element = whole.unwrap_or_else(|| Element::new("path"));
     let mut element = element.text("fill", "none").numbers(&[("stroke-width", width)]);
     for (name, value) in [("stroke-linecap", cap), ("stroke-linejoin", join)] {
         if let Some(value) = value {
@@ -179,6 +180,9 @@ fn stroke(stroke: &Stroke<f64>, pose: &Pose<f64>, reach: f64) -> Result<Element,
     }
     if let Some(limit) = limit {
         element = element.numbers(&[("stroke-miterlimit", limit)]);
+    }
+    if let Some(data) = data {
+        element = element.text("d", &data);
     }
     Ok(Element { is_stroke: true, ..element })
 }

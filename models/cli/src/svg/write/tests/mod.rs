@@ -85,7 +85,7 @@ fn corners_stay_and_straight_lines_are_lines() {
     let square = ring(&[[0.0, 0.0], [0.5, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.0, 0.5], [0.0, 0.0]]);
     let mut data = PathData::new(2);
     data.ring(&smooth(&square, 0.01), true);
-    assert_eq!(data.into_text(), "M0,0L1,0L1,1L0,1Z");
+    assert_eq!(data.into_text(), "M0,0H1V1H0Z");
     // Nothing to draw, but nothing to stumble over either.
     assert_eq!(smooth(&ring(&[[1.0, 1.0]; 5]), 0.01), []);
     assert_eq!(smooth(&[], 0.01), []);
@@ -160,7 +160,7 @@ fn corners_of_half_a_side_stay_round() {
 fn a_pen_that_fattens_follows_the_side_that_closes_a_path() {
     let ring = PathRing::polyline(vec![[0.2, 0.2], [0.8, 0.2], [0.8, 0.8]]);
     let shape = AnyShape::from(Path { rings: vec![ring.clone()], fill: FillRule::EvenOdd });
-    assert!(element(shape.clone(), 0.0).contains(" d=\"M70,45L130,45L130,105\""), "{}", element(shape.clone(), 0.0));
+    assert!(element(shape.clone(), 0.0).contains(" d=\"M70,45H130V105\""), "{}", element(shape.clone(), 0.0));
     let object = Object { shape, pose: Pose::identity(), paint: Paint::Flat([0.0; 3]), confidence: 1.0 };
     let scene = Scene { objects: vec![object], ..Scene::empty([1.0_f64; 3]) };
     let text = to_svg(&scene, ImageSize::new(100, 100).unwrap(), None).unwrap();
@@ -174,7 +174,7 @@ fn holes_are_subpaths() {
     assert!(one.contains("<polygon id=\"object-1\" fill-rule=\"evenodd\" points=\"50,25 80,25 50,55\""), "{one}");
     let two = element(Polygon { rings }, 0.0);
     assert!(
-        two.contains("fill-rule=\"evenodd\" d=\"M50,25L80,25L50,55ZM55,30L60,30L55,35Z\" class=\"polygon\""),
+        two.contains("fill-rule=\"evenodd\" d=\"M50,25H80L50,55ZM55,30H60L55,35Z\" class=\"polygon\""),
         "{two}"
     );
 }
