@@ -5,7 +5,7 @@
 use std::fs;
 use std::path::Path;
 
-use dvp::format::read_scene;
+use dvp::format::{ShapeJson, read_scene};
 use image::{ColorType, DynamicImage, ImageBuffer, Rgb, Rgba, RgbaImage};
 use serde_json::Value;
 
@@ -51,7 +51,8 @@ fn an_icon_of_any_color_on_nothing_is_found() {
         let off =
             object.color.iter().zip(color).map(|(found, true_color)| (found * 255.0 - f64::from(true_color)).abs());
         assert!(off.fold(0.0, f64::max) < 1.0, "{:?} in place of {color:?}", object.color);
-        assert!((object.scale * f64::from(SIDE) - 20.0).abs() < 0.1, "{}", object.scale);
+        let ShapeJson::Circle { radius } = object.shape else { panic!("{:?}", object.shape) };
+        assert!((object.scale * radius * f64::from(SIDE) - 20.0).abs() < 0.1, "{radius}");
     }
 }
 

@@ -95,7 +95,8 @@ pub fn trace(image: &ImageView<'_, f32>, known: &Known) -> Result<Traced, NoDraw
     let partition = Partition::of(image, known.coded).map_err(NoDrawing::Partition)?;
     let rings = boundary::rings(&partition);
     // Coders of photographs stain what is beside an edge, whatever its profile is.
-    let stained = if partition.coded { 0.0 } else { boundary::stained(&partition, &rings).unwrap_or(tuning::UNKNOWN_STAINED) };
+    let stained =
+        if partition.coded { 0.0 } else { boundary::stained(&partition, &rings).unwrap_or(tuning::UNKNOWN_STAINED) };
     if stained > tuning::SOFT_STAINED {
         return Err(NoDrawing::Soft { stained });
     }

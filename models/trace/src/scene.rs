@@ -17,7 +17,12 @@ use crate::outline::{Outline, OutlineShape};
 /// The scene that layers make of a picture of some size, and how far the poses of its objects may be off. `is_hard`: no
 /// pixel of the picture is mixed.
 #[must_use]
-pub fn scene(layers: &Layers, size: ImageSize, transparent: bool, is_hard: bool) -> (Scene<f32>, Vec<Option<PoseDeviation>>) {
+pub fn scene(
+    layers: &Layers,
+    size: ImageSize,
+    transparent: bool,
+    is_hard: bool,
+) -> (Scene<f32>, Vec<Option<PoseDeviation>>) {
     let unit = size.unit_px() as f64;
     let objects = layers.layers.iter().filter_map(|layer| Some((object(layer, unit)?, deviation(layer, unit))));
     let (objects, deviations) = objects.unzip();
@@ -60,7 +65,11 @@ fn object(layer: &Layer, unit: f64) -> Option<Object<f32>> {
         Form::Filled(outlines) => filled(outlines, unit)?,
     };
     let [x, y, rotation] = pose;
-    let pose = Pose { translation: [x / unit, y / unit].map(f32::of), scale: 1.0, rotation: f32::of(rotation % core::f64::consts::TAU) };
+    let pose = Pose {
+        translation: [x / unit, y / unit].map(f32::of),
+        scale: 1.0,
+        rotation: f32::of(rotation % core::f64::consts::TAU),
+    };
     let color = layer.color.map(|value| f32::of(value.clamp(0.0, 1.0)));
     Some(Object { shape: shape.cast(), pose, paint: color.into(), confidence: 1.0 })
 }

@@ -22,7 +22,7 @@ use crate::paint::{PaintScratch, Painter};
 
 /// Share of stained pixels beside edges from which on they may be other than those of a drawing (see [`dvp_trace::Traced`]): one picture of ten
 /// that the reference renderer painted has so few.
-const DOUBTFUL_EDGES: f64 = 0.04;
+const DOUBTFUL_EDGES: f64 = 0.02;
 
 /// Where edges leave a doubt segments are taken, whose edges are fitted, unless they miss the picture by so many times as much.
 const CLEARLY_WORSE: f32 = 2.0;

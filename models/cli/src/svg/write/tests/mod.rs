@@ -173,10 +173,7 @@ fn holes_are_subpaths() {
     let one = element(Polygon { rings: rings[..1].to_vec() }, 0.0);
     assert!(one.contains("<polygon id=\"object-1\" fill-rule=\"evenodd\" points=\"50,25 80,25 50,55\""), "{one}");
     let two = element(Polygon { rings }, 0.0);
-    assert!(
-        two.contains("fill-rule=\"evenodd\" d=\"M50,25H80L50,55ZM55,30H60L55,35Z\" class=\"polygon\""),
-        "{two}"
-    );
+    assert!(two.contains("fill-rule=\"evenodd\" d=\"M50,25H80L50,55ZM55,30H60L55,35Z\" class=\"polygon\""), "{two}");
 }
 
 #[test]
