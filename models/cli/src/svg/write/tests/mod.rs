@@ -164,7 +164,7 @@ fn a_pen_that_fattens_follows_the_side_that_closes_a_path() {
     let object = Object { shape, pose: Pose::identity(), paint: Paint::Flat([0.0; 3]), confidence: 1.0 };
     let scene = Scene { objects: vec![object], ..Scene::empty([1.0_f64; 3]) };
     let text = to_svg(&scene, ImageSize::new(100, 100).unwrap(), None).unwrap();
-    assert!(text.contains(" d=\"M20,20L80,20L80,80Z\"") && text.contains(" stroke=\"#000000\""), "{text}");
+    assert!(text.contains(" d=\"M20,20H80V80Z\"") && text.contains(" stroke=\"#000000\""), "{text}");
 }
 
 #[test]
