@@ -3,6 +3,9 @@
 //! A walk around what is seen goes from one stretch to the next along the layer in front. Behind that layer the boundary may go on
 //! otherwise: the outer circle of a ring that a bar crosses goes on to itself, and so does the inner one.
 
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
+
 use alloc::vec;
 use alloc::vec::Vec;
 

@@ -1,5 +1,8 @@
 //! Lines taken out of the picture: on both sides of their middle what lies beside them goes on.
 
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
+
 use alloc::vec::Vec;
 
 use dvp_core::Vec2;
