@@ -4,9 +4,6 @@
 use alloc::collections::BTreeMap;
 use alloc::vec::Vec;
 
-#[cfg(not(feature = "std"))]
-use num_traits::Float as _;
-
 use dvp_core::Vec2;
 
 use super::Color;
