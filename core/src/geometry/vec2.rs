@@ -75,11 +75,11 @@ impl<T: Real> Vec2<T> {
         self.dot(self)
     }
 
-    /// sqrt(x^2 + y^2), without overflow on the way.
+    /// sqrt(x^2 + y^2). Lengths beyond the square root of what T holds are infinite.
     #[inline(always)]
     #[must_use]
     pub fn length(self) -> T {
-        self.x.hypot(self.y)
+        self.length_squared().sqrt()
     }
 
     /// Radians from +x toward +y, in (-pi, pi]; 0 for the zero vector.

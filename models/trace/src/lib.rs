@@ -97,7 +97,7 @@ pub fn trace(image: &ImageView<'_, f32>, known: &Known) -> Result<Traced, NoDraw
     // Coders of photographs stain what is beside an edge, whatever its profile is.
     let stained =
         if partition.coded { 0.0 } else { boundary::stained(&partition, &rings).unwrap_or(tuning::UNKNOWN_STAINED) };
-    if stained > tuning::SOFT_STAINED {
+    if !partition.coded && !partition.is_hard && is_soft(stained, boundary::wobble(&rings).unwrap_or(0.0)) {
         return Err(NoDrawing::Soft { stained });
     }
     let mut layers = layers::layers(&partition, &rings, known.matte.map(|matte| matte.map(f64::from)));
@@ -105,6 +105,13 @@ pub fn trace(image: &ImageView<'_, f32>, known: &Known) -> Result<Traced, NoDraw
     ties::tie(&mut layers, partition.size);
     let (scene, deviations) = scene::scene(&layers, image.size(), known.matte.is_some(), partition.is_hard);
     Ok(Traced { scene, deviations, bits, stained })
+}
+
+/// Whether edges have another profile than area coverage: wider, or steeper with stains beyond, or much steeper.
+fn is_soft(stained: f64, wobble: f64) -> bool {
+    stained > tuning::SOFT_STAINED
+        || wobble < -tuning::STEEP_WOBBLE && stained > tuning::DOUBTFUL_STAINED
+        || wobble < -tuning::SURE_WOBBLE
 }
 
 impl core::fmt::Display for NoDrawing {

@@ -65,8 +65,10 @@ pub const ROUNDING: f64 = 0.29 / 255.0;
 pub const MOST_BEND: f64 = 0.5;
 /// Distance (pixels) within which the walks of three faces past one another are the same junction.
 pub const JUNCTION_SIZE: f64 = 4.0;
-/// Samples on either side of a junction that tell whether a boundary goes on through it.
-pub const JUNCTION_SAMPLES: usize = 8;
+/// Samples on either side of a junction that tell whether a boundary goes on through it: few, since a corner or a bend may be near, and more.
+pub const JUNCTION_SAMPLES: [usize; 2] = [5, 8];
+/// Distance (pixels) from a junction within which windows see all three faces.
+pub const JUNCTION_BLUR: f64 = 1.5;
 /// Standard deviation (pixels) of a boundary that goes on through a junction: what a parabola over 16 pixels cannot follow.
 pub const JUNCTION_SIGMA: f64 = 0.08;
 /// Most bits that one junction may speak for an order: one that is read wrongly must not outvote all others.
@@ -118,6 +120,13 @@ pub const LEAST_STAIN: f64 = 0.003;
 /// Share of stained pixels from which on edges are soft. Renderers of area coverage leave up to .27 (emoji with lines thinner than a pixel, of 210
 /// pictures), the reference renderer of the paper .32 and more on nine of ten pictures.
 pub const SOFT_STAINED: f64 = 0.3;
+/// Share of stained pixels from which on edges leave a doubt: a fifth of those of the least stained picture of the reference renderer at 128 pixels.
+pub const DOUBTFUL_STAINED: f64 = 0.02;
+/// Wobble (share of that of pixels that show what is at their center) from which on edges that leave a doubt are steeper than area coverage: half of
+/// what the reference renderer has at 128 pixels (.28, with a standard deviation of .04); drawings have .05 and, with a lattice of sub-pixels, .18.
+pub const STEEP_WOBBLE: f64 = 0.12;
+/// Wobble from which on no stain is needed: the reference renderer has .66 at 64 pixels, drawings .35 at most.
+pub const SURE_WOBBLE: f64 = 0.4;
 /// So many times as many blocks that differ a little as blocks that differ much make a picture a noisy one: 384 pictures of the paper's renderer
 /// have up to 1.1 times as many, noise of a standard deviation of .01 gives a hundred times.
 pub const NOISY_BLOCKS: usize = 2;
@@ -134,6 +143,9 @@ pub const CROSSING_WIDTH: f64 = 9.0;
 
 /// Fewest windows across a thin line, and fewest that make a color of its own of it.
 pub const THIN_LEAST_LENGTH: usize = 6;
+
+/// How often a color that only thin lines have is looked for.
+pub const THIN_TRIES: usize = 48;
 
 /// By how much the width of a thin line may differ from window to window, per width.
 pub const THIN_TOLERANCE: f64 = 0.2;
@@ -163,9 +175,6 @@ pub const PURE_SHARE: f32 = 0.9;
 /// Most pixels of a face without a flat one that may be a mixture of what lies further off than beside it: a wedge between two edges at
 /// a sharp angle ends in so many.
 pub const MOST_SPECK: usize = 6;
-/// Most turns of a boundary behind what hides it, in squared radians (bending of the smoothest way), for what is seen on both sides of one
-/// color to be one thing: an arc of 70 degrees.
-pub const MOST_TURN: f64 = 1.5;
 /// Share of the places along edges that may have mixed pixels in a picture of hard edges: upright ones on whole pixels have none either,
 /// but hardly a whole picture is made of them alone.
 pub const MOST_HARD: f64 = 0.05;
@@ -173,3 +182,18 @@ pub const MOST_HARD: f64 = 0.05;
 pub const MOST_PAIRED: usize = 5;
 /// Share of stained pixels that is supposed where no edge is long and straight enough to tell: what leaves a doubt.
 pub const UNKNOWN_STAINED: f64 = 0.1;
+/// Times that the order of all faces that meet is asked again.
+pub const MOST_ROUNDS: usize = 3;
+/// Bits that another order, or one thing in place of two, must save.
+pub const LEAST_SAVED: f64 = 1.0;
+/// Bits for a hidden stretch of a boundary that cannot go straight on: a corner, which may be about anywhere in it.
+pub const PINNED_BITS: f64 = 5.0;
+/// Most bits for faces lying to one another as others of their colors do: less than a junction that was read, more than [`ENCLOSED_VOTE`].
+pub const COLORS_VOTE: f64 = 8.0;
+/// Bits from which on a vote is not asked again.
+pub const CLEAR_VOTE: f64 = 7.0;
+/// So many times as many samples as all boundaries of a picture have, outlines may be fitted to before no other order of faces is tried any more,
+/// and again for groups of faces; the usual picture needs one to three times as many.
+pub const MOST_TRIED: usize = 4;
+/// The same for pictures with long boundaries, samples: a few tenths of a second.
+pub const MOST_TRIED_SAMPLES: usize = 10_000;

@@ -1,9 +1,14 @@
 //! Whether the edges of a picture are those of area coverage: a pixel shows of a color what it has of the area.
 //!
 //! Window sums are right for any profile, but a drawing with clear edges is only what the picture is if they are. Pictures that were blurred, or
-//! painted by renderers with a profile of their own, are not.
+//! painted by renderers with a profile of their own, are not. Two signs tell: [`stained`] pixels beyond the reach of area coverage, where edges are
+//! wide, and a [`wobble`] of the positions, where they are steeper than a pixel.
 
 use alloc::vec::Vec;
+use core::f64::consts::{PI, TAU};
+
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
 
 use dvp_core::Vec2;
 
@@ -14,14 +19,21 @@ use crate::tuning;
 
 /// Slope of the boundary against its window up to which it is compared.
 const MOST_SLOPE: f64 = 1.0;
+/// Residual (pixels) of five positions in a row from a straight line up to which there is no corner between them.
+const MOST_BENT: f64 = 0.4;
+/// Sum of squared fourth differences of the wave from which on edges tell of it: axis-parallel ones show it always at one place.
+const LEAST_WAVE: f64 = 14.0;
+/// A wobble of fewer standard errors is none.
+const SIGNIFICANT: f64 = 3.0;
 /// Cracks before and behind one among which its neighbors are looked for.
 const BESIDE: usize = 2;
 
-/// Share of the pixels just beyond the reach of straight boundaries that still show the color on the other side, less the share of
+/// Share of the pixels just beyond the reach of straight boundaries, and of the lines that were taken out, that still show the color on the other side, less the share of
 /// those that show less than none of it (coders of photographs ring to both sides); none if there are no such pixels.
 #[must_use]
 pub fn stained(partition: &Partition, rings: &[Vec<Ring>]) -> Option<f64> {
-    let [mut stained, mut count] = [0_i32; 2];
+    let of_lines = |k: usize| partition.lines.iter().map(|line| line.stained[k]).sum::<i32>();
+    let [mut stained, mut count] = [of_lines(0), of_lines(1)];
     for ring in rings.iter().flatten() {
         let n = ring.steps.len();
         for k in (0..n).filter(|_| n > 2 * BESIDE) {
@@ -39,6 +51,57 @@ pub fn stained(partition: &Partition, rings: &[Vec<Ring>]) -> Option<f64> {
         }
     }
     (count > 0).then(|| f64::from(stained) / f64::from(count))
+}
+
+/// By how much the positions along slanted edges wobble with the place of the edge between pixel centers: 0 for area coverage (and what was scaled
+/// down or blurred after it), down to about -1 for pixels that show what is at their center; none if no edge tells.
+///
+/// *Why*: a window sum is the convolution of the edge with its profile, sampled once per pixel. Area coverage is a box of one pixel, whose
+/// spectrum is zero at one wave per pixel, so its sums move evenly with the edge. A steeper profile leaves a part of that wave. Fourth differences of
+/// the positions, which neither slopes nor bends show in, are compared with those of the wave at full strength.
+#[must_use]
+pub fn wobble(rings: &[Vec<Ring>]) -> Option<f64> {
+    let [mut product, mut square] = [0.0; 2];
+    let mut pairs = Vec::new();
+    // The rings of both sides of a boundary tell the same.
+    let is_first = |step: &&Step| step.inner < step.other;
+    for ring in rings.iter().flatten() {
+        let samples: Vec<Sample> = ring.steps.iter().filter(is_first).filter_map(|step| step.sample).collect();
+        for five in samples.windows(5) {
+            let Some(at) = places(five) else { continue };
+            let wave = at.map(|at| (TAU * at).sin() / PI);
+            let (seen, full) = (fourth_difference(at), fourth_difference(wave));
+            product += full * seen;
+            square += full * full;
+            pairs.push((full, seen));
+        }
+    }
+    if square < LEAST_WAVE {
+        return None;
+    }
+    let wobble = product / square;
+    let doubt = pairs.iter().map(|(full, seen)| (full * (seen - wobble * full)).powi(2)).sum::<f64>().sqrt() / square;
+    (wobble.abs() > SIGNIFICANT * doubt).then_some(wobble)
+}
+
+/// Positions across five windows side by side; none if they are not, or the boundary has a corner there.
+fn places(five: &[Sample]) -> Option<[f64; 5]> {
+    let middle = five[2];
+    let along = middle.axis.perp();
+    let at: [f64; 5] = core::array::from_fn(|k| five[k].point.dot(middle.axis));
+    let step = (five[3].point - middle.point).dot(along);
+    let is_beside = |(k, other): (usize, &Sample)| {
+        other.axis == middle.axis && ((other.point - middle.point).dot(along) - (k as f64 - 2.0) * step).abs() < 0.01
+    };
+    let slope = 0.1 * (at[3] - at[1] + 2.0 * (at[4] - at[0]));
+    let mean = at.iter().sum::<f64>() / 5.0;
+    let is_straight = (0..5).all(|k| (at[k] - mean - slope * (k as f64 - 2.0)).abs() < MOST_BENT);
+    let is_row = (step.abs() - 1.0).abs() < 0.01 && five.iter().enumerate().all(is_beside);
+    (is_row && is_straight && slope.abs() <= MOST_SLOPE).then_some(at)
+}
+
+fn fourth_difference(at: [f64; 5]) -> f64 {
+    at[0] - 4.0 * at[1] + 6.0 * at[2] - 4.0 * at[3] + at[4]
 }
 
 /// Change of the position per pixel along a boundary that is straight over three windows of one axis.

@@ -1,20 +1,26 @@
 //! Outlines through what is seen of a layer, completed where others hide it.
 
+use alloc::collections::BTreeSet;
 use alloc::vec;
 use alloc::vec::Vec;
+use core::cell::Cell;
 
 use dvp_core::Vec2;
 use dvp_core::shape::{FillRule, Outline as Polygons, Path, PathRing, Shape as _};
 
+use super::order::Order;
 use super::visible::{self, Hidden};
 use super::{link, raster};
-use crate::boundary::{Ring, Step, walk_mask};
+use crate::boundary::{Ring, Step};
 use crate::outline::{Outline, OutlineShape, fit_closed};
 use crate::partition::{OUTSIDE, Partition};
 use crate::ruler::Ruler;
 use crate::sample::RingSamples;
 use crate::stroke::StrokeFit;
 use crate::tuning;
+
+/// Most pixels that are asked which stretch makes them wrong.
+const MOST_ASKED: usize = 32;
 
 /// What outlines follow from.
 pub(super) struct Completion<'a> {
@@ -23,33 +29,17 @@ pub(super) struct Completion<'a> {
     /// Place of every face in the order of painting; 0 of what is not painted.
     pub(super) rank: Vec<usize>,
     pub(super) pens: &'a [Option<StrokeFit>],
+    /// The faces that each face touches.
+    pub(super) neighbors: Vec<Vec<u32>>,
+    /// What speaks for the order.
+    pub(super) order: &'a Order,
     pub(super) ruler: Ruler,
-}
-
-/// Where a hidden outline may go.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Policy {
-    /// Anywhere, as long as it hides nothing.
-    Free,
-    /// Along the border of the picture; anywhere behind other layers.
-    Border,
-    /// Along the border and along the layers in front.
-    Pinned,
-}
-
-impl Policy {
-    /// What remains hidden of a step.
-    fn of(self, step: &Step, hidden: Hidden) -> Option<Hidden> {
-        let is_free = match self {
-            Self::Free => true,
-            Self::Border => step.other != OUTSIDE,
-            Self::Pinned => false,
-        };
-        (is_free || hidden != Hidden::Free).then_some(hidden)
-    }
+    /// Samples that outlines were fitted to.
+    pub(super) spent: Cell<usize>,
 }
 
 /// Outlines, and bits of their numbers and misfits.
+#[derive(Clone)]
 pub(super) struct Completed {
     pub(super) outlines: Vec<Outline>,
     pub(super) bits: f64,
@@ -61,7 +51,12 @@ impl Completed {
     /// Two layers as one that covers what both do.
     pub(super) fn with(&self, other: &Self) -> Self {
         let outlines = self.outlines.iter().chain(&other.outlines).cloned().collect();
-        Self::new(outlines, self.agrees && other.agrees)
+        Self { outlines, bits: self.bits + other.bits, agrees: self.agrees && other.agrees }
+    }
+
+    /// Whether it is a thing as people draw them.
+    pub(super) fn is_whole(&self) -> bool {
+        self.outlines.iter().all(|outline| !matches!(outline.shape, OutlineShape::Path(_)))
     }
 
     /// Nothing to complete.
@@ -81,6 +76,15 @@ impl Completion<'_> {
         self.rank[face as usize]
     }
 
+    /// The faces beside some faces that come to lie in front of them if they go where the hindmost of them is.
+    pub(super) fn crossed(&self, faces: &[u32]) -> BTreeSet<u32> {
+        let rank = self.hindmost(faces);
+        let beside =
+            faces.iter().flat_map(|&face| self.neighbors[face as usize].iter().map(move |&other| (face, other)));
+        let is_crossed = |&(face, other): &(u32, u32)| (rank + 1..self.rank(face)).contains(&self.rank(other));
+        beside.filter(is_crossed).map(|(_, other)| other).filter(|other| !faces.contains(other)).collect()
+    }
+
     /// Puts faces where the hindmost of them is.
     pub(super) fn sink(&mut self, faces: &[u32]) {
         let hindmost = self.hindmost(faces);
@@ -89,55 +93,70 @@ impl Completion<'_> {
         }
     }
 
+    /// The faces that are painted, from back to front.
+    pub(super) fn painted(&self) -> Vec<u32> {
+        let mut faces: Vec<u32> = (0..self.rank.len() as u32).filter(|&face| self.rank(face) > 0).collect();
+        faces.sort_by_key(|&face| self.rank(face));
+        faces
+    }
+
+    /// Whether so many outlines were fitted that no other order or group is tried any more.
+    pub(super) fn is_spent(&self) -> bool {
+        let steps: usize = self.rings.iter().flatten().map(|ring| ring.steps.len()).sum();
+        self.spent.get() > (tuning::MOST_TRIED * steps).min(tuning::MOST_TRIED_SAMPLES)
+    }
+
+    /// Faces are painted in this order.
+    pub(super) fn paint(&mut self, order: &[u32]) {
+        for (place, &face) in order.iter().enumerate() {
+            self.rank[face as usize] = place + 1;
+        }
+    }
+
     /// The outlines of faces that are painted together, at the place of the hindmost of them.
+    ///
+    /// What others hide may go anywhere, as long as it hides nothing itself: where it would, it goes along what hides it.
     pub(super) fn outlines(&self, group: &[u32]) -> Completed {
         let rank = self.hindmost(group);
-        let walked;
-        let rings: &[Ring] = match group {
-            [face] => &self.rings[*face as usize],
-            _ => {
-                walked = self.walk(group, rank);
-                &walked
-            }
-        };
         let wanted = |label: u32| self.wanted(label, group, rank);
         // A face without a flat pixel is too small to tell how it goes on.
-        let is_small = group.iter().all(|&face| self.partition.faces[face as usize].flat == 0);
-        let policies = [Policy::Free, Policy::Border, Policy::Pinned];
-        let mut tried: Vec<RingSamples> = Vec::new();
-        for &policy in if is_small { &policies[2..] } else { &policies[..] } {
-            let hidden = |step: &Step| self.hidden(step, group, rank);
+        let is_small = |face: u32| self.partition.faces[face as usize].flat == 0;
+        let parts = group.iter().flat_map(|&face| self.rings[face as usize].iter().map(move |ring| (face, ring)));
+        let mut walks: Vec<Walk<'_>> = parts
+            .map(|(face, ring)| {
+                let hidden =
+                    ring.steps.iter().map(|step| self.hidden(step, rank, is_small(face), group.len() > 1)).collect();
+                Walk { ring, hidden }
+            })
             // A hole that is filled by what lies in front of it is none.
-            let is_ring = |ring: &&Ring| ring.area > 0.0 || ring.steps.iter().any(|step| hidden(step).is_none());
-            let needed = |step: &Step| hidden(step).and_then(|hidden| policy.of(step, hidden));
-            let samples: Vec<RingSamples> =
-                rings.iter().filter(is_ring).map(|ring| visible::samples(ring, needed)).collect();
-            if samples == tried {
-                continue;
+            .filter(|walk| walk.ring.area > 0.0 || walk.hidden.contains(&None))
+            .collect();
+        // What is not hidden has no boundary but its own.
+        let is_seen = |at: Vec2<f64>| self.pure_face(at).is_some_and(|face| wanted(face).is_some());
+        let mut samples: Vec<RingSamples> = walks.iter().map(Walk::samples).collect();
+        let linked = link::relinked(&samples, is_seen).map(|samples| self.fit(&samples));
+        let linked = linked.filter(|linked| self.check(&linked.outlines, wanted).is_ok());
+        // What lies along others costs nothing there: it is they that have the boundary. But that it turns must be said.
+        let mut bits = None;
+        loop {
+            let walked = self.fit(&samples);
+            let free = *bits.get_or_insert(walked.bits);
+            match self.check(&walked.outlines, wanted) {
+                Ok(()) => {
+                    let walked = Completed { bits: walked.bits.min(free), ..walked };
+                    return linked.filter(|linked| linked.bits <= walked.bits).unwrap_or(walked);
+                }
+                Err(wrong) => {
+                    let pinned = pin(&mut walks, &wrong);
+                    if pinned == 0 {
+                        break;
+                    }
+                    bits = Some(free + tuning::PINNED_BITS * pinned as f64);
+                    samples = walks.iter().map(Walk::samples).collect();
+                }
             }
-            tried.clone_from(&samples);
-            // What is not hidden has no boundary but its own.
-            let is_seen = |at: Vec2<f64>| self.pure_face(at).is_some_and(|face| wanted(face).is_some());
-            let ways = [link::relinked(&samples, is_seen), Some(samples)];
-            let completed = ways.iter().flatten().filter_map(|samples| self.fit(samples, wanted));
-            if let Some(best) = completed.min_by(|a, b| a.bits.total_cmp(&b.bits)) {
-                return best;
-            }
         }
-        if group.len() > 1 {
-            return Completed::new(Vec::new(), false);
-        }
-        // Nothing is completed: all around what is seen.
-        let around: Vec<RingSamples> = rings.iter().map(|ring| visible::samples(ring, |_| None)).collect();
-        let seen: Vec<Outline> = if around == tried {
-            Vec::new()
-        } else {
-            around.iter().filter_map(|ring| fit_closed(ring, &self.ruler)).collect()
-        };
-        if self.agrees(&seen, wanted) {
-            return Completed::new(seen, true);
-        }
-        Completed::new(rings.iter().map(|ring| self.traced(ring)).collect(), false)
+        linked.unwrap_or_else(|| Completed::new(walks.iter().map(|walk| self.traced(walk.ring)).collect(), false))
     }
 
     /// Whether a layer of the faces `group` at place `rank` must show a face, must not hide it, or may (none).
@@ -151,29 +170,18 @@ impl Completion<'_> {
         let rank = self.hindmost(group);
         !completed.agrees
             || completed.outlines.is_empty()
-            || self.agrees(&completed.outlines, |face| self.wanted(face, group, rank))
-    }
-
-    /// Whether the boundary of some faces goes on smoothly as that of others, behind what lies in front of both.
-    pub(super) fn is_related(&self, parts: [&[u32]; 2]) -> bool {
-        let all: Vec<u32> = parts.concat();
-        let rank = self.hindmost(&all);
-        let samples = parts.map(|part| {
-            let rings = part.iter().flat_map(|&face| &self.rings[face as usize]);
-            rings.map(|ring| visible::samples(ring, |step| self.hidden(step, &all, rank))).collect::<Vec<_>>()
-        });
-        let is_seen = |at: Vec2<f64>| self.pure_face(at).is_some_and(|face| self.wanted(face, &all, rank).is_some());
-        link::relation([&samples[0], &samples[1]], is_seen).is_some_and(|price| price < tuning::MOST_TURN)
+            || self.check(&completed.outlines, |face| self.wanted(face, group, rank)).is_ok()
     }
 
     fn hindmost(&self, faces: &[u32]) -> usize {
         faces.iter().map(|&face| self.rank(face)).min().unwrap_or(0)
     }
 
-    /// The outlines through samples if they agree with what is seen.
-    fn fit(&self, samples: &[RingSamples], wanted: impl Fn(u32) -> Option<bool>) -> Option<Completed> {
-        let outlines: Vec<Outline> = samples.iter().filter_map(|samples| fit_closed(samples, &self.ruler)).collect();
-        self.agrees(&outlines, wanted).then(|| Completed::new(outlines, true))
+    /// The outlines through samples.
+    fn fit(&self, samples: &[RingSamples]) -> Completed {
+        let count: usize = samples.iter().flat_map(|ring| &ring.runs).map(Vec::len).sum();
+        self.spent.set(self.spent.get() + count);
+        Completed::new(samples.iter().filter_map(|samples| fit_closed(samples, &self.ruler)).collect(), true)
     }
 
     /// The face at a place if nothing else has a share there.
@@ -184,50 +192,26 @@ impl Completion<'_> {
     }
 
     /// How a step of a layer's boundary is hidden, if it is.
-    fn hidden(&self, step: &Step, group: &[u32], rank: usize) -> Option<Hidden> {
-        if step.other == OUTSIDE {
-            return Some(Hidden::Free);
-        }
-        let front = if !group.contains(&step.inner) {
-            step.inner
-        } else if self.rank(step.other) > rank {
-            step.other
-        } else {
+    fn hidden(&self, step: &Step, rank: usize, is_small: bool, is_part: bool) -> Option<Hidden> {
+        if step.other != OUTSIDE && self.rank(step.other) <= rank {
             return None;
-        };
-        let width = self.pens[front as usize].as_ref().and_then(|pen| pen.strokes.first()).map(|stroke| stroke.width);
-        // Seen from inside of the group the stroke lies outward, seen from outside inward.
-        let sign = if front == step.other { 1.0 } else { -1.0 };
-        Some(width.map_or(Hidden::Free, |width| Hidden::Under { shift: 0.5 * sign * width }))
+        }
+        let pen = self.pens.get(step.other as usize).and_then(Option::as_ref).and_then(|pen| pen.strokes.first());
+        match pen {
+            // What ends at a line ends under it, and what is seen on both sides of it goes on.
+            Some(stroke) if !is_part => Some(Hidden::Under { shift: 0.5 * stroke.width }),
+            _ => (!is_small).then_some(Hidden::Free),
+        }
     }
 
-    /// The rings around a group and what hides the gaps in it.
-    fn walk(&self, group: &[u32], rank: usize) -> Vec<Ring> {
-        let mut member = vec![false; self.partition.faces.len()];
-        for &face in group {
-            member[face as usize] = true;
-            for step in self.rings[face as usize].iter().flat_map(|ring| &ring.steps) {
-                if step.other != OUTSIDE && self.rank(step.other) > rank {
-                    member[step.other as usize] = true;
-                }
-            }
-        }
-        let mut bounds = [usize::MAX, usize::MAX, 0, 0];
-        for (face, _) in self.partition.faces.iter().zip(&member).filter(|&(_, &is_member)| is_member) {
-            let [left, top, right, bottom] = face.bounds;
-            bounds = [bounds[0].min(left), bounds[1].min(top), bounds[2].max(right), bounds[3].max(bottom)];
-        }
-        walk_mask(self.partition, |at| member[self.partition.face_at(at) as usize], bounds)
-    }
-
-    fn agrees(&self, outlines: &[Outline], wanted: impl Fn(u32) -> Option<bool>) -> bool {
+    fn check(&self, outlines: &[Outline], wanted: impl Fn(u32) -> Option<bool>) -> Result<(), Vec<[usize; 2]>> {
         let polygons: Vec<Vec<[f64; 2]>> = outlines.iter().filter_map(polygon).collect();
-        !polygons.is_empty() && raster::agrees(self.partition, &polygons, wanted)
+        if polygons.is_empty() { Err(Vec::new()) } else { raster::check(self.partition, &polygons, wanted) }
     }
 
     /// The last resort: the polygon through the samples themselves.
     fn traced(&self, ring: &Ring) -> Outline {
-        let RingSamples { runs, .. } = visible::samples(ring, |_| None);
+        let RingSamples { runs, .. } = visible::samples(ring, &vec![None; ring.steps.len()]);
         let mut points: Vec<[f64; 2]> = runs.iter().flatten().map(|sample| sample.point.to_array()).collect();
         if points.len() < 3 {
             points = ring.steps.iter().map(|step| step.crack.start.map(|value| value as f64)).collect();
@@ -237,10 +221,84 @@ impl Completion<'_> {
     }
 }
 
+/// A boundary, and what of it is hidden.
+struct Walk<'a> {
+    ring: &'a Ring,
+    /// How each of its steps is hidden, if it is.
+    hidden: Vec<Option<Hidden>>,
+}
+
+impl Walk<'_> {
+    fn samples(&self) -> RingSamples {
+        visible::samples(self.ring, &self.hidden)
+    }
+
+    /// The hidden stretch around step `k` follows what hides it.
+    fn pin(&mut self, k: usize) {
+        let n = self.hidden.len();
+        let is_free = |hidden: &Option<Hidden>| *hidden == Some(Hidden::Free);
+        let back = (0..n).find(|&j| !is_free(&self.hidden[(k + n - j) % n])).unwrap_or(n - 1);
+        let forth = (1..n).find(|&j| !is_free(&self.hidden[(k + j) % n])).unwrap_or(1);
+        // Beyond the border is another matter than behind others.
+        let is_beyond = |k: usize| self.ring.steps[k].other == OUTSIDE;
+        let kind = is_beyond(k);
+        for j in 0..back.max(1) {
+            let at = (k + n - j) % n;
+            if is_beyond(at) != kind {
+                break;
+            }
+            self.hidden[at] = None;
+        }
+        for j in 1..forth {
+            let at = (k + j) % n;
+            if is_beyond(at) != kind {
+                break;
+            }
+            self.hidden[at] = None;
+        }
+    }
+}
+
+/// Pins what is nearest to every pixel that is wrong; everything if there is no outline at all. How many stretches that are.
+fn pin(walks: &mut [Walk<'_>], wrong: &[[usize; 2]]) -> usize {
+    if wrong.is_empty() {
+        let free = walks.iter_mut().flat_map(|walk| &mut walk.hidden).filter(|hidden| **hidden == Some(Hidden::Free));
+        return free.map(|hidden| *hidden = None).count().min(1);
+    }
+    let nearest = |&[x, y]: &[usize; 2]| {
+        let at = Vec2::new(x as f64 + 0.5, y as f64 + 0.5);
+        let free = walks.iter().enumerate().flat_map(|(w, walk)| {
+            let free = (0..walk.hidden.len()).filter(|&k| walk.hidden[k] == Some(Hidden::Free));
+            free.map(move |k| (w, k, (Ring::middle(walk.ring.steps[k].crack) - at).length_squared()))
+        });
+        free.min_by(|a, b| a.2.total_cmp(&b.2)).map(|(w, k, _)| (w, k))
+    };
+    // Few of many tell as much.
+    let every = wrong.len().div_ceil(MOST_ASKED);
+    let places: Vec<(usize, usize)> = wrong.iter().step_by(every.max(1)).filter_map(nearest).collect();
+    let mut count = 0;
+    for &(w, k) in &places {
+        if walks[w].hidden[k].is_some() {
+            walks[w].pin(k);
+            count += 1;
+        }
+    }
+    count
+}
+
 /// The polygon of an outline.
 fn polygon(outline: &Outline) -> Option<Vec<[f64; 2]>> {
     let path = Path { rings: vec![outline.shape.ring()], fill: FillRule::EvenOdd };
     let mut polygons = Polygons::default();
     path.boundary().ok()?.flatten(0.1, &mut polygons).ok()?;
     (polygons.vertices.len() > 2).then_some(polygons.vertices)
+}
+
+/// The faces that each face touches.
+pub(super) fn neighbors(rings: &[Vec<Ring>]) -> Vec<Vec<u32>> {
+    let of_face = |rings: &Vec<Ring>| {
+        let others: BTreeSet<u32> = rings.iter().flat_map(|ring| &ring.steps).map(|step| step.other).collect();
+        others.into_iter().filter(|&other| other != OUTSIDE).collect()
+    };
+    rings.iter().map(of_face).collect()
 }

@@ -1,6 +1,6 @@
 //! Faces of one color that are one thing behind another, where that is the shorter description.
 
-use alloc::collections::BTreeMap;
+use alloc::collections::{BTreeMap, BTreeSet};
 use alloc::vec;
 use alloc::vec::Vec;
 
@@ -8,7 +8,6 @@ use dvp_core::geometry::DisjointSets;
 
 use super::complete::{Completed, Completion};
 use crate::outline::Outline;
-use crate::partition::OUTSIDE;
 use crate::tuning;
 
 /// What is painted, from back to front: faces that are one thing, with their outlines (none for what a pen draws).
@@ -49,23 +48,31 @@ impl Group {
         Self { faces, completed }
     }
 
-    /// Both as one, at the place of the hindmost in the order, with the bits that are saved; none if that is no shorter and nothing tells
-    /// that they belong together.
+    /// Both as one, at the place of the hindmost in the order, with the bits that are saved; none if that is no shorter.
     fn join(&self, other: &Self, completion: &mut Completion<'_>) -> Option<(f64, Self)> {
         let faces: Vec<u32> = self.faces.iter().chain(&other.faces).copied().collect();
         let ranks: Vec<usize> = faces.iter().map(|&face| completion.rank(face)).collect();
+        // Two things that are whole by themselves may be of one color; parts of things hardly are.
+        let are_whole = self.completed.is_whole() && other.completed.is_whole();
+        // What lies between where whole things are and where they go comes to lie in front of them, which may cost more than is saved.
+        let crossed = if are_whole { completion.crossed(&faces) } else { BTreeSet::new() };
+        let others = |completion: &Completion<'_>| -> f64 {
+            crossed.iter().map(|&face| completion.outlines(&[face]).bits).sum()
+        };
+        let before = others(completion);
         completion.sink(&faces);
         let completed = completion.outlines(&faces);
+        let after = others(completion);
         for (&face, rank) in faces.iter().zip(ranks) {
             completion.rank[face as usize] = rank;
         }
-        let saved = self.completed.bits + other.completed.bits + COLOR_BITS - completed.bits;
-        if completed.agrees && saved > 0.0 {
-            return Some((saved, Self { faces, completed }));
-        }
-        // What no outline explains may be one thing all the same.
-        let parts = [&self.faces[..], &other.faces];
-        completion.is_related(parts).then(|| (0.0, Self { completed: self.completed.with(&other.completed), faces }))
+        let color = if are_whole { 0.0 } else { COLOR_BITS };
+        let apart = self.completed.with(&other.completed);
+        let alone = apart.bits + color + before - after;
+        // What no outline through both explains is one thing in two outlines.
+        let joined = if completed.agrees && completed.bits <= apart.bits { completed } else { apart };
+        let saved = alone - joined.bits;
+        (saved > tuning::LEAST_SAVED).then_some((saved, Self { faces, completed: joined }))
     }
 }
 
@@ -75,6 +82,9 @@ type Pair = (u32, u32, Option<(f64, Group)>);
 /// The faces of `candidates` in groups: again and again those two become one that save most by it.
 fn join(completion: &mut Completion<'_>, candidates: &[u32]) -> Vec<Group> {
     let mut groups: Vec<Group> = candidates.iter().map(|&face| Group::of(completion, vec![face])).collect();
+    if completion.is_spent() {
+        return groups;
+    }
     if groups.len() > tuning::MOST_PAIRED {
         return together(completion, groups);
     }
@@ -101,15 +111,18 @@ fn join(completion: &mut Completion<'_>, candidates: &[u32]) -> Vec<Group> {
     }
 }
 
-/// Many groups as one if that is shorter; else as they are.
+/// Many groups as one, unless they are things by themselves and no outline through all is shorter.
 fn together(completion: &mut Completion<'_>, groups: Vec<Group>) -> Vec<Group> {
     let faces: Vec<u32> = groups.iter().flat_map(|group| &group.faces).copied().collect();
-    let alone: f64 = groups.iter().map(|group| group.completed.bits + COLOR_BITS).sum();
+    let apart = groups.iter().fold(Completed::none(), |all, group| all.with(&group.completed));
     let ranks: Vec<usize> = faces.iter().map(|&face| completion.rank(face)).collect();
     completion.sink(&faces);
     let completed = completion.outlines(&faces);
-    if completed.agrees && completed.bits + COLOR_BITS < alone {
-        return alloc::vec![Group { faces, completed }];
+    if completed.agrees && completed.bits < apart.bits - tuning::LEAST_SAVED {
+        return vec![Group { faces, completed }];
+    }
+    if !groups.iter().all(|group| group.completed.is_whole()) {
+        return vec![Group { faces, completed: apart }];
     }
     for (&face, rank) in faces.iter().zip(ranks) {
         completion.rank[face as usize] = rank;
@@ -120,28 +133,33 @@ fn together(completion: &mut Completion<'_>, groups: Vec<Group>) -> Vec<Group> {
 /// What a color costs: three numbers of 8 bits.
 const COLOR_BITS: f64 = 24.0;
 
-/// Faces that may be one thing: of one color, with a neighbor in common that lies in front of both.
+/// Faces that may be one thing: of one color, where a way leads from one to the other behind what is shown to lie in front of both. That it
+/// is painted later is not enough: the fields of a chess board are painted in some order, too.
 fn candidates(completion: &Completion<'_>) -> Vec<Vec<u32>> {
-    let Completion { partition, rings, .. } = completion;
+    let Completion { partition, pens, .. } = completion;
     let mut sets = DisjointSets::default();
     sets.reset(partition.faces.len() as u32);
-    let mut behind: BTreeMap<(u32, usize), u32> = BTreeMap::new();
-    let mut painted = Vec::new();
-    for face in (0..partition.faces.len() as u32).filter(|&face| completion.rank(face) > 0) {
-        let color = partition.faces[face as usize].color;
-        let steps = rings[face as usize].iter().flat_map(|ring| &ring.steps).filter(|step| step.other != OUTSIDE);
-        let mut neighbors: Vec<u32> = steps.map(|step| step.other).collect();
-        neighbors.sort_unstable();
-        neighbors.dedup();
-        let is_in_front = |other: &u32| completion.rank(*other) > completion.rank(face);
-        painted.push(face);
-        // A face without a flat pixel is too small to tell what it is a part of.
-        if completion.pens[face as usize].is_some() || partition.faces[face as usize].flat == 0 {
-            continue;
-        }
-        for front in neighbors.into_iter().filter(is_in_front) {
-            let first = *behind.entry((front, color)).or_insert(face);
-            sets.unite(first, face);
+    let painted = completion.painted();
+    let mut reached = vec![false; partition.faces.len()];
+    let is_shown = |front: u32, behind: u32| completion.order.in_front.contains(&(front, behind));
+    for &face in painted.iter().filter(|&&face| pens[face as usize].is_none()) {
+        let (rank, color) = (completion.rank(face), partition.faces[face as usize].color);
+        let mut ways = vec![face];
+        reached.fill(false);
+        while let Some(way) = ways.pop() {
+            for &next in &completion.neighbors[way as usize] {
+                let is_same = partition.faces[next as usize].color == color && pens[next as usize].is_none();
+                // The first and the last that the way leads behind hide what is at its ends.
+                let is_hidden = if is_same { is_shown(way, next) } else { way != face || is_shown(next, face) };
+                if completion.rank(next) > rank && !reached[next as usize] && is_hidden {
+                    reached[next as usize] = true;
+                    if is_same {
+                        sets.unite(face, next);
+                    } else {
+                        ways.push(next);
+                    }
+                }
+            }
         }
     }
     let mut groups: BTreeMap<u32, Vec<u32>> = BTreeMap::new();

@@ -1,6 +1,6 @@
 //! Who lies in front where three faces meet: the one whose boundary goes on as if nothing were there (T-junctions).
 
-use alloc::collections::BTreeMap;
+use alloc::collections::{BTreeMap, BTreeSet};
 use alloc::vec::Vec;
 
 #[cfg(not(feature = "std"))]
@@ -22,12 +22,16 @@ struct Turn {
     /// The face that walks past.
     face: u32,
     at: Vec2<f64>,
-    /// Bits by which one smooth curve misses the samples on both sides.
-    misfit: f64,
+    /// Bits by which one smooth curve misses the samples on both sides: near by, and further.
+    misfits: [Option<f64>; 2],
 }
 
-/// The votes of all junctions.
-pub(super) fn votes(rings: &[Vec<Ring>]) -> Votes {
+/// Pairs of faces of which the boundary of the first goes on smoothly where the second one ends at it: what would be seen if the
+/// first one hid a part of the second.
+pub(super) type Passes = BTreeSet<(u32, u32)>;
+
+/// The votes of all junctions, and who passes whom.
+pub(super) fn votes(rings: &[Vec<Ring>]) -> (Votes, Passes) {
     let mut junctions: BTreeMap<[u32; 3], Vec<Turn>> = BTreeMap::new();
     for (face, ring) in
         rings.iter().enumerate().flat_map(|(face, rings)| rings.iter().map(move |ring| (face as u32, ring)))
@@ -41,44 +45,50 @@ pub(super) fn votes(rings: &[Vec<Ring>]) -> Votes {
             let mut faces = [face, here.other, next.other];
             faces.sort_unstable();
             let [x, y] = here.crack.end();
-            if let Some(misfit) = misfit_across(ring, k) {
-                let turn = Turn { face, at: Vec2::new(x as f64, y as f64), misfit };
-                junctions.entry(faces).or_default().push(turn);
-            }
+            let at = Vec2::new(x as f64, y as f64);
+            let misfits = tuning::JUNCTION_SAMPLES.map(|count| misfit_across(ring, k, at, count));
+            junctions.entry(faces).or_default().push(Turn { face, at, misfits });
         }
     }
-    let mut votes = Votes::new();
+    let (mut votes, mut passes) = (Votes::new(), Passes::new());
     for (faces, turns) in &junctions {
         for turn in turns {
-            // The other faces' walks past the same junction; one that could not be measured is no rival.
-            let rivals = turns
-                .iter()
-                .filter(|other| other.face != turn.face && (other.at - turn.at).length() <= tuning::JUNCTION_SIZE);
-            let Some(best_rival) = rivals.map(|rival| rival.misfit).min_by(f64::total_cmp) else { continue };
-            let gain = (best_rival - turn.misfit).min(tuning::MOST_VOTE);
-            if gain > 0.0 && turn.misfit < tuning::MOST_VOTE {
-                for &behind in faces.iter().filter(|&&face| face != turn.face) {
+            // All walks past the same junction, read as far as one of them is smooth.
+            let here: Vec<&Turn> =
+                turns.iter().filter(|other| (other.at - turn.at).length() <= tuning::JUNCTION_SIZE).collect();
+            let is_smooth = |misfit: Option<f64>| misfit.is_some_and(|misfit| misfit < tuning::MOST_VOTE);
+            let scales = 0..turn.misfits.len();
+            let Some(scale) = scales.rev().find(|&scale| here.iter().any(|turn| is_smooth(turn.misfits[scale]))) else {
+                continue;
+            };
+            let Some(misfit) = turn.misfits[scale].filter(|&misfit| is_smooth(Some(misfit))) else { continue };
+            let ending = || faces.iter().copied().filter(|&face| face != turn.face);
+            // Near by a right angle is hardly worse than a bend.
+            if turn.misfits.iter().flatten().all(|&misfit| is_smooth(Some(misfit))) {
+                passes.extend(ending().map(|face| (turn.face, face)));
+            }
+            // One that could not be measured is no rival.
+            let rivals = here.iter().filter(|other| other.face != turn.face).filter_map(|rival| rival.misfits[scale]);
+            let gain = rivals.min_by(f64::total_cmp).map_or(0.0, |rival| (rival - misfit).min(tuning::MOST_VOTE));
+            if gain > 0.0 {
+                for behind in ending() {
                     *votes.entry((turn.face, behind)).or_default() += gain;
                 }
             }
         }
     }
-    votes
+    (votes, passes)
 }
 
-/// Bits by which one parabola misses the samples of a ring on both sides of the corner after step `k`; none where there are
+/// Bits by which one parabola misses the samples of a ring, up to `count` on both sides of the corner after step `k`; none where there are
 /// too few samples.
-fn misfit_across(ring: &Ring, k: usize) -> Option<f64> {
+fn misfit_across(ring: &Ring, k: usize, at: Vec2<f64>, count: usize) -> Option<f64> {
     let n = ring.steps.len();
     let side = |offsets: &mut dyn Iterator<Item = usize>, other: u32| {
-        let mut samples: Vec<Sample> = Vec::new();
-        for j in offsets.take_while(|&j| ring.steps[j].other == other).take(2 * tuning::JUNCTION_SAMPLES) {
-            samples.extend(ring.steps[j].sample);
-            if samples.len() == tuning::JUNCTION_SAMPLES {
-                break;
-            }
-        }
-        samples
+        let steps = offsets.take_while(|&j| ring.steps[j].other == other).take(2 * count);
+        let samples: Vec<Sample> = steps.filter_map(|j| ring.steps[j].sample).take(count).collect();
+        // Windows across the junction itself see three faces.
+        samples.into_iter().filter(|sample| (sample.point - at).length() > tuning::JUNCTION_BLUR).collect::<Vec<_>>()
     };
     let before = side(&mut (0..n).map(|j| (k + n - j) % n), ring.steps[k].other);
     let behind = side(&mut (0..n).map(|j| (k + 1 + j) % n), ring.steps[(k + 1) % n].other);

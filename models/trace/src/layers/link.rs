@@ -76,19 +76,6 @@ pub(super) fn relinked(rings: &[RingSamples], is_seen: impl Fn(Vec2<f64>) -> boo
     Some(linked)
 }
 
-/// What the smoothest way takes that leads from a visible stretch of one boundary to one of another behind what hides it; none if there
-/// is no such way.
-pub(super) fn relation(rings: [&[RingSamples]; 2], is_seen: impl Fn(Vec2<f64>) -> bool) -> Option<f64> {
-    let tips = rings.map(|rings| {
-        let open = rings.iter().filter(|ring| !ring.closed).flat_map(|ring| &ring.runs);
-        open.filter_map(|run| Some([Tip::of(run.iter())?, Tip::of(run.iter().rev())?])).collect::<Vec<_>>()
-    });
-    let [a, b] = &tips;
-    let pairs = a.iter().flat_map(|a| b.iter().map(move |b| (a, b)));
-    let prices = pairs.flat_map(|(a, b)| [a[1].price(&b[0], &is_seen), b[1].price(&a[0], &is_seen)]);
-    prices.min_by(f64::total_cmp)
-}
-
 /// The end of a stretch.
 #[derive(Clone, Copy, Debug)]
 struct Tip {

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `junction` | who lies in front where three faces meet |
 //! | `order` | one order of all faces |
+//! | `settle` | another order where that is shorter |
 //! | `pen` | faces that a pen has drawn |
 //! | `join` | faces of one color that are one thing behind another |
 //! | `visible` | what of a boundary is a layer's own |
@@ -18,9 +19,11 @@ mod link;
 mod order;
 mod pen;
 mod raster;
+mod settle;
 mod visible;
 
 use alloc::vec::Vec;
+use core::cell::Cell;
 
 use dvp_core::shape::Stroke;
 
@@ -77,7 +80,18 @@ pub fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<Color>) 
     let background = background(partition, rings, matte);
     let mut pens = pen::find(partition, rings, background, &ruler);
     let order = Order::of(partition, rings, background, matte.is_some(), &mut pens);
-    let mut completion = Completion { partition, rings, rank: order.rank, pens: &pens, ruler };
+    let rank = order.rank.clone();
+    let mut completion = Completion {
+        partition,
+        rings,
+        rank,
+        pens: &pens,
+        neighbors: complete::neighbors(rings),
+        order: &order,
+        ruler,
+        spent: Cell::new(0),
+    };
+    settle::settle(&mut completion);
     let mut layers = Vec::new();
     for (group, outlines) in join::groups(&mut completion) {
         let color = partition.color(group[0]);

@@ -1,9 +1,10 @@
 //! The order in which faces are painted, from back to front.
 
+use alloc::collections::BTreeMap;
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::junction::{Votes, votes};
+use super::junction::{Passes, Votes, votes};
 use crate::boundary::Ring;
 use crate::partition::{OUTSIDE, Partition};
 use crate::stroke::StrokeFit;
@@ -15,6 +16,10 @@ pub(super) struct Order {
     pub(super) faces: Vec<u32>,
     /// Place of every face in `faces`.
     pub(super) rank: Vec<usize>,
+    /// Faces that something shows to lie in front of another: (front, behind).
+    pub(super) in_front: Passes,
+    /// What speaks for it.
+    votes: Votes,
 }
 
 impl Order {
@@ -25,7 +30,8 @@ impl Order {
         clear: bool,
         pens: &mut [Option<StrokeFit>],
     ) -> Self {
-        let mut votes = votes(rings);
+        let (mut votes, mut shown) = votes(rings);
+        add_colors(partition, rings, &mut votes);
         // Lines end at what lies in front of them as if a pen had ended there: they are things that go on behind it.
         for (&(_, behind), _) in votes.iter().filter(|&(&(front, behind), &bits)| {
             bits - votes.get(&(behind, front)).copied().unwrap_or(0.0) >= 0.5 * tuning::MOST_VOTE
@@ -43,9 +49,10 @@ impl Order {
             if net > 0.0 {
                 in_front[behind as usize].push((front, net));
                 held[front as usize] += net;
+                shown.insert((front, behind));
             }
         }
-        let mut order = Self { faces: Vec::with_capacity(n), rank: vec![usize::MAX; n] };
+        let mut order = Self { faces: Vec::with_capacity(n), rank: vec![usize::MAX; n], in_front: shown, votes };
         let mut next = Some(background);
         while let Some(face) = next {
             order.rank[face as usize] = order.faces.len();
@@ -63,17 +70,41 @@ impl Order {
         order
     }
 
+    /// How much speaks for a face lying in front of another one, bits; negative for the other way.
+    pub(super) fn net(&self, front: u32, behind: u32) -> f64 {
+        let vote = |front, behind| self.votes.get(&(front, behind)).copied().unwrap_or(0.0);
+        vote(front, behind) - vote(behind, front)
+    }
+
     /// What shows the background through holes lies as far back as the background itself: what lies between must not cover it either.
     fn sink_holes(&mut self, partition: &Partition, rings: &[Vec<Ring>], background: u32) {
         let color = |face: u32| partition.faces[face as usize].color;
         let back = color(background);
         let is_hole = |face: u32| {
-            let is_behind = |other: u32| color(other) == back || self.rank[other as usize] > self.rank[face as usize];
+            let is_behind = |other: u32| color(other) == back || self.net(face, other) < 0.5 * tuning::MOST_VOTE;
             color(face) == back && neighbors_along(rings[face as usize].iter()).into_iter().all(is_behind)
         };
         let holes: Vec<u32> = (0..partition.faces.len() as u32).filter(|&face| is_hole(face)).collect();
         for hole in holes {
             self.rank[hole as usize] = 0;
+        }
+    }
+}
+
+/// Faces that touch and of which no junction tells lie as others of their colors do: what is of one color is one thing more often than not.
+fn add_colors(partition: &Partition, rings: &[Vec<Ring>], votes: &mut Votes) {
+    let color = |face: u32| partition.faces[face as usize].color;
+    let mut of_colors: BTreeMap<(usize, usize), f64> = BTreeMap::new();
+    for (&(front, behind), bits) in votes.iter() {
+        *of_colors.entry((color(front), color(behind))).or_default() += bits;
+    }
+    for face in 0..rings.len() as u32 {
+        for other in neighbors_along(rings[face as usize].iter()) {
+            let key = (color(face), color(other));
+            let net = of_colors.get(&key).unwrap_or(&0.0) - of_colors.get(&(key.1, key.0)).unwrap_or(&0.0);
+            if net > 0.0 {
+                *votes.entry((face, other)).or_default() += net.min(tuning::COLORS_VOTE);
+            }
         }
     }
 }
@@ -112,7 +143,8 @@ fn add_enclosures(partition: &Partition, rings: &[Vec<Ring>], background: u32, c
         let is_hole = if is_back(face as u32) {
             clear || around.len() > 1 || around.iter().all(lies_on_back)
         } else {
-            around.len() == 1 && around.iter().all(shows)
+            // What shows the background has nothing to be seen through it.
+            around.len() == 1 && around.iter().all(|&other| !is_back(other)) && around.iter().all(shows)
         };
         if is_hole {
             let bits = match is_back(face as u32) {

@@ -3,7 +3,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::visible;
+use super::visible::{self, Hidden};
 use crate::boundary::Ring;
 use crate::outline::fit_closed;
 use crate::partition::{OUTSIDE, Partition};
@@ -20,14 +20,19 @@ pub(super) fn find(
 ) -> Vec<Option<StrokeFit>> {
     let mut pens = vec![None; partition.faces.len()];
     for (face, rings) in rings.iter().enumerate() {
-        let is_cut = rings.iter().flat_map(|ring| &ring.steps).any(|step| step.other == OUTSIDE);
-        if face as u32 == background || is_cut || partition.faces[face].flat == 0 {
+        if face as u32 == background || partition.faces[face].flat == 0 {
             continue;
         }
-        let samples: Vec<RingSamples> = rings.iter().map(|ring| visible::samples(ring, |_| None)).collect();
-        pens[face] = fit_strokes(&samples, ruler).filter(|pen| {
+        // Of a line, what lies beyond the border is not seen; an outline ends there.
+        let samples = |ring: &Ring, beyond: Option<Hidden>| {
+            let hidden: Vec<_> = ring.steps.iter().map(|step| beyond.filter(|_| step.other == OUTSIDE)).collect();
+            visible::samples(ring, &hidden)
+        };
+        let seen: Vec<RingSamples> = rings.iter().map(|ring| samples(ring, Some(Hidden::Free))).collect();
+        pens[face] = fit_strokes(&seen, ruler).filter(|pen| {
+            let samples = rings.iter().map(|ring| samples(ring, None));
             let outlines =
-                samples.iter().map(|samples| fit_closed(samples, ruler).map(|outline| outline.bits + outline.misfit));
+                samples.map(|samples| fit_closed(&samples, ruler).map(|outline| outline.bits + outline.misfit));
             outlines.sum::<Option<f64>>().is_none_or(|bits| pen.bits + pen.misfit < bits)
         });
     }

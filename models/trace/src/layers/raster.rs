@@ -8,10 +8,16 @@ use crate::partition::{OUTSIDE, Partition};
 use crate::tuning;
 
 /// Whether what polygons (pixels, even-odd) cover is what they should cover, but for few pixels: of all pixels that are `wanted`
-/// (Some(true)), and of every face that is not (Some(false)), however small it is. Mixed pixels count for nothing.
-pub(super) fn agrees(partition: &Partition, polygons: &[Vec<[f64; 2]>], wanted: impl Fn(u32) -> Option<bool>) -> bool {
+/// (Some(true)), and of every face that is not (Some(false)), however small it is. Mixed pixels count for nothing. Else the pixels
+/// [column, row] that are wrong.
+pub(super) fn check(
+    partition: &Partition,
+    polygons: &[Vec<[f64; 2]>],
+    wanted: impl Fn(u32) -> Option<bool>,
+) -> Result<(), Vec<[usize; 2]>> {
     let [width, height] = partition.size;
     let rows = rows(partition, polygons, &wanted);
+    let mut wrong = Vec::new();
     let mut missed = 0;
     let mut hidden: BTreeMap<u32, usize> = BTreeMap::new();
     let mut crossings: Vec<f64> = Vec::new();
@@ -40,8 +46,9 @@ pub(super) fn agrees(partition: &Partition, polygons: &[Vec<[f64; 2]>], wanted: 
             match (wanted(partition.labels[i]), crossed % 2 == 1) {
                 (Some(true), false) => missed += 1,
                 (Some(false), true) => *hidden.entry(partition.labels[i]).or_default() += 1,
-                _ => (),
+                _ => continue,
             }
+            wrong.push([x, y]);
         }
     }
     let few = |count: usize, area: usize| {
@@ -49,7 +56,9 @@ pub(super) fn agrees(partition: &Partition, polygons: &[Vec<[f64; 2]>], wanted: 
     };
     let own = partition.faces.iter().enumerate().filter(|&(face, _)| wanted(face as u32) == Some(true));
     let area = own.map(|(_, face)| face.area).sum::<usize>();
-    few(missed, area) && hidden.iter().all(|(&face, &count)| few(count, partition.faces[face as usize].area))
+    let agrees =
+        few(missed, area) && hidden.iter().all(|(&face, &count)| few(count, partition.faces[face as usize].area));
+    if agrees { Ok(()) } else { Err(wrong) }
 }
 
 /// Whether a pixel lies beside another face: where edges are hard an outline may take it or leave it.

@@ -22,27 +22,27 @@ pub(super) enum Hidden {
     },
 }
 
-/// The samples of a ring; where `hidden` says so, the boundary is not the layer's own.
+/// The samples of a ring; where `hidden` says so of a step, the boundary is not the layer's own.
 ///
 /// Stretches that no window could read (thin things, crowded junctions) are known from the cracks themselves, to a third of a pixel.
-pub(super) fn samples(ring: &Ring, hidden: impl Fn(&Step) -> Option<Hidden>) -> RingSamples {
-    let is_free = |step: &Step| hidden(step) == Some(Hidden::Free);
+pub(super) fn samples(ring: &Ring, hidden: &[Option<Hidden>]) -> RingSamples {
+    let is_free = |k: usize| hidden[k] == Some(Hidden::Free);
     let n = ring.steps.len();
     // Begin behind a hidden step, so that no run is cut in two.
-    let Some(start) = (0..n).find(|&k| is_free(&ring.steps[k])) else {
-        let run = read(ring, 0, n, true, &hidden);
+    let Some(start) = (0..n).find(|&k| is_free(k)) else {
+        let run = read(ring, 0, n, true, hidden);
         return RingSamples { runs: alloc::vec![run], closed: true };
     };
     let mut runs = Vec::new();
     let mut k = 0;
     while k < n {
-        let at = |k: usize| &ring.steps[(start + k) % n];
+        let at = |k: usize| (start + k) % n;
         if is_free(at(k)) {
             k += 1;
             continue;
         }
         let length = (k..n).take_while(|&j| !is_free(at(j))).count();
-        let run = read(ring, (start + k) % n, length, false, &hidden);
+        let run = read(ring, at(k), length, false, hidden);
         if !run.is_empty() {
             runs.push(run);
         }
@@ -52,13 +52,7 @@ pub(super) fn samples(ring: &Ring, hidden: impl Fn(&Step) -> Option<Hidden>) -> 
 }
 
 /// The samples of `length` steps from `start` on.
-fn read(
-    ring: &Ring,
-    start: usize,
-    length: usize,
-    closed: bool,
-    hidden: impl Fn(&Step) -> Option<Hidden>,
-) -> Vec<Sample> {
+fn read(ring: &Ring, start: usize, length: usize, closed: bool, hidden: &[Option<Hidden>]) -> Vec<Sample> {
     let n = ring.steps.len();
     let mut run: Vec<Sample> = Vec::new();
     let mut unread = 0;
@@ -67,7 +61,7 @@ fn read(
         // Where a boundary is flat half of the steps have samples, at 45 degrees; else more. A longer stretch without is unread.
         unread = if step.sample.is_some() { 0 } else { unread + 1 };
         match step.sample {
-            Some(sample) => push(&mut run, moved(sample, step, hidden(step))),
+            Some(sample) => push(&mut run, moved(sample, step, hidden[(start + k) % n])),
             None if step.other == OUTSIDE => push(&mut run, of_crack(step, tuning::BORDER_SIGMA)),
             None if unread > tuning::MOST_UNREAD => push(&mut run, of_crack(step, tuning::CRACK_SIGMA)),
             None => (),

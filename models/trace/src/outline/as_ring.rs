@@ -40,6 +40,36 @@ impl OutlineShape {
     }
 }
 
+impl OutlineShape {
+    /// The numbers of a circle (middle, radius) or of a rectangle with round corners (middle, width, height, corner radius), in pixels; its angle is
+    /// as it is. None of other kinds.
+    #[must_use]
+    pub(crate) fn numbers(&self) -> Option<Vec<f64>> {
+        match *self {
+            Self::Circle { center, radius } => Some(vec![center.x, center.y, radius]),
+            Self::Rectangle { center, size, corner_radius, .. } if corner_radius > 0.0 => {
+                Some(vec![center.x, center.y, size[0], size[1], corner_radius])
+            }
+            _ => None,
+        }
+    }
+
+    /// The same kind with other numbers; none if they make no such.
+    #[must_use]
+    pub(crate) fn with_numbers(&self, numbers: &[f64]) -> Option<Self> {
+        let center = Vec2::new(*numbers.first()?, *numbers.get(1)?);
+        match (self, numbers.get(2..)?) {
+            (Self::Circle { .. }, &[radius]) if radius > 0.0 => Some(Self::Circle { center, radius }),
+            (&Self::Rectangle { angle, .. }, &[width, height, corner_radius])
+                if corner_radius > 0.0 && 2.0 * corner_radius < width.min(height) =>
+            {
+                Some(Self::Rectangle { center, size: [width, height], corner_radius, angle })
+            }
+            _ => None,
+        }
+    }
+}
+
 fn ellipse(center: Vec2<f64>, radii: [f64; 2], turn: Vec2<f64>) -> PathRing<f64> {
     // Length of the handles of a quarter of the unit circle.
     let handle = 4.0 / 3.0 * (core::f64::consts::SQRT_2 - 1.0);

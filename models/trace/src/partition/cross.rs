@@ -120,29 +120,28 @@ impl Canvas<'_> {
                 misfits[k][side] = misfit;
             }
         }
-        // The line is fullest in one pixel, which may hold something of both sides if these are not alike.
-        let peak = (0..count).max_by(|&a, &b| {
-            let most = |k: usize| shares[k][0].min(shares[k][1]);
-            most(a).total_cmp(&most(b)).then(b.cmp(&a))
-        })?;
-        let mut worst = 0.0_f64;
-        for (k, misfit) in misfits.iter().enumerate().take(count) {
-            worst = worst.max(if k < peak {
-                misfit[0]
-            } else if k > peak {
-                misfit[1]
-            } else {
-                0.0
-            });
-        }
-        let middle = self.peak(self.color(along, cross.line, from + peak), sides, line_color);
-        worst = worst.max(middle[2]);
+        // The line is fullest in one pixel, which may hold something of both sides if these are not alike; which it is shares do not
+        // tell if the line is nowhere full, but what is left to explain does.
+        let is_even = sides[0] == sides[1];
+        let worst_at = |peak: usize| {
+            let middle = self.peak(self.color(along, cross.line, from + peak), sides, line_color);
+            let before = misfits[..peak].iter().map(|misfit| misfit[0]);
+            let after = misfits[peak + 1..count].iter().map(|misfit| misfit[1]);
+            (peak, middle, before.chain(after).fold(middle[2], f64::max))
+        };
+        let most = |k: usize| shares[k][0].min(shares[k][1]);
+        let fullest = (0..count).max_by(|&a, &b| most(a).total_cmp(&most(b)).then(b.cmp(&a))).map(worst_at)?;
+        let (peak, middle, worst) = if is_even || fullest.2 <= self.noise {
+            fullest
+        } else {
+            (0..count).map(worst_at).min_by(|a, b| a.2.total_cmp(&b.2))?
+        };
         let before: f64 = shares[..peak].iter().map(|share| share[0]).sum();
         let after: f64 = shares[peak + 1..count].iter().map(|share| share[1]).sum();
         let width = before + after + middle[0];
         // The edges: full pixels between them, or, if the line is nowhere full, the middle of what is covered.
         let place = from as f64 + peak as f64;
-        let center = if sides[0] == sides[1] {
+        let center = if is_even {
             let centroid =
                 (0..count).map(|k| shares[k][0] * (k as f64 + 0.5)).sum::<f64>() / width.max(1e-9) + from as f64;
             let covered = shares[..count].iter().filter(|share| share[0] > 0.03).count();

@@ -1,8 +1,8 @@
 //! Pixels to faces: which color each pixel belongs to, and by how much.
 //!
 //! Every pixel is pure (of one face) or mixed (of two, rarely three, with shares). `flat` finds what is of one color beyond doubt,
-//! `palette` the colors, `seam` mends what renderers let through between things side by side, `thin` (windows of `cross`, joined by
-//! `chain`) finds and `erase` takes out lines without a pixel of their own, `mix` explains every other pixel as a mixture of colors nearby, `faces`
+//! `palette` the colors, `seam` mends what renderers let through between things side by side, `thin` (windows of `cross`, colors of `ink`, joined
+//! by `chain`) finds and `erase` takes out lines without a pixel of their own, `mix` explains every other pixel as a mixture of colors nearby, `faces`
 //! joins pixels to faces, but not across the corners of `checker`.
 
 mod chain;
@@ -11,6 +11,7 @@ mod cross;
 mod erase;
 mod faces;
 mod flat;
+mod ink;
 mod mix;
 mod palette;
 mod seam;
@@ -137,7 +138,7 @@ fn take_lines(
     let canvas = cross::Canvas { pixels, size, flat: &flat, open: &open, noise, widest };
     let mut lines = thin::find(&canvas, &colors.colors);
     if widest > tuning::THIN_WIDTH {
-        lines = thin::crossing_lines(lines);
+        lines = thin::crossing_lines(lines, colors.colors[0]);
     }
     let known = flat.iter().map(|&color| color != u16::MAX).collect();
     let mut eraser = erase::Eraser { pixels, size, open: &open, known, palette: &colors.colors };

@@ -51,6 +51,24 @@ fn fields_of_a_chess_board_are_apart() {
 }
 
 #[test]
+fn a_thin_line_along_an_edge_may_lie_mostly_beyond_it() {
+    // Blue ends at 40.15, and black is painted over it from 39.86 to 40.44: the row with most of the black holds something of all three.
+    let row = |y: usize| -> Color {
+        core::array::from_fn(|c| match y {
+            0..39 => BLUE[c],
+            39 => 0.86 * BLUE[c],
+            40 => 0.56 * (0.15 * BLUE[c] + 0.85),
+            _ => 1.0,
+        })
+    };
+    let levels = |value: f64| ((value * 255.0).round() / 255.0) as f32;
+    let data: Vec<f32> = (0..SIDE * SIDE).flat_map(|i| row(i / SIDE).map(levels)).collect();
+    let partition = partition(&data);
+    assert_eq!((partition.faces.len(), partition.lines.len()), (2, 1));
+    assert!(partition.lines[0].color.iter().all(|&value| value < 0.02), "{:?}", partition.lines[0].color);
+}
+
+#[test]
 fn seams_are_edges() {
     // Blue is painted over white, red beside it: both cover their share of what is there.
     let slope = |x: f64| 30.2 + 0.37 * x;

@@ -1,16 +1,18 @@
 //! Lines thinner than two pixels: found across, chained along, and taken out of the picture, so that what they lie on meets in
 //! their middle as if they were not there.
 
-use alloc::collections::BTreeMap;
 use alloc::vec::Vec;
+
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
 
 use dvp_core::Vec2;
 
-use super::Color;
-use super::chain::{Chain, join};
+use super::chain::{Chain, Mark, join};
 use super::cross::{Along, Canvas, Cross};
 use super::mix::coverage;
 use super::palette::distance;
+use super::{Color, ink};
 use crate::stroke::{ThinChain, ThinSample};
 use crate::tuning;
 
@@ -21,15 +23,15 @@ pub struct ThinLine {
     pub color: Color,
     /// Where it passes.
     pub chain: ThinChain,
+    /// Pixels just beyond its reach that show something of it all the same, less those that show less than nothing of it, and how many
+    /// were looked at: near 0 of many if it is as clear as area coverage.
+    pub stained: [i32; 2],
 }
-
-/// How often a color that only thin lines have is looked for.
-const MOST_TRIES: usize = 48;
 
 /// Finds thin lines. `palette`: the colors of flat pixels, those of thick regions first.
 pub(super) fn find(canvas: &Canvas<'_>, palette: &[Color]) -> Vec<(ThinLine, Chain)> {
     let mut crosses = [Along::Columns, Along::Rows].map(|along| canvas.crosses(along));
-    let colors = color(canvas, &mut crosses, palette);
+    let colors = ink::colors(canvas, &mut crosses, palette);
     let mut chains = Vec::new();
     for (along, crosses) in [Along::Columns, Along::Rows].into_iter().zip(&crosses) {
         for chain in link(canvas, along, crosses, &colors, palette) {
@@ -41,7 +43,8 @@ pub(super) fn find(canvas: &Canvas<'_>, palette: &[Color]) -> Vec<(ThinLine, Cha
     for mut chain in chains {
         let color = colors[chain.colors.trailing_zeros() as usize];
         if let Some(thin) = constant(&mut chain, canvas.widest) {
-            lines.push((ThinLine { color, chain: thin }, chain));
+            let stained = stained(canvas, &chain, color);
+            lines.push((ThinLine { color, chain: thin, stained }, chain));
         }
     }
     in_order(canvas, lines)
@@ -84,8 +87,9 @@ fn crossing([a, b]: [Vec2<f64>; 2], [c, d]: [Vec2<f64>; 2]) -> Option<Vec2<f64>>
     ((0.0..=1.0).contains(&s) && (0.0..=1.0).contains(&t)).then(|| a.lerp(b, s))
 }
 
-/// Of lines that may be wider than what is thin: those that cross one another, or cut what they lie on. A pen draws what is alone.
-pub(super) fn crossing_lines(lines: Vec<(ThinLine, Chain)>) -> Vec<(ThinLine, Chain)> {
+/// Of lines that may be wider than what is thin: those that cross one another, or cut in two what they lie on with the color of
+/// what lies behind all, `back`: they would be holes. A pen draws what else is alone.
+pub(super) fn crossing_lines(lines: Vec<(ThinLine, Chain)>, back: Color) -> Vec<(ThinLine, Chain)> {
     let gaps: Vec<Vec<[Vec2<f64>; 2]>> = lines.iter().map(|(_, chain)| chain.gaps().collect()).collect();
     let crosses = |a: usize, b: usize| {
         let of_marks = lines[b].1.marks.windows(2).map(|pair| [pair[0].point, pair[1].point]).collect::<Vec<_>>();
@@ -104,121 +108,15 @@ pub(super) fn crossing_lines(lines: Vec<(ThinLine, Chain)>) -> Vec<(ThinLine, Ch
     // What the same pen has drawn belongs to them.
     let pens: Vec<f64> = lines.iter().zip(&keep).filter(|&(_, &keep)| keep).map(|(line, _)| line.1.width).collect();
     let is_of_pen = |chain: &Chain| pens.iter().any(|width| (width - chain.width).abs() <= 0.05 * width);
-    // What lies on something cuts it in two.
-    let is_on = |chain: &Chain| {
-        let marks =
-            chain.marks.iter().filter(|mark| mark.cross.sides[0] == mark.cross.sides[1] && mark.cross.sides[0] != 0);
-        5 * marks.count() > 4 * chain.marks.len()
+    let is_slit = |(line, chain): &(ThinLine, Chain)| {
+        let is_within = |mark: &&Mark| mark.cross.sides[0] == mark.cross.sides[1];
+        line.color == back && 5 * chain.marks.iter().filter(is_within).count() > 4 * chain.marks.len()
     };
     lines
         .into_iter()
         .zip(keep)
-        .filter_map(|(line, keep)| (keep || is_of_pen(&line.1) || is_on(&line.1)).then_some(line))
+        .filter_map(|(line, keep)| (keep || is_of_pen(&line.1) || is_slit(&line)).then_some(line))
         .collect()
-}
-
-/// Says of every window which colors a line across it may have; the colors, new ones last.
-fn color(canvas: &Canvas<'_>, crosses: &mut [Vec<Vec<Cross>>; 2], palette: &[Color]) -> Vec<Color> {
-    let mut colors = palette.to_vec();
-    let mut rest: Vec<(f64, Along, &mut Cross, Color)> = Vec::new();
-    let [columns, rows] = crosses;
-    let columns = columns.iter_mut().flatten().map(|cross| (Along::Columns, cross));
-    for (along, cross) in columns.chain(rows.iter_mut().flatten().map(|cross| (Along::Rows, cross))) {
-        for (k, &color) in palette.iter().enumerate() {
-            cross.colors |= u128::from(fits(canvas, along, cross, color, palette)) << k;
-        }
-        if cross.colors == 0 {
-            let sides = cross.sides.map(|side| palette[side as usize]);
-            let away = |color: &Color| distance(*color, sides[0]).min(distance(*color, sides[1]));
-            let run = (cross.run[0]..cross.run[1]).map(|at| canvas.color(along, cross.line, at));
-            if let Some(extreme) = run.max_by(|a, b| away(a).total_cmp(&away(b))) {
-                rest.push((away(&extreme), along, cross, extreme));
-            }
-        }
-    }
-    let opens: Vec<Color> =
-        (0..canvas.pixels.len()).filter(|&i| canvas.open[i]).map(|i| canvas.pixels[i].map(f64::from)).collect();
-    for _ in 0..MOST_TRIES {
-        if rest.len() < tuning::THIN_LEAST_LENGTH || colors.len() == 128 {
-            break;
-        }
-        let bin = modal(rest.iter().map(|&(.., extreme)| extreme));
-        let Some(&(away, _, ref cross, extreme)) = rest.iter().find(|&&(.., extreme)| bin_of(extreme) == bin) else {
-            break;
-        };
-        let sides = cross.sides.map(|side| palette[side as usize]);
-        let side = if distance(sides[0], extreme) <= distance(sides[1], extreme) { sides[0] } else { sides[1] };
-        let seen = rest.iter().map(|&(.., extreme)| extreme);
-        let own = farthest(side, extreme, seen, canvas.noise);
-        let darkest = farthest(side, own, opens.iter().copied(), canvas.noise);
-        // Where lines of one color cross they are darker: what is no darker elsewhere is nowhere full.
-        let is_more = coverage(darkest, side, own) > 1.15;
-        let candidates = [if is_more { beyond(side, darkest) } else { own }, [0.0; 3], [1.0; 3]];
-        let explains = |color: Color| {
-            rest.iter().filter(|(_, along, cross, _)| fits(canvas, *along, cross, color, palette)).count()
-        };
-        let counts = candidates.map(explains);
-        let margin = counts[0] + tuning::THIN_LEAST_LENGTH.max(counts[0] / 4);
-        let best = if counts[1].max(counts[2]) < margin {
-            0
-        } else if counts[1] >= counts[2] {
-            1
-        } else {
-            2
-        };
-        if away < tuning::LEAST_CONTRAST || counts[best] < tuning::THIN_LEAST_LENGTH {
-            rest.retain(|&(.., extreme)| bin_of(extreme) != bin);
-            continue;
-        }
-        let (explained, left): (Vec<_>, Vec<_>) =
-            rest.into_iter().partition(|(_, along, cross, _)| fits(canvas, *along, cross, candidates[best], palette));
-        rest = left;
-        for (_, _, cross, _) in explained {
-            cross.colors |= 1 << colors.len();
-        }
-        colors.push(candidates[best]);
-    }
-    colors
-}
-
-/// Colors that are alike, 16 levels to a channel.
-fn bin_of(color: Color) -> [u8; 3] {
-    color.map(|value| (value * 15.0 + 0.5) as u8)
-}
-
-/// The bin with the most colors.
-fn modal(colors: impl Iterator<Item = Color>) -> [u8; 3] {
-    let mut counts: BTreeMap<[u8; 3], usize> = BTreeMap::new();
-    for color in colors {
-        *counts.entry(bin_of(color)).or_default() += 1;
-    }
-    counts.into_iter().max_by_key(|&(_, count)| count).map_or([0; 3], |(bin, _)| bin)
-}
-
-/// The color furthest from `side` on the ray through `through`.
-fn farthest(side: Color, through: Color, colors: impl Iterator<Item = Color>, noise: f64) -> Color {
-    let on_ray = |color: &Color| {
-        let t = coverage(*color, side, through);
-        let misfit = (0..3).map(|c| (color[c] - side[c] - t * (through[c] - side[c])).abs()).fold(0.0, f64::max);
-        (misfit <= noise && t >= 1.0).then_some((t, *color))
-    };
-    colors.filter_map(|color| on_ray(&color)).max_by(|a, b| a.0.total_cmp(&b.0)).map_or(through, |(_, color)| color)
-}
-
-/// What a line that is nowhere full is likely to be: black on gray, white on gray; else as much as is seen.
-fn beyond(side: Color, seen: Color) -> Color {
-    let is_gray = |color: Color| (0..3).all(|c| (color[c] - color[0]).abs() <= tuning::LEAST_CONTRAST);
-    match is_gray(side) && is_gray(seen) {
-        true if seen[0] < side[0] => [0.0; 3],
-        true => [1.0; 3],
-        false => seen,
-    }
-}
-
-fn fits(canvas: &Canvas<'_>, along: Along, cross: &Cross, color: Color, palette: &[Color]) -> bool {
-    canvas
-        .measure(along, cross, color, palette)
-        .is_some_and(|[_, width, misfit]| misfit <= canvas.noise && width <= canvas.widest * core::f64::consts::SQRT_2)
 }
 
 /// Chains of windows side by side with a color in common.
@@ -324,6 +222,34 @@ fn constant(chain: &mut Chain, widest: f64) -> Option<ThinChain> {
         .collect();
     chain.width = width;
     (samples.len() >= 3).then_some(ThinChain { samples, ends, is_closed: chain.is_closed })
+}
+
+/// Of the pixels beside a chain that it does not reach, how many show something of it, and how many there are.
+fn stained(canvas: &Canvas<'_>, chain: &Chain, color: Color) -> [i32; 2] {
+    let [mut stained, mut count] = [0; 2];
+    for three in chain.marks.windows(3) {
+        let [before, here, behind] = [three[0], three[1], three[2]];
+        let axis = here.axis();
+        let slopes = [here.point - before.point, behind.point - here.point].map(|step| step.dot(axis));
+        let is_next = |other: &Mark| other.along == here.along && other.cross.line.abs_diff(here.cross.line) == 1;
+        // Where a line lies between two things their edge is under it, and renderers let through something of both.
+        let is_clean = here.cross.sides[0] == here.cross.sides[1] && (slopes[0] - slopes[1]).abs() < 0.1;
+        if !is_next(&before) || !is_next(&behind) || !is_clean {
+            continue;
+        }
+        let (center, [from, to]) = (here.point.dot(axis), here.cross.run);
+        let reach = 0.5 * (here.width + slopes[0].abs().max(slopes[1].abs())) + sigma(here.width);
+        let first = ((center - reach).max(0.0) as usize).max(from) - 1;
+        let last = ((center + reach).ceil() as usize).min(to);
+        // The flat pixels beside a window are what its sides are.
+        for (at, side) in [(first, from - 1), (last, to)] {
+            let [pixel, side] = [at, side].map(|at| canvas.color(here.along, here.cross.line, at));
+            let share = coverage(pixel, side, color);
+            stained += i32::from(share > tuning::LEAST_STAIN) - i32::from(share < -tuning::LEAST_STAIN);
+            count += 1;
+        }
+    }
+    [stained, count]
 }
 
 /// Standard deviation of a line's center, pixels: where a line narrower than a pixel lies inside of one cannot be seen.

@@ -8,7 +8,7 @@ use dvp_core::{Real, Vec2};
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
-use crate::sample::RingSamples;
+use crate::sample::{RingSamples, Sample};
 use crate::tuning;
 
 /// A sample of the boundary, with the direction in which the face lies.
@@ -19,8 +19,10 @@ pub(super) struct Mark {
     pub(super) inward: Vec2<f64>,
     /// Standard deviation across the boundary, pixels.
     pub(super) sigma: f64,
-    /// The run that it belongs to.
-    run: usize,
+    /// The ring that it belongs to.
+    ring: usize,
+    /// Whether what follows on the ring is not seen: the way to the next mark is bridged by a straight line.
+    is_last: bool,
 }
 
 /// Where a ray across the face leaves it.
@@ -41,12 +43,12 @@ impl Hit {
     }
 }
 
-/// All marks of a face, run after run.
+/// All marks of a face, ring after ring.
 #[derive(Debug)]
 pub(super) struct Border {
     pub(super) marks: Vec<Mark>,
-    /// The marks of each run, and whether its last one is followed by its first.
-    runs: Vec<(Range<usize>, bool)>,
+    /// The marks of each ring; its last one is followed by its first.
+    rings: Vec<Range<usize>>,
     cells: Cells,
 }
 
@@ -72,82 +74,63 @@ const REACH: usize = 2;
 const LEAST_FACING: f64 = 0.7;
 
 impl Border {
-    /// The marks of rings; runs of fewer than three samples say nothing of directions and are left out.
+    /// The marks of rings; runs of fewer than three samples say nothing of directions and are not seen.
     pub(super) fn new(rings: &[RingSamples]) -> Self {
         let mut marks = Vec::new();
-        let mut runs = Vec::new();
+        let mut ranges = Vec::new();
         for ring in rings {
+            let first = marks.len();
             for samples in ring.runs.iter().filter(|samples| samples.len() >= 3) {
-                let (first, count) = (marks.len(), samples.len());
-                let at = |i: usize, step: isize| {
-                    let moved = i.wrapping_add_signed(step);
-                    let moved = if ring.closed { (i + count).wrapping_add_signed(step) % count } else { moved };
-                    samples.get(moved).map(|sample| sample.point)
-                };
-                for (i, sample) in samples.iter().enumerate() {
-                    // The slope of the parabola through the neighbors: distant ones weigh more.
-                    let mut along = Vec2::default();
-                    for k in 1..=REACH {
-                        let step = k.cast_signed();
-                        if let (Some(before), Some(after)) = (at(i, -step), at(i, step)) {
-                            along += (after - before) * step as f64;
-                        }
-                    }
-                    if along == Vec2::default() {
-                        let ends = [at(i, -1), at(i, 1)].map(|point| point.unwrap_or(sample.point));
-                        along = ends[1] - ends[0];
-                    }
-                    let inward = along.perp().normalized().unwrap_or(Vec2::new(1.0, 0.0));
-                    // A window along an axis sees a slanted boundary move by more than across it.
-                    let along_axis = sample.sigma.hypot(tuning::RENDERER_SIGMA);
-                    let sigma = along_axis * inward.dot(sample.axis).abs().max(0.5);
-                    marks.push(Mark { point: sample.point, inward, sigma, run: runs.len() });
-                }
-                runs.push((first..marks.len(), ring.closed));
+                marks.extend((0..samples.len()).map(|i| {
+                    let mark = mark(samples, ring.closed, i);
+                    Mark { ring: ranges.len(), is_last: !ring.closed && i + 1 == samples.len(), ..mark }
+                }));
+            }
+            if marks.len() > first {
+                ranges.push(first..marks.len());
             }
         }
-        let mut border = Self { marks, runs, cells: Cells::default() };
+        let mut border = Self { marks, rings: ranges, cells: Cells::default() };
         border.cells = Cells::new(&border);
         border
     }
 
-    /// The mark that follows on the boundary.
+    /// The mark that follows on the ring.
     pub(super) fn next(&self, mark: usize) -> Option<usize> {
-        let (range, closed) = self.runs.get(self.marks.get(mark)?.run)?;
-        if mark + 1 < range.end { Some(mark + 1) } else { closed.then_some(range.start) }
+        let range = self.ring_of(mark)?;
+        Some(if mark + 1 < range.end { mark + 1 } else { range.start })
+    }
+
+    fn ring_of(&self, mark: usize) -> Option<&Range<usize>> {
+        self.rings.get(self.marks.get(mark)?.ring)
+    }
+
+    /// Whether what follows a mark on the ring is not seen.
+    pub(super) fn is_last(&self, mark: usize) -> bool {
+        self.marks.get(mark).is_some_and(|mark| mark.is_last)
     }
 
     /// The length of the boundary and the area inside, gaps bridged by straight lines.
     pub(super) fn measures(&self) -> (f64, f64) {
         let (mut length, mut twice_area) = (0.0, 0.0);
         for (i, mark) in self.marks.iter().enumerate() {
-            let Some((range, closed)) = self.runs.get(mark.run) else { continue };
-            let is_last = i + 1 == range.end;
-            let Some(to) = self.marks.get(if is_last { range.start } else { i + 1 }) else { continue };
-            if !is_last || *closed {
-                length += (to.point - mark.point).length();
-            }
-            twice_area += mark.point.cross(to.point);
+            let Some(step) = self.step_of(i) else { continue };
+            length += step.length();
+            twice_area += mark.point.cross(mark.point + step);
         }
         (length, 0.5 * twice_area.abs())
     }
 
-    /// How many marks `to` comes before `from`, if both are on the same run; the shorter way around closed ones.
+    /// How many marks `to` comes before `from`, if both are on the same ring; the shorter way around.
     pub(super) fn steps_back(&self, from: &Hit, to: &Hit) -> Option<f64> {
-        let run = self.marks.get(from.mark)?.run;
-        if self.marks.get(to.mark)?.run != run {
-            return None;
-        }
-        let (range, closed) = self.runs.get(run)?;
+        let range = self.ring_of(from.mark).filter(|range| range.contains(&to.mark))?;
         let (back, count) = (from.place() - to.place(), range.len() as f64);
-        let turns = if *closed { (back / count).round() } else { 0.0 };
-        Some(back - turns * count)
+        Some(back - (back / count).round() * count)
     }
 
-    /// The marks from `back` marks before a hit up to it, in their order; closed runs go on before their start.
+    /// The marks from `back` marks before a hit up to it, in their order; rings go on before their start.
     pub(super) fn before(&self, hit: &Hit, back: f64) -> Vec<usize> {
-        let range =
-            self.marks.get(hit.mark).and_then(|mark| self.runs.get(mark.run)).map_or(0..1, |(range, _)| range.clone());
+        let range = self.ring_of(hit.mark).cloned().unwrap_or(0..1);
         let count = Real::to_count(hit.share + back + 1.0).min(range.len());
         let last = hit.mark - range.start + range.len();
         (0..count).rev().map(|k| range.start + (last - k) % range.len()).collect()
@@ -195,6 +178,34 @@ impl Border {
         let is_beside = from.abs_diff(step) <= REACH + 1 && distance < 0.7;
         ((0.0..=1.0).contains(&share) && distance > 1e-9 && !is_beside).then_some(Hit { mark: step, share, distance })
     }
+}
+
+/// The mark of one sample of a run, alone on its ring.
+fn mark(samples: &[Sample], is_closed: bool, i: usize) -> Mark {
+    let count = samples.len();
+    let at = |step: isize| {
+        let moved = i.wrapping_add_signed(step);
+        let moved = if is_closed { (i + count).wrapping_add_signed(step) % count } else { moved };
+        samples.get(moved).map(|sample| sample.point)
+    };
+    let sample = samples[i];
+    // The slope of the parabola through the neighbors: distant ones weigh more.
+    let mut along = Vec2::default();
+    for k in 1..=REACH {
+        let step = k.cast_signed();
+        if let (Some(before), Some(after)) = (at(-step), at(step)) {
+            along += (after - before) * step as f64;
+        }
+    }
+    if along == Vec2::default() {
+        let ends = [at(-1), at(1)].map(|point| point.unwrap_or(sample.point));
+        along = ends[1] - ends[0];
+    }
+    let inward = along.perp().normalized().unwrap_or(Vec2::new(1.0, 0.0));
+    // A window along an axis sees a slanted boundary move by more than across it.
+    let along_axis = sample.sigma.hypot(tuning::RENDERER_SIGMA);
+    let sigma = along_axis * inward.dot(sample.axis).abs().max(0.5);
+    Mark { point: sample.point, inward, sigma, ring: 0, is_last: false }
 }
 
 impl Default for Cells {

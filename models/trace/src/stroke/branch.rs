@@ -29,6 +29,8 @@ pub(super) struct Node {
     /// The marks between two stretches that follow each other on the boundary: the end of a branch after which they come, the
     /// end that they lead to, and they themselves.
     pub(super) between: Vec<(End, End, Vec<usize>)>,
+    /// Whether the boundary is not seen whole there: the border of the picture may cut the line.
+    pub(super) is_cut: bool,
 }
 
 /// The width of the pen: the most frequent distance across the face, if there is one and the face is that long.
@@ -213,9 +215,11 @@ impl Sides<'_> {
         let mut sets = DisjointSets::default();
         sets.reset(ends);
         let mut links = Vec::new();
+        let mut cut = vec![false; self.lasts.len()];
         for (end, &last) in self.lasts.iter().enumerate() {
             let mut marks = Vec::new();
             let mut at = self.border.next(last);
+            cut[end] |= self.border.is_last(last);
             while let Some(mark) = at.filter(|_| marks.len() < self.labels.len()) {
                 if let Some(label) = self.labels[mark] {
                     // A side that comes to one end of its branch has started at the other.
@@ -225,12 +229,15 @@ impl Sides<'_> {
                     break;
                 }
                 marks.push(mark);
+                cut[end] |= self.border.is_last(mark);
                 at = self.border.next(mark);
             }
         }
         let mut nodes: Vec<_> = (0..self.lasts.len()).map(|_| Node::default()).collect();
         for end in 0..self.lasts.len() {
-            nodes[sets.root(index(end)) as usize].ends.push(end);
+            let node = &mut nodes[sets.root(index(end)) as usize];
+            node.ends.push(end);
+            node.is_cut |= cut[end];
         }
         for link in links {
             nodes[sets.root(index(link.0)) as usize].between.push(link);

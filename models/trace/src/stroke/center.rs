@@ -10,8 +10,8 @@ use num_traits::Float as _;
 use super::border::{Border, Mark};
 use super::chain::{Chain, Tip, meeting};
 use super::draw::{Drawing, Line};
-use super::piece::{move_tip, tip};
-use crate::outline::{fit_closed, fit_open};
+use super::piece::{move_tip, pieces, tip};
+use crate::outline::{OutlineShape, fit_closed, fit_open};
 use crate::ruler::Ruler;
 use crate::sample::RingSamples;
 
@@ -22,19 +22,24 @@ pub(super) fn lines(border: &Border, chains: &[Chain], width: f64, ruler: &Ruler
     let mut butt_gain = 0.0;
     let mut gains = Vec::with_capacity(chains.len());
     for chain in chains {
-        let mut ring = center_line(chain, width, ruler)?;
+        let (mut ring, figure) = center_line(chain, width, ruler)?;
         let mut gain = 0.0;
         for (at_finish, end) in [false, true].into_iter().zip(&chain.tips) {
-            if let (Tip::Free(marks), false) = (end, ring.is_closed()) {
-                let marks: Vec<_> = marks.iter().filter_map(|&mark| border.marks.get(mark)).collect();
-                let [round, butt] = ends(tip(&ring, at_finish)?, &marks, 0.5 * width);
+            let (Tip::Free { marks, is_cut }, false) = (end, ring.is_closed()) else { continue };
+            let marks: Vec<_> = marks.iter().filter_map(|&mark| border.marks.get(mark)).collect();
+            let Ends { round, butt, none } = ends(tip(&ring, at_finish)?, &marks, 0.5 * width);
+            let to = if *is_cut && none <= round.1.min(butt.1) + END_CHI2 {
+                // Far enough for its end not to show.
+                ahead(&ring, at_finish, width)?
+            } else {
                 gain += round.1 - butt.1;
-                move_tip(&mut ring, at_finish, if round.1 <= butt.1 { round.0 } else { butt.0 });
-            }
+                if round.1 <= butt.1 { round.0 } else { butt.0 }
+            };
+            move_tip(&mut ring, at_finish, to);
         }
         butt_gain += gain;
         gains.push(gain);
-        lines.push(Line::new(ring, Cap::Round)?);
+        lines.push(Line::new(ring, Cap::Round)?.with_figure(figure));
     }
     // Lines that show no end are drawn as the others; if none does, as their corners.
     for (line, gain) in lines.iter_mut().zip(gains) {
@@ -62,11 +67,12 @@ pub(super) fn run_together(drawing: &mut Drawing) {
     }
 }
 
-/// The center line of a chain, corners where its stretches meet.
-fn center_line(chain: &Chain, width: f64, ruler: &Ruler) -> Option<PathRing<f64>> {
+/// The center line of a chain, corners where its stretches meet, and the whole outline that it is, if it is one.
+fn center_line(chain: &Chain, width: f64, ruler: &Ruler) -> Option<(PathRing<f64>, Option<OutlineShape>)> {
     if chain.is_smooth {
         let samples = RingSamples { runs: alloc::vec![chain.stretches.first()?.clone()], closed: true };
-        return Some(fit_closed(&samples, ruler)?.shape.ring());
+        let shape = fit_closed(&samples, ruler)?.shape;
+        return Some((shape.ring(), shape.numbers().map(|_| shape)));
     }
     let mut stretches =
         chain.stretches.iter().map(|samples| Some(fit_open(samples, ruler)?.path)).collect::<Option<Vec<_>>>()?;
@@ -90,12 +96,22 @@ fn center_line(chain: &Chain, width: f64, ruler: &Ruler) -> Option<PathRing<f64>
     if chain.is_closed {
         ring.points.pop();
     }
-    Some(ring)
+    Some((ring, None))
 }
 
-/// Where a round and a butt end would be, given the end of the line so far and the marks beyond it, and what these miss them by:
-/// the sum of squares.
-fn ends([from, out]: [Vec2<f64>; 2], marks: &[&Mark], half: f64) -> [(Vec2<f64>, f64); 2] {
+/// Sum of squares that an end must explain where the line may as well go on beyond the border: ten bits, what its place costs.
+const END_CHI2: f64 = 20.0 * core::f64::consts::LN_2;
+
+/// What the end of a line may be, and what the marks there miss it by: the sum of squares.
+struct Ends {
+    round: (Vec2<f64>, f64),
+    butt: (Vec2<f64>, f64),
+    /// If the line goes on.
+    none: f64,
+}
+
+/// Where a round and a butt end would be, given the end of the line so far and the marks beyond it.
+fn ends([from, out]: [Vec2<f64>; 2], marks: &[&Mark], half: f64) -> Ends {
     let places: Vec<_> =
         marks.iter().map(|mark| ((mark.point - from).dot(out), (mark.point - from).cross(out).abs())).collect();
     // The reach of the disk of each mark that is on its front.
@@ -116,7 +132,20 @@ fn ends([from, out]: [Vec2<f64>; 2], marks: &[&Mark], half: f64) -> [(Vec2<f64>,
     let miss_round =
         misses(&|along, aside| if along > round { (along - round).hypot(aside) - half } else { aside - half });
     let miss_butt = misses(&|along, aside| (along - butt).max(aside - half));
-    [(from + out * round, miss_round), (from + out * butt, miss_butt)]
+    let none = misses(&|_, aside| aside - half);
+    Ends { round: (from + out * round, miss_round), butt: (from + out * butt, miss_butt), none }
+}
+
+/// The place that a line comes to if it goes on beyond an end, so many pixels: arcs as arcs.
+fn ahead(ring: &PathRing<f64>, at_finish: bool, reach: f64) -> Option<Vec2<f64>> {
+    let pieces = pieces(ring);
+    match if at_finish { pieces.last() } else { pieces.first() }? {
+        piece @ Piece::Arc { .. } => {
+            let share = reach / piece.length();
+            Some(piece.point(if at_finish { 1.0 + share } else { -share }))
+        }
+        _ => tip(ring, at_finish).map(|[from, out]| from + out * reach),
+    }
 }
 
 /// Lets a line that ends at a junction go on, or end earlier, on the center line of another.

@@ -29,8 +29,8 @@ pub(super) struct Chain {
 /// What is at the end of a chain that is not closed.
 #[derive(Clone, Debug, Default)]
 pub(super) enum Tip {
-    /// The end of the line, with the marks around it.
-    Free(Vec<usize>),
+    /// The end of the line, with the marks around it, or where the border of the picture cuts it, if that may be (`is_cut`).
+    Free { marks: Vec<usize>, is_cut: bool },
     /// Other lines.
     Junction,
     /// What is not seen.
@@ -88,7 +88,7 @@ pub(super) fn chains(border: &Border, skeleton: &Skeleton) -> Vec<Chain> {
         }
         for &end in &node.ends {
             tips[end] = match (node.ends.len(), node.between.first()) {
-                (1, Some((_, _, marks))) => Tip::Free(marks.clone()),
+                (1, Some((_, _, marks))) => Tip::Free { marks: marks.clone(), is_cut: node.is_cut },
                 (1, None) => Tip::Hidden,
                 _ => Tip::Junction,
             };

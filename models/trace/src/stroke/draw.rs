@@ -8,6 +8,7 @@ use dvp_core::shape::{Cap, PathRing, Piece};
 use num_traits::Float as _;
 
 use super::piece::{direction, nearest, pieces};
+use crate::outline::OutlineShape;
 
 /// A center line and how it ends.
 #[derive(Clone, Debug)]
@@ -18,6 +19,8 @@ pub(super) struct Line {
     /// Whether its start and its end are hidden by other lines: nothing is measured to them then.
     pub(super) is_covered: [bool; 2],
     pub(super) pieces: Vec<Piece<f64>>,
+    /// The whole outline that the ring is, if it is one of few numbers.
+    pub(super) figure: Option<OutlineShape>,
     /// A disk around each piece.
     disks: Vec<(Vec2<f64>, f64)>,
 }
@@ -87,8 +90,14 @@ impl Line {
             cap,
             is_covered: [false; 2],
             pieces,
+            figure: None,
             disks,
         })
+    }
+
+    /// The same line, whose center line is a whole outline.
+    pub(super) fn with_figure(self, figure: Option<OutlineShape>) -> Self {
+        Self { figure, ..self }
     }
 
     /// The same line with another center line of as many pieces.

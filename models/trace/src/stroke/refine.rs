@@ -3,7 +3,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use dvp_core::shape::{Cap, Path, PathRing, Piece, Segment};
+use dvp_core::shape::{Cap, Path, Piece, Segment};
 use dvp_core::{Shape as _, Vec2};
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
@@ -12,8 +12,7 @@ use super::border::Border;
 use super::branch::BLOCK;
 use super::center::run_together;
 use super::draw::{Drawing, Foot, Line, gap};
-use super::piece::pieces;
-use crate::outline::Skyline;
+use crate::outline::{OutlineShape, Skyline};
 use crate::ruler::Ruler;
 use crate::tuning;
 
@@ -134,16 +133,22 @@ fn huber(sigmas: f64) -> f64 {
     sigmas * sigmas * weight * (2.0 - weight)
 }
 
-fn numbers(ring: &PathRing<f64>) -> (Path<f64>, Vec<f64>) {
-    let path = Path { rings: vec![ring.clone()], ..Path::default() };
-    let mut numbers = Vec::new();
-    path.numbers(&mut numbers);
-    (path, numbers)
+/// The numbers of a line: those of its figure, or else of its ring.
+fn numbers(line: &Line) -> Vec<f64> {
+    line.figure.as_ref().and_then(OutlineShape::numbers).unwrap_or_else(|| {
+        let mut numbers = Vec::new();
+        Path { rings: vec![line.ring.clone()], ..Path::default() }.numbers(&mut numbers);
+        numbers
+    })
 }
 
 /// The line with other numbers.
 fn with_numbers(line: &Line, numbers: &[f64]) -> Option<Line> {
-    let (mut path, _) = self::numbers(&line.ring);
+    if let Some(figure) = &line.figure {
+        let figure = figure.with_numbers(numbers)?;
+        return Some(line.with_ring(figure.ring())?.with_figure(Some(figure)));
+    }
+    let mut path = Path { rings: vec![line.ring.clone()], ..Path::default() };
     path.set_numbers(numbers).ok()?;
     line.with_ring(path.rings.pop()?)
 }
@@ -153,7 +158,7 @@ fn moved(drawing: &Drawing, change: &[f64]) -> Option<Drawing> {
     let mut change = change.iter().copied();
     let mut lines = Vec::with_capacity(drawing.lines.len());
     for line in &drawing.lines {
-        let mut numbers = numbers(&line.ring).1;
+        let mut numbers = numbers(line);
         numbers.iter_mut().zip(change.by_ref()).for_each(|(number, change)| *number += change);
         lines.push(with_numbers(line, &numbers)?);
     }
@@ -163,7 +168,7 @@ fn moved(drawing: &Drawing, change: &[f64]) -> Option<Drawing> {
 
 /// The normal equations and their right side.
 fn equations(drawing: &Drawing, border: &Border, misses: &[Miss]) -> Option<(Skyline, Vec<f64>)> {
-    let counts: Vec<_> = drawing.lines.iter().map(|line| numbers(&line.ring).1.len()).collect();
+    let counts: Vec<_> = drawing.lines.iter().map(|line| numbers(line).len()).collect();
     let count = counts.iter().sum::<usize>() + 1;
     // Numbers of a line meet each other, and all of them the width.
     let mut firsts = Vec::with_capacity(count);
@@ -194,13 +199,13 @@ fn equations(drawing: &Drawing, border: &Border, misses: &[Miss]) -> Option<(Sky
 /// How the gap of each mark beside a line changes with the line's numbers: numbers and slopes.
 fn slopes(line: &Line, half: f64, border: &Border, misses: &[&Miss]) -> Vec<Vec<(usize, f64)>> {
     let mut slopes = vec![Vec::new(); misses.len()];
-    let (mut path, mut numbers) = numbers(&line.ring);
+    let mut numbers = numbers(line);
     for number in 0..numbers.len() {
         let old = numbers[number];
         numbers[number] = old + STEP;
-        let moved = path.set_numbers(&numbers).map(|()| path.rings.first().map(pieces).unwrap_or_default());
+        let moved = with_numbers(line, &numbers);
         numbers[number] = old;
-        let Ok(moved) = moved else { continue };
+        let Some(Line { pieces: moved, .. }) = moved else { continue };
         let is_moved: Vec<_> = line.pieces.iter().zip(&moved).map(|(a, b)| a != b).collect();
         for (slopes, miss) in slopes.iter_mut().zip(misses) {
             let piece = match miss.foot {
@@ -229,6 +234,10 @@ fn number_bits(drawing: &Drawing, factor: &Skyline, ruler: &Ruler) -> f64 {
     let mut roots = factor.diagonal();
     let mut price = |lever: f64| roots.next().map_or(0.0, |root| ruler.number(lever / root));
     for line in &drawing.lines {
+        if let Some(numbers) = line.figure.as_ref().and_then(OutlineShape::numbers) {
+            bits += tuning::OUTLINE_PIECE_BITS + numbers.iter().map(|_| price(1.0)).sum::<f64>();
+            continue;
+        }
         (0..2 * line.ring.points.len()).for_each(|_| bits += price(1.0));
         for (segment, piece) in line.ring.segments.iter().zip(&line.pieces) {
             bits += tuning::OUTLINE_PIECE_BITS;

@@ -40,14 +40,16 @@ pub(super) fn tie(ring: &mut PathRing<f64>, pieces: &[Piece<f64>], places: &Plac
             if (upright - angle - turn).abs() * radius < LIMIT { upright - angle } else { turn }
         })
         .collect();
+    let placed: Vec<f64> = angles().zip(&turns).map(|(angle, turn)| angle + turn).collect();
     for (k, segment) in ring.segments.iter_mut().enumerate() {
         if let Segment::Arc { bulge } = segment {
-            *bulge = (bulge.atan() + 0.25 * (turns[(k + 1) % turns.len()] - turns[k])).tan();
+            let sweep = (placed[(k + 1) % placed.len()] - placed[k]) * bulge.signum();
+            let turns = (sweep / core::f64::consts::TAU).floor();
+            *bulge = (0.25 * (sweep - turns * core::f64::consts::TAU)).tan() * bulge.signum();
         }
     }
-    for (point, &turn) in ring.points.iter_mut().zip(&turns) {
-        let arm = Vec2::from_angle((Vec2::from(*point) - center).angle() + turn);
-        *point = (moved + arm * (radius * scale)).to_array();
+    for (point, angle) in ring.points.iter_mut().zip(placed) {
+        *point = (moved + Vec2::from_angle(angle) * (radius * scale)).to_array();
     }
     true
 }

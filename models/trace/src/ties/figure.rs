@@ -55,6 +55,9 @@ pub(super) fn tie(shape: &mut OutlineShape, places: &Places<'_>) {
         OutlineShape::Ellipse { center, radii, .. } => {
             *center = point(*center);
             *radii = radii.map(length);
+            if radii[0] == radii[1] {
+                *shape = OutlineShape::Circle { center: *center, radius: radii[0] };
+            }
         }
         OutlineShape::Rectangle { center, size, corner_radius, angle } => {
             let Some(Sides { low, high }) = Sides::of(*center, *size, *angle) else {

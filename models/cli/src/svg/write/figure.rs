@@ -18,7 +18,8 @@ fn circle(pieces: &[Piece<f64>]) -> Option<Element> {
         return None;
     };
     let is_whole = (end - from).length() < TOLERANCE && (back - to).length() < TOLERANCE;
-    let is_half = |bulge: f64| (bulge.abs() - 1.0).abs() < 1e-9;
+    // An arc's middle is half the chord times the bulge off its chord.
+    let is_half = |bulge: f64| (bulge.abs() - 1.0).abs() * (to - from).length() < TOLERANCE;
     if !is_whole || !is_half(bulge) || !is_half(other) || bulge * other < 0.0 {
         return None;
     }
