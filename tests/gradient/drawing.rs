@@ -124,7 +124,9 @@ proptest! {
         let once = flat_grad(&grad);
         let mut value = |x: &[f64]| {
             unflat(&mut moved, x);
-            drawn(&moved, how).map_or(f64::NAN, |drawing| pair(&moved, &drawing, &cotangent))
+            // Longer steps than those above may change the numbers of vertices too: such a scene is not steady.
+            let same = drawn(&moved, how).ok().filter(|other| other.starts == drawing.starts && other.breaks == drawing.breaks);
+            same.map_or(f64::NAN, |other| pair(&moved, &other, &cotangent))
         };
         prop_assume!(are_steady(&x, &mut value));
         compare(&x, &once, 1e-6, value).map_err(TestCaseError::fail)?;
