@@ -9,7 +9,21 @@ use core::fmt::Write as _;
 ///
 /// # Errors
 /// The lanes that disagree, with both numbers.
-pub fn compare(x: &[f64], grad: &[f64], tolerance: f64, mut f: impl FnMut(&[f64]) -> f64) -> Result<(), String> {
+pub fn compare(x: &[f64], grad: &[f64], tolerance: f64, f: impl FnMut(&[f64]) -> f64) -> Result<(), String> {
+    compare_by(step, x, grad, tolerance, f)
+}
+
+/// [`compare`] by steps of another length.
+///
+/// # Errors
+/// The lanes that disagree, with both numbers.
+pub fn compare_by(
+    step: impl Fn(f64) -> f64,
+    x: &[f64],
+    grad: &[f64],
+    tolerance: f64,
+    mut f: impl FnMut(&[f64]) -> f64,
+) -> Result<(), String> {
     if x.is_empty() || x.len() != grad.len() {
         return Err(format!("{} inputs, {} gradients", x.len(), grad.len()));
     }

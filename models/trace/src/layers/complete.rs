@@ -19,6 +19,9 @@ use crate::sample::RingSamples;
 use crate::stroke::StrokeFit;
 use crate::tuning;
 
+/// Most ways to link the parts of one thing that are tried.
+const MOST_LINKED: usize = 4;
+
 /// Most pixels that are asked which stretch makes them wrong.
 const MOST_ASKED: usize = 32;
 
@@ -34,6 +37,8 @@ pub(super) struct Completion<'a> {
     /// What speaks for the order.
     pub(super) order: &'a Order,
     pub(super) ruler: Ruler,
+    /// Pairs of faces that were found to be one thing behind another, when the order was.
+    pub(super) united: Vec<(u32, u32)>,
     /// Samples that outlines were fitted to.
     pub(super) spent: Cell<usize>,
 }
@@ -74,6 +79,17 @@ impl Completion<'_> {
     /// Place of a face in the order of painting.
     pub(super) fn rank(&self, face: u32) -> usize {
         self.rank[face as usize]
+    }
+
+    /// Whether a face has no flat pixel: too small to tell how it goes on.
+    pub(super) fn is_small(&self, face: u32) -> bool {
+        self.partition.faces[face as usize].flat == 0
+    }
+
+    /// The pen that has drawn a group, if it is one face that one has drawn.
+    pub(super) fn pen(&self, group: &[u32]) -> Option<&StrokeFit> {
+        let [face] = group else { return None };
+        self.pens[*face as usize].as_ref()
     }
 
     /// The faces beside some faces that come to lie in front of them if they go where the hindmost of them is.
@@ -119,13 +135,14 @@ impl Completion<'_> {
     pub(super) fn outlines(&self, group: &[u32]) -> Completed {
         let rank = self.hindmost(group);
         let wanted = |label: u32| self.wanted(label, group, rank);
-        // A face without a flat pixel is too small to tell how it goes on.
-        let is_small = |face: u32| self.partition.faces[face as usize].flat == 0;
         let parts = group.iter().flat_map(|&face| self.rings[face as usize].iter().map(move |ring| (face, ring)));
         let mut walks: Vec<Walk<'_>> = parts
             .map(|(face, ring)| {
-                let hidden =
-                    ring.steps.iter().map(|step| self.hidden(step, rank, is_small(face), group.len() > 1)).collect();
+                let hidden = ring
+                    .steps
+                    .iter()
+                    .map(|step| self.hidden(step, rank, self.is_small(face), group.len() > 1))
+                    .collect();
                 Walk { ring, hidden }
             })
             // A hole that is filled by what lies in front of it is none.
@@ -134,8 +151,10 @@ impl Completion<'_> {
         // What is not hidden has no boundary but its own.
         let is_seen = |at: Vec2<f64>| self.pure_face(at).is_some_and(|face| wanted(face).is_some());
         let mut samples: Vec<RingSamples> = walks.iter().map(Walk::samples).collect();
-        let linked = link::relinked(&samples, is_seen).map(|samples| self.fit(&samples));
+        let most = if group.len() > 1 { MOST_LINKED } else { 1 };
+        let linked = link::relinked(&samples, is_seen, most).into_iter().map(|samples| self.fit(&samples));
         let linked = linked.filter(|linked| self.check(&linked.outlines, wanted).is_ok());
+        let linked = linked.min_by(|a, b| a.bits.total_cmp(&b.bits));
         // What lies along others costs nothing there: it is they that have the boundary. But that it turns must be said.
         let mut bits = None;
         loop {

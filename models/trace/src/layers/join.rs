@@ -28,7 +28,10 @@ pub(super) fn groups(completion: &mut Completion<'_>) -> Vec<(Vec<u32>, Vec<Outl
         if again.completed.agrees || again.faces.len() == 1 {
             painted.push((rank, again));
         } else {
-            painted.extend(again.faces.iter().map(|&face| (rank, Group::of(completion, vec![face]))));
+            // One thing they still are, in outlines of their own.
+            let alone = |&face: &u32| completion.outlines(&[face]);
+            let apart = again.faces.iter().map(alone).fold(Completed::none(), |all, part| all.with(&part));
+            painted.push((rank, Group { faces: again.faces, completed: apart }));
         }
     }
     painted.sort_by_key(|&(rank, _)| rank);
@@ -43,9 +46,16 @@ struct Group {
 
 impl Group {
     fn of(completion: &Completion<'_>, faces: Vec<u32>) -> Self {
-        let is_pen = completion.pens[faces[0] as usize].is_some();
-        let completed = if is_pen { Completed::none() } else { completion.outlines(&faces) };
+        let completed = match completion.pen(&faces) {
+            Some(pen) => Completed { bits: pen.bits + pen.misfit, ..Completed::none() },
+            None => completion.outlines(&faces),
+        };
         Self { faces, completed }
+    }
+
+    /// Whether it is a thing as people draw them; what is seen of a few pixels may be a part of anything.
+    fn is_whole(&self, completion: &Completion<'_>) -> bool {
+        self.completed.is_whole() && !self.faces.iter().all(|&face| completion.is_small(face))
     }
 
     /// Both as one, at the place of the hindmost in the order, with the bits that are saved; none if that is no shorter.
@@ -53,7 +63,10 @@ impl Group {
         let faces: Vec<u32> = self.faces.iter().chain(&other.faces).copied().collect();
         let ranks: Vec<usize> = faces.iter().map(|&face| completion.rank(face)).collect();
         // Two things that are whole by themselves may be of one color; parts of things hardly are.
-        let are_whole = self.completed.is_whole() && other.completed.is_whole();
+        let are_whole = self.is_whole(completion) && other.is_whole(completion);
+        if are_whole && !is_shown_behind(completion, &self.faces, &other.faces) {
+            return None;
+        }
         // What lies between where whole things are and where they go comes to lie in front of them, which may cost more than is saved.
         let crossed = if are_whole { completion.crossed(&faces) } else { BTreeSet::new() };
         let others = |completion: &Completion<'_>| -> f64 {
@@ -69,8 +82,13 @@ impl Group {
         let color = if are_whole { 0.0 } else { COLOR_BITS };
         let apart = self.completed.with(&other.completed);
         let alone = apart.bits + color + before - after;
+        // What a pen has drawn and what not are no one thing but as outlines.
+        let has_pen = [self, other].iter().any(|group| completion.pen(&group.faces).is_some());
+        if has_pen && !completed.agrees {
+            return None;
+        }
         // What no outline through both explains is one thing in two outlines.
-        let joined = if completed.agrees && completed.bits <= apart.bits { completed } else { apart };
+        let joined = if has_pen || completed.agrees && completed.bits <= apart.bits { completed } else { apart };
         let saved = alone - joined.bits;
         (saved > tuning::LEAST_SAVED).then_some((saved, Self { faces, completed: joined }))
     }
@@ -82,7 +100,7 @@ type Pair = (u32, u32, Option<(f64, Group)>);
 /// The faces of `candidates` in groups: again and again those two become one that save most by it.
 fn join(completion: &mut Completion<'_>, candidates: &[u32]) -> Vec<Group> {
     let mut groups: Vec<Group> = candidates.iter().map(|&face| Group::of(completion, vec![face])).collect();
-    if completion.is_spent() {
+    if groups.len() < 2 || completion.is_spent() {
         return groups;
     }
     if groups.len() > tuning::MOST_PAIRED {
@@ -113,6 +131,13 @@ fn join(completion: &mut Completion<'_>, candidates: &[u32]) -> Vec<Group> {
 
 /// Many groups as one, unless they are things by themselves and no outline through all is shorter.
 fn together(completion: &mut Completion<'_>, groups: Vec<Group>) -> Vec<Group> {
+    let are_whole = groups.iter().all(|group| group.is_whole(completion));
+    let is_shown = |group: &Group| {
+        groups.iter().any(|other| is_shown_behind(completion, &group.faces, &other.faces) && other.faces != group.faces)
+    };
+    if are_whole && !groups.iter().all(is_shown) {
+        return groups;
+    }
     let faces: Vec<u32> = groups.iter().flat_map(|group| &group.faces).copied().collect();
     let apart = groups.iter().fold(Completed::none(), |all, group| all.with(&group.completed));
     let ranks: Vec<usize> = faces.iter().map(|&face| completion.rank(face)).collect();
@@ -121,7 +146,7 @@ fn together(completion: &mut Completion<'_>, groups: Vec<Group>) -> Vec<Group> {
     if completed.agrees && completed.bits < apart.bits - tuning::LEAST_SAVED {
         return vec![Group { faces, completed }];
     }
-    if !groups.iter().all(|group| group.completed.is_whole()) {
+    if !are_whole {
         return vec![Group { faces, completed: apart }];
     }
     for (&face, rank) in faces.iter().zip(ranks) {
@@ -131,35 +156,16 @@ fn together(completion: &mut Completion<'_>, groups: Vec<Group>) -> Vec<Group> {
 }
 
 /// What a color costs: three numbers of 8 bits.
-const COLOR_BITS: f64 = 24.0;
+pub(super) const COLOR_BITS: f64 = 24.0;
 
-/// Faces that may be one thing: of one color, where a way leads from one to the other behind what is shown to lie in front of both. That it
-/// is painted later is not enough: the fields of a chess board are painted in some order, too.
+/// Faces that may be one thing: of one color, where a way leads from one to the other behind what lies in front of both.
 fn candidates(completion: &Completion<'_>) -> Vec<Vec<u32>> {
-    let Completion { partition, pens, .. } = completion;
     let mut sets = DisjointSets::default();
-    sets.reset(partition.faces.len() as u32);
+    sets.reset(completion.partition.faces.len() as u32);
     let painted = completion.painted();
-    let mut reached = vec![false; partition.faces.len()];
-    let is_shown = |front: u32, behind: u32| completion.order.in_front.contains(&(front, behind));
-    for &face in painted.iter().filter(|&&face| pens[face as usize].is_none()) {
-        let (rank, color) = (completion.rank(face), partition.faces[face as usize].color);
-        let mut ways = vec![face];
-        reached.fill(false);
-        while let Some(way) = ways.pop() {
-            for &next in &completion.neighbors[way as usize] {
-                let is_same = partition.faces[next as usize].color == color && pens[next as usize].is_none();
-                // The first and the last that the way leads behind hide what is at its ends.
-                let is_hidden = if is_same { is_shown(way, next) } else { way != face || is_shown(next, face) };
-                if completion.rank(next) > rank && !reached[next as usize] && is_hidden {
-                    reached[next as usize] = true;
-                    if is_same {
-                        sets.unite(face, next);
-                    } else {
-                        ways.push(next);
-                    }
-                }
-            }
+    for &face in &painted {
+        for other in reached(completion, face, |_, _| true) {
+            sets.unite(face, other);
         }
     }
     let mut groups: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
@@ -167,4 +173,36 @@ fn candidates(completion: &Completion<'_>) -> Vec<Vec<u32>> {
         groups.entry(sets.root(face)).or_default().push(face);
     }
     groups.into_values().collect()
+}
+
+/// Whether a way leads from one of some faces to one of others behind what is *shown* to lie in front of both. That it is painted later is
+/// not enough for things that are whole by themselves: the fields of a chess board are painted in some order, too.
+fn is_shown_behind(completion: &Completion<'_>, faces: &[u32], others: &[u32]) -> bool {
+    let is_shown = |front: u32, behind: u32| completion.order.in_front.contains(&(front, behind));
+    let leads = |from: &[u32], to: &[u32]| {
+        from.iter().any(|&face| reached(completion, face, is_shown).iter().any(|other| to.contains(other)))
+    };
+    let is_united =
+        |&(a, b): &(u32, u32)| faces.contains(&a) && others.contains(&b) || faces.contains(&b) && others.contains(&a);
+    completion.united.iter().any(is_united) || leads(faces, others) || leads(others, faces)
+}
+
+/// The faces of the color of `face` that can be reached from it behind what is painted later; the first and the last that the way leads
+/// behind hide what is at its ends, by `hides` (front, behind).
+fn reached(completion: &Completion<'_>, face: u32, hides: impl Fn(u32, u32) -> bool) -> Vec<u32> {
+    let partition = completion.partition;
+    let (rank, color) = (completion.rank(face), partition.faces[face as usize].color);
+    let mut seen = BTreeSet::new();
+    let mut found = Vec::new();
+    let mut ways = vec![face];
+    while let Some(way) = ways.pop() {
+        for &next in &completion.neighbors[way as usize] {
+            let is_same = partition.faces[next as usize].color == color;
+            let is_hidden = if is_same { hides(way, next) } else { way != face || hides(next, face) };
+            if completion.rank(next) > rank && is_hidden && seen.insert(next) {
+                if is_same { found.push(next) } else { ways.push(next) }
+            }
+        }
+    }
+    found
 }

@@ -16,52 +16,93 @@ use crate::sample::{RingSamples, Sample};
 /// Samples at the end of a stretch that tell its direction.
 const TIP: usize = 4;
 
-/// Price of a pixel on the way in which something else is seen, in squared radians: more than any turn.
-const SEEN: f64 = 50.0;
+/// Price of a pixel on the way in which something else is seen, in squared radians: some of them are more than any turn.
+const SEEN: f64 = 5.0;
 
-/// The open stretches of rings linked again by the smoothest ways; none if these are the links that they have. `is_seen`: whether a pixel,
-/// [column, row], is known to be of no hidden boundary.
-pub(super) fn relinked(rings: &[RingSamples], is_seen: impl Fn(Vec2<f64>) -> bool) -> Option<Vec<RingSamples>> {
+/// Fewest samples of a stretch that is linked: less tells no direction.
+const LEAST_RUN: usize = 2;
+
+/// The open stretches of rings linked again, by the ways that bend least first: at most `most` of them, without the links that they have.
+/// `is_seen`: whether a place, pixels, is known to be of no hidden boundary.
+pub(super) fn relinked(
+    rings: &[RingSamples],
+    is_seen: impl Fn(Vec2<f64>) -> bool,
+    most: usize,
+) -> Vec<Vec<RingSamples>> {
     let (closed, open): (Vec<&RingSamples>, Vec<&RingSamples>) = rings.iter().partition(|ring| ring.closed);
     let mut next: Vec<usize> = Vec::new();
+    let mut runs: Vec<&Vec<Sample>> = Vec::new();
     for ring in &open {
-        let (first, count) = (next.len(), ring.runs.len());
+        let first = next.len();
+        runs.extend(ring.runs.iter().filter(|run| run.len() >= LEAST_RUN));
+        let count = runs.len() - first;
         next.extend((0..count).map(|k| first + (k + 1) % count));
     }
-    let runs: Vec<&Vec<Sample>> = open.iter().flat_map(|ring| &ring.runs).collect();
     let count = runs.len();
     if count < 2 {
-        return None;
+        return Vec::new();
     }
-    let tips: Vec<[Tip; 2]> =
-        runs.iter().map(|run| Some([Tip::of(run.iter())?, Tip::of(run.iter().rev())?])).collect::<Option<_>>()?;
+    let tips: Option<Vec<[Tip; 2]>> =
+        runs.iter().map(|run| Some([Tip::of(run.iter())?, Tip::of(run.iter().rev())?])).collect();
+    let Some(tips) = tips else { return Vec::new() };
     let price = |from: usize, to: usize| tips[from][1].price(&tips[to][0], &is_seen);
     let prices: Vec<f64> = (0..count * count).map(|k| price(k / count, k % count)).collect();
-    let mut is_changed = false;
+    let price = |next: &[usize]| next.iter().enumerate().map(|(from, to)| prices[from * count + to]).sum::<f64>();
+    let mut ways = if count <= MOST_PERMUTED { permutations(count) } else { vec![swapped(next.clone(), price)] };
+    ways.retain(|way| *way != next);
+    ways.sort_by(|a, b| price(a).total_cmp(&price(b)));
+    ways.truncate(most);
+    ways.iter().map(|way| closed.iter().map(|&ring| ring.clone()).chain(followed(way, &runs)).collect()).collect()
+}
+
+/// Most stretches whose every link is tried.
+const MOST_PERMUTED: usize = 5;
+
+/// All orders of the first numbers.
+fn permutations(count: usize) -> Vec<Vec<usize>> {
+    let mut all = vec![Vec::new()];
+    for _ in 0..count {
+        let longer = |order: &Vec<usize>| {
+            let order = order.clone();
+            let free = (0..count).filter({
+                let order = order.clone();
+                move |k| !order.contains(k)
+            });
+            free.map(move |k| order.iter().copied().chain([k]).collect()).collect::<Vec<Vec<usize>>>()
+        };
+        all = all.iter().flat_map(longer).collect();
+    }
+    all
+}
+
+/// What follows each stretch, with two exchanged again and again as long as that costs less.
+fn swapped(mut next: Vec<usize>, price: impl Fn(&[usize]) -> f64) -> Vec<usize> {
     loop {
-        let mut best = (1e-6, 0, 0);
-        for a in 0..count {
+        let now = price(&next);
+        let mut best = (now - 1e-6, 0, 0);
+        for a in 0..next.len() {
             for b in 0..a {
-                let now = prices[a * count + next[a]] + prices[b * count + next[b]];
-                let then = prices[a * count + next[b]] + prices[b * count + next[a]];
-                if now - then > best.0 {
-                    best = (now - then, a, b);
+                next.swap(a, b);
+                let then = price(&next);
+                if then < best.0 {
+                    best = (then, a, b);
                 }
+                next.swap(a, b);
             }
         }
         let (_, a, b) = best;
         if a == b {
-            break;
+            return next;
         }
         next.swap(a, b);
-        is_changed = true;
     }
-    if !is_changed {
-        return None;
-    }
-    let mut linked: Vec<RingSamples> = closed.into_iter().cloned().collect();
-    let mut is_done = vec![false; count];
-    for first in 0..count {
+}
+
+/// The rings that stretches make, each followed by the one that `next` names.
+fn followed(next: &[usize], runs: &[&Vec<Sample>]) -> Vec<RingSamples> {
+    let mut is_done = vec![false; next.len()];
+    let mut rings = Vec::new();
+    for first in 0..next.len() {
         let mut ring = RingSamples::default();
         let mut k = first;
         while !is_done[k] {
@@ -70,10 +111,10 @@ pub(super) fn relinked(rings: &[RingSamples], is_seen: impl Fn(Vec2<f64>) -> boo
             k = next[k];
         }
         if !ring.runs.is_empty() {
-            linked.push(ring);
+            rings.push(ring);
         }
     }
-    Some(linked)
+    rings
 }
 
 /// The end of a stretch.
@@ -92,16 +133,30 @@ impl Tip {
         Some(Self { at, direction: (at - inner).normalized()? })
     }
 
-    /// What it takes to go on from here to where another stretch begins: the bending of the smoothest way (for small angles, whatever
-    /// the distance), and the pixels that it must not pass.
+    /// What it takes to go on from here to where another stretch begins: the bending of the smoothest way, a cubic curve, and the pixels
+    /// that it must not pass.
     fn price(&self, to: &Self, is_seen: impl Fn(Vec2<f64>) -> bool) -> f64 {
         let chord = to.at - self.at;
         let Some(along) = chord.normalized() else { return 0.0 };
         let angle = |from: Vec2<f64>, to: Vec2<f64>| from.cross(to).atan2(from.dot(to));
         let (first, last) = (angle(self.direction, along), angle(along, -to.direction));
         let length = chord.length();
-        let steps = length as usize;
-        let seen = (2..steps.saturating_sub(1)).filter(|&k| is_seen(self.at + along * k as f64)).count();
-        4.0 * (first * first + last * last - first * last) + SEEN * seen as f64 + 0.01 * length
+        // The handles of a circular arc, for half the turn at each end.
+        let handle = |angle: f64| length * 2.0 / 3.0 / (1.0 + angle.cos().max(-0.5));
+        let (out, back) = (self.at + self.direction * handle(first), to.at + to.direction * handle(last));
+        let at = |t: f64| {
+            let s = 1.0 - t;
+            self.at * (s * s * s) + out * (3.0 * s * s * t) + back * (3.0 * s * t * t) + to.at * (t * t * t)
+        };
+        let steps = (length as usize).min(MOST_STEPS);
+        let seen = (2..steps.saturating_sub(1)).filter(|&k| is_seen(at(k as f64 / steps as f64))).count();
+        let turned = 4.0 * (first * first + last * last - first * last);
+        BENT * turned / length.max(1.0) + turned + SEEN * seen as f64 + 0.01 * length
     }
 }
+
+/// Price of bending by one radian within a pixel, beside that of the turn itself.
+const BENT: f64 = 4.0;
+
+/// Most places of a way that are looked at.
+const MOST_STEPS: usize = 64;

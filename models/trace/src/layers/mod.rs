@@ -89,13 +89,14 @@ pub fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<Color>) 
         neighbors: complete::neighbors(rings),
         order: &order,
         ruler,
+        united: Vec::new(),
         spent: Cell::new(0),
     };
     settle::settle(&mut completion);
     let mut layers = Vec::new();
     for (group, outlines) in join::groups(&mut completion) {
         let color = partition.color(group[0]);
-        match &pens[group[0] as usize] {
+        match completion.pen(&group) {
             Some(pen) => {
                 let bits = (pen.bits + pen.misfit) / pen.strokes.len().max(1) as f64;
                 layers.extend(pen.strokes.iter().map(|stroke| Layer {

@@ -7,6 +7,7 @@ use alloc::collections::{BTreeMap, BTreeSet};
 use alloc::vec::Vec;
 
 use super::complete::Completion;
+use super::join::COLOR_BITS;
 use crate::partition::OUTSIDE;
 use crate::tuning;
 
@@ -20,7 +21,7 @@ pub(super) fn settle(completion: &mut Completion<'_>) {
     let mut order = search.completion.painted();
     for _ in 0..tuning::MOST_ROUNDS {
         let mut is_changed = false;
-        for &(a, b) in &pairs {
+        for (a, b) in pairs.clone() {
             if search.completion.is_spent() {
                 break;
             }
@@ -47,6 +48,7 @@ pub(super) fn settle(completion: &mut Completion<'_>) {
                 search.completion.paint(&order);
             }
         }
+        is_changed |= search.unite(&mut order, &mut pairs);
         if !is_changed || search.completion.is_spent() {
             break;
         }
@@ -56,22 +58,108 @@ pub(super) fn settle(completion: &mut Completion<'_>) {
 
 struct Search<'a, 'b> {
     completion: &'a mut Completion<'b>,
-    /// Bits of a face behind some of its neighbors.
-    known: BTreeMap<(u32, Vec<u32>), f64>,
+    /// Bits of a face behind some of its neighbors, and whether it is whole.
+    known: BTreeMap<(u32, Vec<u32>), (f64, bool)>,
 }
 
 impl Search<'_, '_> {
+    /// Puts what lies between two faces of one color in front of both where they are shorter as one thing: of what is seen on both sides
+    /// of something, and within its openings, no junction need be clear.
+    /// What is known of `pairs` by that is not asked again.
+    fn unite(&mut self, order: &mut Vec<u32>, pairs: &mut BTreeSet<(u32, u32)>) -> bool {
+        let mut is_changed = false;
+        for (a, b, between) in self.parted() {
+            if self.completion.is_spent() {
+                break;
+            }
+            let place = |face: u32| order.iter().position(|&other| other == face);
+            let (Some(at_a), Some(at_b), Some(at)) = (place(a), place(b), place(between)) else { continue };
+            if at > at_a && at > at_b {
+                continue;
+            }
+            let mut moved = order.clone();
+            moved.remove(at);
+            moved.insert(at_a.max(at_b), between);
+            let crossed = &order[at..=at_a.max(at_b)];
+            let mut touched: Vec<u32> = self.completion.neighbors[between as usize].clone();
+            touched.retain(|other| crossed.contains(other) && *other != a && *other != b);
+            // That lines lie on what they touch is no evidence but a custom.
+            let votes = |other: u32| {
+                let custom = if self.completion.pen(&[other]).is_some() { tuning::PEN_VOTE } else { 0.0 };
+                (self.completion.order.net(other, between) - custom).max(0.0)
+            };
+            let against: f64 = touched.iter().copied().chain([a, b]).map(votes).sum();
+            touched.push(between);
+            let before = self.bits(&touched) + self.bits(&[a, b]);
+            self.completion.paint(&moved);
+            let apart = self.bits(&[a, b]);
+            // Two things that are whole by themselves may be of one color; parts of things hardly are.
+            let color = if self.is_whole(a) && self.is_whole(b) { 0.0 } else { COLOR_BITS };
+            self.completion.sink(&[a, b]);
+            let together = self.completion.outlines(&[a, b]);
+            let has_pen = [a, b].iter().any(|&face| self.completion.pen(&[face]).is_some());
+            let joined = match together.agrees {
+                true if has_pen => together.bits,
+                true => together.bits.min(apart),
+                false if has_pen => f64::INFINITY,
+                false => apart,
+            };
+            let after = self.bits(&touched) + joined;
+            if after + against < before + color - tuning::LEAST_SAVED {
+                *order = moved;
+                is_changed = true;
+                self.completion.united.push((a, b));
+                for face in [a, b] {
+                    pairs.remove(&(face.min(between), face.max(between)));
+                }
+            }
+            self.completion.paint(order);
+        }
+        is_changed
+    }
+
+    /// Faces of one color that another one, painted before one of them, lies between: (face, face, between).
+    fn parted(&self) -> Vec<(u32, u32, u32)> {
+        let completion = &*self.completion;
+        let is_open = |face: u32| completion.rank(face) > 0;
+        let color = |face: u32| completion.partition.faces[face as usize].color;
+        let mut found = Vec::new();
+        for between in (0..completion.rank.len() as u32).filter(|&face| is_open(face)) {
+            let around = &completion.neighbors[between as usize];
+            for (k, &a) in around.iter().enumerate().filter(|&(_, &a)| is_open(a)) {
+                let same = around[..k].iter().copied().filter(|&b| is_open(b) && color(b) == color(a));
+                found.extend(
+                    same.filter(|&b| completion.rank(a).max(completion.rank(b)) > completion.rank(between))
+                        .map(|b| (a, b, between)),
+                );
+            }
+        }
+        found
+    }
+
     /// Bits of faces, each painted alone.
     fn bits(&mut self, faces: &[u32]) -> f64 {
-        let mut sum = 0.0;
-        for &face in faces {
-            let rank = self.completion.rank(face);
-            let mut front = self.completion.neighbors[face as usize].clone();
-            front.retain(|&other| self.completion.rank(other) > rank);
-            let completion = &self.completion;
-            sum += *self.known.entry((face, front)).or_insert_with(|| completion.outlines(&[face]).bits);
-        }
-        sum
+        faces.iter().map(|&face| self.alone(face).0).sum()
+    }
+
+    /// Whether a face, painted alone, is a thing as people draw them.
+    fn is_whole(&mut self, face: u32) -> bool {
+        self.alone(face).1
+    }
+
+    fn alone(&mut self, face: u32) -> (f64, bool) {
+        let rank = self.completion.rank(face);
+        let mut front = self.completion.neighbors[face as usize].clone();
+        front.retain(|&other| self.completion.rank(other) > rank);
+        let completion = &self.completion;
+        let of_face = || {
+            if let Some(pen) = completion.pen(&[face]) {
+                return (pen.bits + pen.misfit, true);
+            }
+            let completed = completion.outlines(&[face]);
+            (completed.bits, completed.is_whole() && !completion.is_small(face))
+        };
+        *self.known.entry((face, front)).or_insert_with(of_face)
     }
 
     /// Painted faces that meet where a third one does.
