@@ -186,8 +186,6 @@ pub const UNKNOWN_STAINED: f64 = 0.1;
 pub const MOST_ROUNDS: usize = 3;
 /// Bits that another order, or one thing in place of two, must save.
 pub const LEAST_SAVED: f64 = 1.0;
-/// Bits for a hidden stretch of a boundary that cannot go straight on: a corner, which may be about anywhere in it.
-pub const PINNED_BITS: f64 = 5.0;
 /// Most bits for faces lying to one another as others of their colors do: less than a junction that was read, more than [`ENCLOSED_VOTE`].
 pub const COLORS_VOTE: f64 = 8.0;
 /// Bits from which on a vote is not asked again.

@@ -1,9 +1,9 @@
 //! Outlines through what is seen of a layer, completed where others hide it.
 
-use alloc::collections::BTreeSet;
+use alloc::collections::{BTreeMap, BTreeSet};
 use alloc::vec;
 use alloc::vec::Vec;
-use core::cell::Cell;
+use core::cell::{Cell, RefCell};
 
 use dvp_core::Vec2;
 use dvp_core::shape::{FillRule, Outline as Polygons, Path, PathRing, Shape as _};
@@ -39,6 +39,8 @@ pub(super) struct Completion<'a> {
     pub(super) ruler: Ruler,
     /// Pairs of faces that were found to be one thing behind another, when the order was.
     pub(super) united: Vec<(u32, u32)>,
+    /// Outlines that were found, by the faces painted together and those in front of them.
+    pub(super) known: RefCell<BTreeMap<(Vec<u32>, Vec<u32>), Completed>>,
     /// Samples that outlines were fitted to.
     pub(super) spent: Cell<usize>,
 }
@@ -134,6 +136,20 @@ impl Completion<'_> {
     /// What others hide may go anywhere, as long as it hides nothing itself: where it would, it goes along what hides it.
     pub(super) fn outlines(&self, group: &[u32]) -> Completed {
         let rank = self.hindmost(group);
+        let mut faces = group.to_vec();
+        faces.sort_unstable();
+        let is_in_front = |face: &u32| self.rank(*face) > rank && faces.binary_search(face).is_err();
+        let front = (0..self.rank.len() as u32).filter(is_in_front).collect();
+        let key = (faces, front);
+        if let Some(known) = self.known.borrow().get(&key) {
+            return known.clone();
+        }
+        let completed = self.completed(group, rank);
+        self.known.borrow_mut().insert(key, completed.clone());
+        completed
+    }
+
+    fn completed(&self, group: &[u32], rank: usize) -> Completed {
         let wanted = |label: u32| self.wanted(label, group, rank);
         let parts = group.iter().flat_map(|&face| self.rings[face as usize].iter().map(move |ring| (face, ring)));
         let mut walks: Vec<Walk<'_>> = parts
@@ -155,22 +171,14 @@ impl Completion<'_> {
         let linked = link::relinked(&samples, is_seen, most).into_iter().map(|samples| self.fit(&samples));
         let linked = linked.filter(|linked| self.check(&linked.outlines, wanted).is_ok());
         let linked = linked.min_by(|a, b| a.bits.total_cmp(&b.bits));
-        // What lies along others costs nothing there: it is they that have the boundary. But that it turns must be said.
-        let mut bits = None;
         loop {
             let walked = self.fit(&samples);
-            let free = *bits.get_or_insert(walked.bits);
             match self.check(&walked.outlines, wanted) {
-                Ok(()) => {
-                    let walked = Completed { bits: walked.bits.min(free), ..walked };
-                    return linked.filter(|linked| linked.bits <= walked.bits).unwrap_or(walked);
-                }
+                Ok(()) => return linked.filter(|linked| linked.bits <= walked.bits).unwrap_or(walked),
                 Err(wrong) => {
-                    let pinned = pin(&mut walks, &wrong);
-                    if pinned == 0 {
+                    if !pin(&mut walks, &wrong) {
                         break;
                     }
-                    bits = Some(free + tuning::PINNED_BITS * pinned as f64);
                     samples = walks.iter().map(Walk::samples).collect();
                 }
             }
@@ -278,11 +286,11 @@ impl Walk<'_> {
     }
 }
 
-/// Pins what is nearest to every pixel that is wrong; everything if there is no outline at all. How many stretches that are.
-fn pin(walks: &mut [Walk<'_>], wrong: &[[usize; 2]]) -> usize {
+/// Pins what is nearest to every pixel that is wrong; everything if there is no outline at all. Whether there was anything to pin.
+fn pin(walks: &mut [Walk<'_>], wrong: &[[usize; 2]]) -> bool {
     if wrong.is_empty() {
         let free = walks.iter_mut().flat_map(|walk| &mut walk.hidden).filter(|hidden| **hidden == Some(Hidden::Free));
-        return free.map(|hidden| *hidden = None).count().min(1);
+        return free.map(|hidden| *hidden = None).count() > 0;
     }
     let nearest = |&[x, y]: &[usize; 2]| {
         let at = Vec2::new(x as f64 + 0.5, y as f64 + 0.5);
@@ -295,14 +303,12 @@ fn pin(walks: &mut [Walk<'_>], wrong: &[[usize; 2]]) -> usize {
     // Few of many tell as much.
     let every = wrong.len().div_ceil(MOST_ASKED);
     let places: Vec<(usize, usize)> = wrong.iter().step_by(every.max(1)).filter_map(nearest).collect();
-    let mut count = 0;
     for &(w, k) in &places {
         if walks[w].hidden[k].is_some() {
             walks[w].pin(k);
-            count += 1;
         }
     }
-    count
+    !places.is_empty()
 }
 
 /// The polygon of an outline.

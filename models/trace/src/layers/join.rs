@@ -12,6 +12,10 @@ use crate::tuning;
 
 /// What is painted, from back to front: faces that are one thing, with their outlines (none for what a pen draws).
 pub(super) fn groups(completion: &mut Completion<'_>) -> Vec<(Vec<u32>, Vec<Outline>)> {
+    painted(completion).into_iter().map(|group| (group.faces, group.completed.outlines)).collect()
+}
+
+fn painted(completion: &mut Completion<'_>) -> Vec<Group> {
     let mut groups: Vec<Group> = Vec::new();
     for candidates in candidates(completion) {
         groups.extend(join(completion, &candidates));
@@ -35,7 +39,15 @@ pub(super) fn groups(completion: &mut Completion<'_>) -> Vec<(Vec<u32>, Vec<Outl
         }
     }
     painted.sort_by_key(|&(rank, _)| rank);
-    painted.into_iter().map(|(_, group)| (group.faces, group.completed.outlines)).collect()
+    painted.into_iter().map(|(_, group)| group).collect()
+}
+
+/// Bits of everything that is painted, in the present order.
+pub(super) fn total(completion: &mut Completion<'_>) -> f64 {
+    let rank = completion.rank.clone();
+    let groups = painted(completion);
+    completion.rank = rank;
+    groups.iter().map(|group| group.completed.bits + COLOR_BITS).sum()
 }
 
 /// Faces that are painted together.
@@ -159,7 +171,7 @@ fn together(completion: &mut Completion<'_>, groups: Vec<Group>) -> Vec<Group> {
 pub(super) const COLOR_BITS: f64 = 24.0;
 
 /// Faces that may be one thing: of one color, where a way leads from one to the other behind what lies in front of both.
-fn candidates(completion: &Completion<'_>) -> Vec<Vec<u32>> {
+pub(super) fn candidates(completion: &Completion<'_>) -> Vec<Vec<u32>> {
     let mut sets = DisjointSets::default();
     sets.reset(completion.partition.faces.len() as u32);
     let painted = completion.painted();

@@ -23,7 +23,7 @@ mod settle;
 mod visible;
 
 use alloc::vec::Vec;
-use core::cell::Cell;
+use core::cell::{Cell, RefCell};
 
 use dvp_core::shape::Stroke;
 
@@ -90,6 +90,7 @@ pub fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<Color>) 
         order: &order,
         ruler,
         united: Vec::new(),
+        known: RefCell::default(),
         spent: Cell::new(0),
     };
     settle::settle(&mut completion);

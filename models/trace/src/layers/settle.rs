@@ -7,7 +7,7 @@ use alloc::collections::{BTreeMap, BTreeSet};
 use alloc::vec::Vec;
 
 use super::complete::Completion;
-use super::join::COLOR_BITS;
+use super::join;
 use crate::partition::OUTSIDE;
 use crate::tuning;
 
@@ -19,9 +19,11 @@ pub(super) fn settle(completion: &mut Completion<'_>) {
     let mut pairs = search.pairs();
     pairs.retain(|&(a, b)| net(a, b).abs() < tuning::CLEAR_VOTE);
     let mut order = search.completion.painted();
+    // Bits of everything in the present order, once asked for.
+    let mut total: Option<f64> = None;
     for _ in 0..tuning::MOST_ROUNDS {
         let mut is_changed = false;
-        for (a, b) in pairs.clone() {
+        for &(a, b) in &pairs {
             if search.completion.is_spent() {
                 break;
             }
@@ -40,7 +42,17 @@ pub(super) fn settle(completion: &mut Completion<'_>) {
                 touched.push(face);
                 let before = search.bits(&touched);
                 search.completion.paint(&moved);
+                // Shorter one by one, and with all that may be one thing behind others.
                 if search.bits(&touched) + against < before - tuning::LEAST_SAVED {
+                    search.completion.paint(&order);
+                    let before = *total.get_or_insert_with(|| join::total(search.completion));
+                    search.completion.paint(&moved);
+                    let after = join::total(search.completion);
+                    if after + against >= before - tuning::LEAST_SAVED {
+                        search.completion.paint(&order);
+                        continue;
+                    }
+                    total = Some(after);
                     order = moved;
                     is_changed = true;
                     break;
@@ -48,7 +60,7 @@ pub(super) fn settle(completion: &mut Completion<'_>) {
                 search.completion.paint(&order);
             }
         }
-        is_changed |= search.unite(&mut order, &mut pairs);
+        is_changed |= search.unite(&mut order, &mut total);
         if !is_changed || search.completion.is_spent() {
             break;
         }
@@ -58,15 +70,14 @@ pub(super) fn settle(completion: &mut Completion<'_>) {
 
 struct Search<'a, 'b> {
     completion: &'a mut Completion<'b>,
-    /// Bits of a face behind some of its neighbors, and whether it is whole.
-    known: BTreeMap<(u32, Vec<u32>), (f64, bool)>,
+    /// Bits of a face behind some of its neighbors.
+    known: BTreeMap<(u32, Vec<u32>), f64>,
 }
 
 impl Search<'_, '_> {
     /// Puts what lies between two faces of one color in front of both where they are shorter as one thing: of what is seen on both sides
     /// of something, and within its openings, no junction need be clear.
-    /// What is known of `pairs` by that is not asked again.
-    fn unite(&mut self, order: &mut Vec<u32>, pairs: &mut BTreeSet<(u32, u32)>) -> bool {
+    fn unite(&mut self, order: &mut Vec<u32>, total: &mut Option<f64>) -> bool {
         let mut is_changed = false;
         for (a, b, between) in self.parted() {
             if self.completion.is_spent() {
@@ -74,7 +85,10 @@ impl Search<'_, '_> {
             }
             let place = |face: u32| order.iter().position(|&other| other == face);
             let (Some(at_a), Some(at_b), Some(at)) = (place(a), place(b), place(between)) else { continue };
-            if at > at_a && at > at_b {
+            // What may be one thing as it is is so without this.
+            let are_one =
+                join::candidates(self.completion).iter().any(|group| group.contains(&a) && group.contains(&b));
+            if at > at_a && at > at_b || are_one {
                 continue;
             }
             let mut moved = order.clone();
@@ -82,36 +96,23 @@ impl Search<'_, '_> {
             moved.insert(at_a.max(at_b), between);
             let crossed = &order[at..=at_a.max(at_b)];
             let mut touched: Vec<u32> = self.completion.neighbors[between as usize].clone();
-            touched.retain(|other| crossed.contains(other) && *other != a && *other != b);
+            touched.retain(|other| crossed.contains(other));
             // That lines lie on what they touch is no evidence but a custom.
             let votes = |other: u32| {
                 let custom = if self.completion.pen(&[other]).is_some() { tuning::PEN_VOTE } else { 0.0 };
                 (self.completion.order.net(other, between) - custom).max(0.0)
             };
-            let against: f64 = touched.iter().copied().chain([a, b]).map(votes).sum();
-            touched.push(between);
-            let before = self.bits(&touched) + self.bits(&[a, b]);
+            let against: f64 = touched.into_iter().map(votes).sum();
+            let before = *total.get_or_insert_with(|| join::total(self.completion));
             self.completion.paint(&moved);
-            let apart = self.bits(&[a, b]);
-            // Two things that are whole by themselves may be of one color; parts of things hardly are.
-            let color = if self.is_whole(a) && self.is_whole(b) { 0.0 } else { COLOR_BITS };
-            self.completion.sink(&[a, b]);
-            let together = self.completion.outlines(&[a, b]);
-            let has_pen = [a, b].iter().any(|&face| self.completion.pen(&[face]).is_some());
-            let joined = match together.agrees {
-                true if has_pen => together.bits,
-                true => together.bits.min(apart),
-                false if has_pen => f64::INFINITY,
-                false => apart,
-            };
-            let after = self.bits(&touched) + joined;
-            if after + against < before + color - tuning::LEAST_SAVED {
+            self.completion.united.push((a, b));
+            let after = join::total(self.completion);
+            if after + against < before - tuning::LEAST_SAVED {
                 *order = moved;
                 is_changed = true;
-                self.completion.united.push((a, b));
-                for face in [a, b] {
-                    pairs.remove(&(face.min(between), face.max(between)));
-                }
+                *total = Some(after);
+            } else {
+                self.completion.united.pop();
             }
             self.completion.paint(order);
         }
@@ -139,27 +140,19 @@ impl Search<'_, '_> {
 
     /// Bits of faces, each painted alone.
     fn bits(&mut self, faces: &[u32]) -> f64 {
-        faces.iter().map(|&face| self.alone(face).0).sum()
-    }
-
-    /// Whether a face, painted alone, is a thing as people draw them.
-    fn is_whole(&mut self, face: u32) -> bool {
-        self.alone(face).1
-    }
-
-    fn alone(&mut self, face: u32) -> (f64, bool) {
-        let rank = self.completion.rank(face);
-        let mut front = self.completion.neighbors[face as usize].clone();
-        front.retain(|&other| self.completion.rank(other) > rank);
-        let completion = &self.completion;
-        let of_face = || {
-            if let Some(pen) = completion.pen(&[face]) {
-                return (pen.bits + pen.misfit, true);
-            }
-            let completed = completion.outlines(&[face]);
-            (completed.bits, completed.is_whole() && !completion.is_small(face))
-        };
-        *self.known.entry((face, front)).or_insert_with(of_face)
+        let mut sum = 0.0;
+        for &face in faces {
+            let rank = self.completion.rank(face);
+            let mut front = self.completion.neighbors[face as usize].clone();
+            front.retain(|&other| self.completion.rank(other) > rank);
+            let completion = &self.completion;
+            let of_face = || match completion.pen(&[face]) {
+                Some(pen) => pen.bits + pen.misfit,
+                None => completion.outlines(&[face]).bits,
+            };
+            sum += *self.known.entry((face, front)).or_insert_with(of_face);
+        }
+        sum
     }
 
     /// Painted faces that meet where a third one does.
