@@ -10,12 +10,14 @@
 //! | `visible` | what of a boundary is a layer's own |
 //! | `link` | which visible stretch goes on as which behind others |
 //! | `complete` | outlines through what is seen |
+//! | `memo` | outlines that were fitted before |
 //! | `raster` | the check that an outline hides nothing |
 
 mod complete;
 mod join;
 mod junction;
 mod link;
+mod memo;
 mod order;
 mod pen;
 mod raster;
@@ -34,6 +36,7 @@ use crate::ruler::Ruler;
 use crate::stroke::fit_thin;
 use crate::tuning;
 use complete::Completion;
+use memo::Memo;
 use order::Order;
 
 /// What is painted at once.
@@ -90,6 +93,7 @@ pub fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<Color>) 
         order: &order,
         ruler,
         spent: Cell::new(0),
+        memo: Memo::default(),
     };
     settle::settle(&mut completion);
     let mut layers = Vec::new();
