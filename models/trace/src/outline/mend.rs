@@ -10,6 +10,7 @@ use core::ops::Range;
 use dvp_core::Vec2;
 
 use super::chain::{Chain, Curve};
+use super::gauge::Gauge;
 use super::solve::{Fitted, huber, samples_of, spoiled_chi2};
 use super::track::Track;
 use crate::ruler::Ruler;
@@ -56,12 +57,13 @@ fn misfits(chain: &Chain, track: &Track, ruler: &Ruler) -> Vec<f64> {
         let range = samples_of(chain, track.len(), k);
         let ends = [k, chain.next(k)].map(|point| chain.points[point]);
         let directions = chain.directions(k);
+        let gauge = Gauge::of(chain, k, &places);
         for number in range.clone() {
             let index = number % track.len();
             let sample = &track.samples[index];
             #[expect(clippy::cast_precision_loss, reason = "counts of samples are small")]
             let mut t = (number - range.start) as f64 / range.len() as f64;
-            let misfit = (0..4).filter_map(|_| chain.misfit(k, sample, &places, &mut t)).last();
+            let misfit = (0..4).filter_map(|_| gauge.misfit(sample, &mut t)).last();
             let beyond = directions.map_or(0.0, |[leave, arrive]| {
                 let [before, behind] = ends.map(|end| sample.point - end);
                 let is_first = before.length_squared() < behind.length_squared();

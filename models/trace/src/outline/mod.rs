@@ -8,7 +8,7 @@
 //! | `nodes` | places where pieces may meet |
 //! | `moments`, `cubic` | how well a line, a circle, a cubic explains a stretch |
 //! | `programme` | the cheapest row of pieces: a dynamic programme |
-//! | `chain`, `skyline`, `solve` | all numbers of a row of pieces together, by least squares |
+//! | `chain`, `gauge`, `equations`, `skyline`, `solve` | all numbers of a row of pieces together, by least squares |
 //! | `ties` | lines along the axes, smooth joins, equal radii, where they make the description shorter |
 //! | `revise` | curves joined, left out, put in at corners |
 //! | `mend` | polygons where all that is far off |
@@ -20,7 +20,9 @@ mod as_ring;
 mod chain;
 mod conic;
 mod cubic;
+mod equations;
 mod figure;
+mod gauge;
 mod mend;
 mod moments;
 mod nodes;
