@@ -142,16 +142,13 @@ pub fn fit_closed(ring: &RingSamples, ruler: &Ruler) -> Option<Outline> {
         return Some(outline);
     }
     let draft = path::draft_ring(&mut track, ruler)?;
-    let path = draft.finish(&track, ruler);
-    let whole = whole::fit(&track, &path, ruler);
-    let path = draft.mended(&track, ruler).unwrap_or(path);
+    // A whole outline is looked for along the path as it was cut: where that is far off, what mends it has corners that nobody drew.
+    let mended = draft.mended(&track, ruler);
+    let ring = if mended.is_some() { Some(draft.ring()) } else { None };
+    let path = mended.unwrap_or_else(|| draft.finish(&track, ruler));
+    let whole = whole::fit(&track, ring.as_ref().unwrap_or(&path.ring), path.bits + path.misfit, ruler);
     let FittedPath { ring, bits, misfit } = path;
-    whole.filter(|whole| whole.bits + whole.misfit <= bits + misfit).or(Some(Outline {
-        shape: OutlineShape::Path(ring),
-        bits,
-        misfit,
-        deviations: Vec::new(),
-    }))
+    whole.or(Some(Outline { shape: OutlineShape::Path(ring), bits, misfit, deviations: Vec::new() }))
 }
 
 /// The shortest description of an open line through samples.
