@@ -81,7 +81,8 @@ impl Layers {
 pub fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<Color>) -> Layers {
     let ruler = Ruler { extent: partition.size[0].max(partition.size[1]) as f64 };
     let background = background(partition, rings, matte);
-    let mut pens = pen::find(partition, rings, background, &ruler);
+    let memo = Memo::default();
+    let mut pens = pen::find(partition, rings, background, &ruler, &memo);
     let order = Order::of(partition, rings, background, matte.is_some(), &mut pens);
     let rank = order.rank.clone();
     let mut completion = Completion {
@@ -93,7 +94,7 @@ pub fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<Color>) 
         order: &order,
         ruler,
         spent: Cell::new(0),
-        memo: Memo::default(),
+        memo,
     };
     settle::settle(&mut completion);
     let mut layers = Vec::new();
