@@ -4,12 +4,17 @@ use alloc::vec;
 use alloc::vec::Vec;
 use core::ops::Range;
 
-use super::chain::{Chain, Curve};
-use super::gauge::{Gauge, MOST_NUMBERS};
+use dvp_core::Vec2;
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
+
+use super::chain::Chain;
+use super::gauge::{Gauge, Held, SEARCHES};
 use super::skyline::Skyline;
-use super::solve::{huber, is_sharp, robust, samples_of, spoiled_chi2};
+use super::solve::{huber, robust, samples_of, spoiled_chi2};
 use super::ties::Tie;
 use super::track::Track;
+use crate::tuning;
 
 /// How hard ends that nothing else holds are held to the last sample: to half a pixel.
 const END_WEIGHT: f64 = 4.0;
@@ -26,6 +31,8 @@ pub(super) struct Problem<'a> {
     ties: &'a [(Tie, f64)],
     /// Where the numbers of each point start, as [`Chain::places`] has them.
     places: Vec<usize>,
+    /// The directions of each curve, as [`Chain::directions`] has them.
+    directions: Vec<Option<[Vec2<f64>; 2]>>,
     /// Of each sample from the first of an open chain on, or of the track: its parameter on the cubic that explains it.
     parameters: Vec<f64>,
     /// The sample of the first parameter.
@@ -47,15 +54,18 @@ impl<'a> Problem<'a> {
     pub(super) fn new(chain: &Chain, track: &'a Track, ties: &'a [(Tie, f64)]) -> Self {
         let (base, count) =
             if chain.closed { (0, track.len()) } else { (chain.firsts[0], chain.end - chain.firsts[0]) };
-        Self { track, ties, places: chain.places(), parameters: vec![f64::NAN; count], base }
+        let parameters = vec![f64::NAN; count];
+        Self { track, ties, places: chain.places(), directions: Vec::new(), parameters, base }
     }
 
-    /// Gives samples beside points to the curve on whose side of the point they lie.
+    /// Gives samples beside points to the curve on whose side of the point they lie: before the equations of these numbers are written.
     pub(super) fn assign(&mut self, chain: &mut Chain) {
         let count = chain.curves.len();
+        self.directions.clear();
+        self.directions.extend((0..count).map(|k| chain.directions(k)));
         for k in usize::from(!chain.closed)..count {
             let before = if k == 0 { count - 1 } else { k - 1 };
-            let (Some([_, arrive]), Some([leave, _])) = (chain.directions(before), chain.directions(k)) else {
+            let (Some([_, arrive]), Some([leave, _])) = (self.directions[before], self.directions[k]) else {
                 continue;
             };
             let (low, high) = limits(chain, self.track, k);
@@ -98,11 +108,10 @@ impl<'a> Problem<'a> {
     pub(super) fn write(&mut self, chain: &Chain, equations: &mut Equations) -> Option<()> {
         equations.clear();
         for k in 0..chain.curves.len() {
-            let gauge = Gauge::of(chain, k, &self.places);
-            match gauge.places().len() {
-                0..=4 => self.write_curve::<4>(chain, k, &gauge, equations)?,
-                5 => self.write_curve::<5>(chain, k, &gauge, equations)?,
-                _ => self.write_curve::<MOST_NUMBERS>(chain, k, &gauge, equations)?,
+            match &Gauge::of(chain, k) {
+                Gauge::Line(line) => self.write_curve(chain, k, line, 0, equations)?,
+                Gauge::Arc(arc) => self.write_curve(chain, k, arc, 0, equations)?,
+                Gauge::Cubic(cubic) => self.write_curve(chain, k, cubic, SEARCHES, equations)?,
             }
         }
         for (point, sample) in self.loose_ends(chain) {
@@ -121,23 +130,28 @@ impl<'a> Problem<'a> {
         equations.cost().is_finite().then_some(())
     }
 
-    /// The samples of one curve, of at most `N` numbers. They are many, and the numbers few: sums are kept at hand.
+    /// The samples of one curve. They are many, and its numbers few: sums are kept at hand.
     fn write_curve<const N: usize>(
         &mut self,
         chain: &Chain,
         k: usize,
-        gauge: &Gauge,
+        curve: &impl Held<N>,
+        searches: usize,
         equations: &mut Equations,
     ) -> Option<()> {
         let range = samples_of(chain, self.track.len(), k);
         if range.is_empty() {
             return Some(());
         }
-        let sharp = [k, chain.next(k)].map(|point| is_sharp(chain, point).then(|| chain.points[point]));
-        let is_cubic = matches!(chain.curves[k], Curve::Cubic(_));
-        let mut normal: [[f64; N]; N] = equations.normal.block(gauge.places());
-        let mut right = [0.0; N];
-        right.iter_mut().zip(gauge.places()).for_each(|(sum, &place)| *sum = equations.right[place]);
+        let sharp = [k, chain.next(k)].map(|point| self.is_sharp(chain, point).then(|| chain.points[point]));
+        let (first, last) = (self.places[k], self.places[chain.next(k)]);
+        let mut places: [usize; N] = core::array::from_fn(|i| if i + 2 < N { first + i } else { last + i + 2 - N });
+        // The curve that closes a ring ends at its first point; alone it ends where it starts, and its numbers meet themselves.
+        let (closes, is_alone) = (last < first, last == first);
+        if closes {
+            places.rotate_right(2);
+        }
+        let (mut normal, mut right) = if is_alone { ([[0.0; N]; N], [0.0; N]) } else { equations.block(&places) };
         let (mut index, mut slot) = (range.start % self.track.len(), self.slot(range.start));
         for number in range.clone() {
             let sample = &self.track.samples[index];
@@ -146,12 +160,11 @@ impl<'a> Problem<'a> {
                 #[expect(clippy::cast_precision_loss, reason = "counts of samples are small")]
                 let share = (number - range.start) as f64 / range.len() as f64;
                 t = share;
-                // Lines and arcs know the nearest place at once.
-                for _ in 0..if is_cubic { 4 } else { 0 } {
-                    gauge.misfit(sample, &mut t)?;
+                for _ in 0..searches {
+                    curve.miss(sample, &mut t)?;
                 }
             }
-            let (misfit, slopes) = gauge.misfit(sample, &mut t)?;
+            let (misfit, mut slopes) = curve.miss(sample, &mut t)?;
             self.parameters[slot] = t;
             index = if index + 1 < self.track.len() { index + 1 } else { 0 };
             slot = if slot + 1 < self.parameters.len() { slot + 1 } else { 0 };
@@ -163,6 +176,13 @@ impl<'a> Problem<'a> {
             }
             let weight = robust(misfit);
             equations.chi2 += huber(misfit);
+            if closes {
+                slopes.rotate_right(2);
+            } else if is_alone {
+                let slopes: [(usize, f64); N] = core::array::from_fn(|i| (places[i], slopes[i]));
+                equations.add(&slopes, misfit, weight);
+                continue;
+            }
             for i in 0..N {
                 let weighted = weight * slopes[i];
                 for j in 0..=i {
@@ -171,9 +191,23 @@ impl<'a> Problem<'a> {
                 right[i] -= weighted * misfit;
             }
         }
-        equations.normal.set_block(gauge.places(), &normal);
-        gauge.places().iter().zip(right).for_each(|(&place, sum)| equations.right[place] = sum);
+        if !is_alone {
+            equations.set_block(&places, &normal, &right);
+        }
         Some(())
+    }
+
+    /// Whether the chain has a corner at point `k`.
+    fn is_sharp(&self, chain: &Chain, k: usize) -> bool {
+        let before = match k {
+            0 if chain.closed => chain.curves.len() - 1,
+            0 => return false,
+            _ => k - 1,
+        };
+        match (self.directions[before], self.directions.get(k)) {
+            (Some([_, arrive]), Some(&Some([leave, _]))) => arrive.dot(leave) < tuning::OUTLINE_SHARP.cos(),
+            _ => false,
+        }
     }
 
     /// Points up to which no sample says how far the outline goes, and the last sample before each: the ends of open lines and of lines over
@@ -213,6 +247,17 @@ impl Equations {
     /// What is minimized.
     pub(super) fn cost(&self) -> f64 {
         self.chi2 + self.strain
+    }
+
+    /// The equations of the numbers at some places, rising: the lower triangle, and the right side.
+    fn block<const N: usize>(&self, places: &[usize; N]) -> ([[f64; N]; N], [f64; N]) {
+        (self.normal.block(places), places.map(|place| self.right[place]))
+    }
+
+    /// Puts them back.
+    fn set_block<const N: usize>(&mut self, places: &[usize; N], normal: &[[f64; N]; N], right: &[f64; N]) {
+        self.normal.set_block(places, normal);
+        places.iter().zip(right).for_each(|(&place, &sum)| self.right[place] = sum);
     }
 
     fn clear(&mut self) {

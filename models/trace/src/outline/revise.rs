@@ -171,13 +171,11 @@ impl Reviser<'_> {
         {
             return None;
         }
-        let places = pair.places();
         let chi2 = |k: usize, range: core::ops::Range<usize>| {
             let samples = range.map(|sample| &self.track.samples[sample % self.track.len()]);
-            let gauge = Gauge::of(pair, k, &places);
+            let gauge = Gauge::of(pair, k);
             let misfits = samples.filter_map(|sample| {
-                let mut t = if k == 0 { 1.0 } else { 0.0 };
-                let (misfit, _) = (0..4).filter_map(|_| gauge.misfit(sample, &mut t)).last()?;
+                let misfit = gauge.misfit(sample, if k == 0 { 1.0 } else { 0.0 })?;
                 let most = if sample.holds(pair.points[1]) { spoiled_chi2() } else { f64::INFINITY };
                 Some((misfit * misfit).min(most))
             });

@@ -61,7 +61,7 @@ impl Skyline {
     }
 
     /// The entries where the rows and columns `places`, rising, meet: the lower triangle, zeros beyond.
-    pub(crate) fn block<const N: usize>(&self, places: &[usize]) -> [[f64; N]; N] {
+    pub(crate) fn block<const N: usize>(&self, places: &[usize; N]) -> [[f64; N]; N] {
         let mut block = [[0.0; N]; N];
         for (k, (&row, entries)) in places.iter().zip(&mut block).enumerate() {
             for (&column, entry) in places[..=k].iter().zip(entries) {
@@ -72,7 +72,7 @@ impl Skyline {
     }
 
     /// Puts entries where [`Self::block`] has them from.
-    pub(crate) fn set_block<const N: usize>(&mut self, places: &[usize], block: &[[f64; N]; N]) {
+    pub(crate) fn set_block<const N: usize>(&mut self, places: &[usize; N], block: &[[f64; N]; N]) {
         for (k, (&row, entries)) in places.iter().zip(block).enumerate() {
             for (&column, &entry) in places[..=k].iter().zip(entries) {
                 self.entries[self.start[row] + column - self.first[row]] = entry;

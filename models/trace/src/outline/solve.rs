@@ -134,7 +134,7 @@ fn is_plain(chain: &Chain, track: &Track) -> bool {
 
 /// The weight of a misfit, in sigmas: beyond [`tuning::OUTLINE_HUBER`] it counts linearly.
 pub(super) fn robust(misfit: f64) -> f64 {
-    1.0 / (misfit.abs() / tuning::OUTLINE_HUBER).max(1.0)
+    if misfit.abs() <= tuning::OUTLINE_HUBER { 1.0 } else { 1.0 / (misfit.abs() / tuning::OUTLINE_HUBER).max(1.0) }
 }
 
 /// What a misfit, in sigmas, counts in a sum of squares.
@@ -157,20 +157,4 @@ pub(super) fn samples_of(chain: &Chain, track_len: usize, k: usize) -> Range<usi
         None => chain.end,
     };
     chain.firsts[k]..end
-}
-
-/// Whether the chain has a corner at point `k`.
-pub(super) fn is_sharp(chain: &Chain, k: usize) -> bool {
-    let before = match k {
-        0 if chain.closed => chain.curves.len() - 1,
-        0 => return false,
-        _ => k - 1,
-    };
-    if k >= chain.curves.len() {
-        return false;
-    }
-    match (chain.directions(before), chain.directions(k)) {
-        (Some([_, arrive]), Some([leave, _])) => arrive.dot(leave) < tuning::OUTLINE_SHARP.cos(),
-        _ => false,
-    }
 }
