@@ -207,6 +207,8 @@ fn equations(drawing: &Drawing, border: &Border, misses: &[Miss]) -> Option<(Sky
 fn slopes(line: &Line, half: f64, border: &Border, misses: &[&Miss]) -> Vec<Vec<(usize, f64)>> {
     let mut slopes = vec![Vec::new(); misses.len()];
     let mut numbers = numbers(line);
+    let measured = |pieces: &[Piece<f64>], miss: &Miss| gap(pieces, miss.foot, border.marks[miss.mark].point, half);
+    let gaps: Vec<f64> = misses.iter().map(|miss| measured(&line.pieces, miss)).collect();
     for number in 0..numbers.len() {
         let old = numbers[number];
         numbers[number] = old + STEP;
@@ -214,7 +216,7 @@ fn slopes(line: &Line, half: f64, border: &Border, misses: &[&Miss]) -> Vec<Vec<
         numbers[number] = old;
         let Some(moved) = moved.filter(|moved| moved.len() == line.pieces.len()) else { continue };
         let is_moved: Vec<_> = line.pieces.iter().zip(&moved).map(|(a, b)| a != b).collect();
-        for (slopes, miss) in slopes.iter_mut().zip(misses) {
+        for ((slopes, miss), before) in slopes.iter_mut().zip(misses).zip(&gaps) {
             let piece = match miss.foot {
                 Foot::Body { piece, .. } | Foot::Tangent { piece, .. } => piece,
                 Foot::Face { at_finish } => {
@@ -226,9 +228,7 @@ fn slopes(line: &Line, half: f64, border: &Border, misses: &[&Miss]) -> Vec<Vec<
                 }
             };
             if is_moved.get(piece) == Some(&true) {
-                let point = border.marks[miss.mark].point;
-                let change = |pieces: &[Piece<f64>]| gap(pieces, miss.foot, point, half);
-                slopes.push((number, (change(&moved) - change(&line.pieces)) / STEP));
+                slopes.push((number, (measured(&moved, miss) - before) / STEP));
             }
         }
     }
