@@ -76,6 +76,14 @@ impl Chain {
         places
     }
 
+    /// Becomes another chain, in the room that is there.
+    pub(super) fn copy(&mut self, other: &Self) {
+        self.points.clone_from(&other.points);
+        self.curves.clone_from(&other.curves);
+        self.firsts.clone_from(&other.firsts);
+        (self.end, self.closed) = (other.end, other.closed);
+    }
+
     /// Adds a change to all numbers.
     pub(super) fn shift(&mut self, change: &[f64]) {
         let mut change = change.iter().copied();

@@ -104,8 +104,8 @@ impl<'a> Problem<'a> {
         Equations { normal: Skyline::new(firsts), right, chi2: 0.0, strain: 0.0 }
     }
 
-    /// The equations around a chain; none if they cannot be computed.
-    pub(super) fn write(&mut self, chain: &Chain, equations: &mut Equations) -> Option<()> {
+    /// The equations around a chain, which stays as it is; none if they cannot be computed.
+    pub(super) fn write(&mut self, chain: &mut Chain, equations: &mut Equations) -> Option<()> {
         equations.clear();
         for k in 0..chain.curves.len() {
             match &Gauge::of(chain, k) {

@@ -39,10 +39,11 @@ impl Fitted {
         let mut now = problem.room(&chain);
         let (mut then, mut factor) = (now.clone(), now.normal.clone());
         problem.assign(&mut chain);
-        problem.write(&chain, &mut now)?;
+        problem.write(&mut chain, &mut now)?;
+        let (mut change, mut next) = (now.right.clone(), chain.clone());
         let mut damping = 1e-3;
         for _ in 0..MOST_STEPS {
-            let mut change = now.right.clone();
+            change.clone_from(&now.right);
             factor.clone_from(&now.normal);
             factor.factorize(damping, ridge + damping * STIFFNESS)?;
             factor.solve(&mut change);
@@ -50,11 +51,11 @@ impl Fitted {
             if promised < LEAST_PROMISE {
                 break;
             }
-            let mut next = chain.clone();
+            next.copy(&chain);
             next.shift(&change);
             problem.assign(&mut next);
             let is_better =
-                problem.write(&next, &mut then).is_some() && then.cost() < now.cost() && is_plain(&next, track);
+                problem.write(&mut next, &mut then).is_some() && then.cost() < now.cost() && is_plain(&next, track);
             if !is_better {
                 damping *= 10.0;
                 if damping > 1e3 {
@@ -64,7 +65,8 @@ impl Fitted {
             }
             let gain = now.cost() - then.cost();
             core::mem::swap(&mut now, &mut then);
-            (chain, damping) = (next, (damping * 0.1).max(1e-7));
+            core::mem::swap(&mut chain, &mut next);
+            damping = (damping * 0.1).max(1e-7);
             if gain < LEAST_GAIN {
                 break;
             }
@@ -82,7 +84,7 @@ impl Fitted {
         let mut problem = Problem::new(&chain, track, &[]);
         let mut equations = problem.room(&chain);
         problem.assign(&mut chain);
-        problem.write(&chain, &mut equations)?;
+        problem.write(&mut chain, &mut equations)?;
         Some(equations.chi2)
     }
 
