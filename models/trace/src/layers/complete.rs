@@ -8,11 +8,12 @@ use core::cell::{Cell, RefCell};
 use dvp_core::Vec2;
 use dvp_core::shape::{FillRule, Outline as Polygons, Path, PathRing, Shape as _};
 
+use super::memo::Memo;
 use super::order::Order;
 use super::visible::{self, Hidden};
 use super::{link, raster};
 use crate::boundary::{Ring, Step};
-use crate::outline::{Outline, OutlineShape, fit_closed};
+use crate::outline::{Outline, OutlineShape};
 use crate::partition::{OUTSIDE, Partition};
 use crate::ruler::Ruler;
 use crate::sample::RingSamples;
@@ -43,6 +44,8 @@ pub(super) struct Completion<'a> {
     pub(super) known: RefCell<BTreeMap<(Vec<u32>, Vec<u32>), Completed>>,
     /// Samples that outlines were fitted to.
     pub(super) spent: Cell<usize>,
+    /// Outlines that were fitted.
+    pub(super) memo: Memo,
 }
 
 /// Outlines, and bits of their numbers and misfits.
@@ -208,7 +211,7 @@ impl Completion<'_> {
     fn fit(&self, samples: &[RingSamples]) -> Completed {
         let count: usize = samples.iter().flat_map(|ring| &ring.runs).map(Vec::len).sum();
         self.spent.set(self.spent.get() + count);
-        Completed::new(samples.iter().filter_map(|samples| fit_closed(samples, &self.ruler)).collect(), true)
+        Completed::new(samples.iter().filter_map(|samples| self.memo.fit_closed(samples, &self.ruler)).collect(), true)
     }
 
     /// The face at a place if nothing else has a share there.

@@ -10,12 +10,14 @@
 //! | `visible` | what of a boundary is a layer's own |
 //! | `link` | which visible stretch goes on as which behind others |
 //! | `complete` | outlines through what is seen |
+//! | `memo` | outlines that were fitted before |
 //! | `raster` | the check that an outline hides nothing |
 
 mod complete;
 mod join;
 mod junction;
 mod link;
+mod memo;
 mod order;
 mod pen;
 mod raster;
@@ -34,6 +36,7 @@ use crate::ruler::Ruler;
 use crate::stroke::fit_thin;
 use crate::tuning;
 use complete::Completion;
+use memo::Memo;
 use order::Order;
 
 /// What is painted at once.
@@ -78,7 +81,8 @@ impl Layers {
 pub fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<Color>) -> Layers {
     let ruler = Ruler { extent: partition.size[0].max(partition.size[1]) as f64 };
     let background = background(partition, rings, matte);
-    let mut pens = pen::find(partition, rings, background, &ruler);
+    let memo = Memo::default();
+    let mut pens = pen::find(partition, rings, background, &ruler, &memo);
     let order = Order::of(partition, rings, background, matte.is_some(), &mut pens);
     let rank = order.rank.clone();
     let mut completion = Completion {
@@ -92,6 +96,7 @@ pub fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<Color>) 
         united: Vec::new(),
         known: RefCell::default(),
         spent: Cell::new(0),
+        memo,
     };
     settle::settle(&mut completion);
     let mut layers = Vec::new();

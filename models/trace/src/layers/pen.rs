@@ -3,9 +3,9 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
+use super::memo::Memo;
 use super::visible::{self, Hidden};
 use crate::boundary::Ring;
-use crate::outline::fit_closed;
 use crate::partition::{OUTSIDE, Partition};
 use crate::ruler::Ruler;
 use crate::sample::RingSamples;
@@ -17,6 +17,7 @@ pub(super) fn find(
     rings: &[Vec<Ring>],
     background: u32,
     ruler: &Ruler,
+    memo: &Memo,
 ) -> Vec<Option<StrokeFit>> {
     let mut pens = vec![None; partition.faces.len()];
     for (face, rings) in rings.iter().enumerate() {
@@ -30,10 +31,13 @@ pub(super) fn find(
         };
         let seen: Vec<RingSamples> = rings.iter().map(|ring| samples(ring, Some(Hidden::Free))).collect();
         pens[face] = fit_strokes(&seen, ruler).filter(|pen| {
-            let samples = rings.iter().map(|ring| samples(ring, None));
-            let outlines =
-                samples.map(|samples| fit_closed(&samples, ruler).map(|outline| outline.bits + outline.misfit));
-            outlines.sum::<Option<f64>>().is_none_or(|bits| pen.bits + pen.misfit < bits)
+            // As soon as some of the outlines cost more there is no need for the others.
+            let mut bits = 0.0;
+            rings.iter().map(|ring| samples(ring, None)).any(|samples| {
+                let outline = memo.fit_closed(&samples, ruler);
+                bits += outline.map_or(f64::INFINITY, |outline| outline.bits + outline.misfit);
+                pen.bits + pen.misfit < bits
+            })
         });
     }
     pens

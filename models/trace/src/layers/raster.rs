@@ -4,7 +4,7 @@ use alloc::collections::BTreeMap;
 use alloc::vec::Vec;
 use core::ops::Range;
 
-use crate::partition::{OUTSIDE, Partition};
+use crate::partition::{Face, OUTSIDE, Partition};
 use crate::tuning;
 
 /// Whether what polygons (pixels, even-odd) cover is what they should cover, but for few pixels: of all pixels that are `wanted`
@@ -15,13 +15,15 @@ pub(super) fn check(
     polygons: &[Vec<[f64; 2]>],
     wanted: impl Fn(u32) -> Option<bool>,
 ) -> Result<(), Vec<[usize; 2]>> {
-    let [width, height] = partition.size;
-    let rows = rows(partition, polygons, &wanted);
+    let width = partition.size[0];
+    // Of every face once: pixels are many.
+    let wanted: Vec<Option<bool>> = (0..partition.faces.len() as u32).map(wanted).collect();
+    let [columns, rows] = reach(partition, polygons, &wanted);
     let mut wrong = Vec::new();
     let mut missed = 0;
     let mut hidden: BTreeMap<u32, usize> = BTreeMap::new();
     let mut crossings: Vec<f64> = Vec::new();
-    for y in rows.start..rows.end.min(height) {
+    for y in rows {
         crossings.clear();
         let center = y as f64 + 0.5;
         for polygon in polygons {
@@ -35,7 +37,7 @@ pub(super) fn check(
         }
         crossings.sort_by(f64::total_cmp);
         let mut crossed = 0;
-        for x in 0..width {
+        for x in columns.clone() {
             while crossed < crossings.len() && crossings[crossed] <= x as f64 + 0.5 {
                 crossed += 1;
             }
@@ -43,7 +45,7 @@ pub(super) fn check(
             if partition.shares[i] < tuning::PURE_SHARE || partition.is_hard && is_at_edge(partition, [x, y]) {
                 continue;
             }
-            match (wanted(partition.labels[i]), crossed % 2 == 1) {
+            match (wanted[partition.labels[i] as usize], crossed % 2 == 1) {
                 (Some(true), false) => missed += 1,
                 (Some(false), true) => *hidden.entry(partition.labels[i]).or_default() += 1,
                 _ => continue,
@@ -54,8 +56,7 @@ pub(super) fn check(
     let few = |count: usize, area: usize| {
         (count as f64) <= (tuning::MOST_WRONG * area as f64).clamp(1.0, tuning::MOST_WRONG_PIXELS)
     };
-    let own = partition.faces.iter().enumerate().filter(|&(face, _)| wanted(face as u32) == Some(true));
-    let area = own.map(|(_, face)| face.area).sum::<usize>();
+    let area = own(partition, &wanted).map(|face| face.area).sum::<usize>();
     let agrees =
         few(missed, area) && hidden.iter().all(|(&face, &count)| few(count, partition.faces[face as usize].area));
     if agrees { Ok(()) } else { Err(wrong) }
@@ -68,14 +69,20 @@ fn is_at_edge(partition: &Partition, [x, y]: [usize; 2]) -> bool {
     beside.into_iter().map(|at| partition.face_at(at)).any(|face| face != own && face != OUTSIDE)
 }
 
-/// The rows that the polygons, or faces that are wanted, reach.
-fn rows(partition: &Partition, polygons: &[Vec<[f64; 2]>], wanted: impl Fn(u32) -> Option<bool>) -> Range<usize> {
-    let own = partition.faces.iter().enumerate().filter(|&(face, _)| wanted(face as u32) == Some(true));
-    let (mut top, mut bottom) =
-        own.fold((usize::MAX, 0), |(top, bottom), (_, face)| (top.min(face.bounds[1]), bottom.max(face.bounds[3])));
-    for [_, y] in polygons.iter().flatten() {
-        top = top.min(y.max(0.0) as usize);
-        bottom = bottom.max(y.max(0.0) as usize + 1);
-    }
-    top..bottom
+/// The faces that are wanted.
+fn own<'a>(partition: &'a Partition, wanted: &'a [Option<bool>]) -> impl Iterator<Item = &'a Face> {
+    partition.faces.iter().zip(wanted).filter(|&(_, &wanted)| wanted == Some(true)).map(|(face, _)| face)
+}
+
+/// The columns and rows that the polygons, or faces that are wanted, reach.
+fn reach(partition: &Partition, polygons: &[Vec<[f64; 2]>], wanted: &[Option<bool>]) -> [Range<usize>; 2] {
+    [0, 1].map(|axis| {
+        let (mut low, mut high) = own(partition, wanted)
+            .fold((usize::MAX, 0), |(low, high), face| (low.min(face.bounds[axis]), high.max(face.bounds[axis + 2])));
+        for point in polygons.iter().flatten() {
+            let at = point[axis].max(0.0) as usize;
+            (low, high) = (low.min(at), high.max(at + 1));
+        }
+        low..high.min(partition.size[axis])
+    })
 }

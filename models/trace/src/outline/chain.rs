@@ -1,13 +1,9 @@
-//! A row of lines, arcs and cubics as numbers, and what each misses a sample by.
+//! A row of lines, arcs and cubics as numbers.
 
 use alloc::vec::Vec;
 
 use dvp_core::Vec2;
-#[cfg(not(feature = "std"))]
-use num_traits::Float as _;
 
-use super::cubic::{at, basis, nearer, unit};
-use super::track::LEAST_COSINE;
 use crate::sample::Sample;
 
 /// How the outline leads from one point to the next.
@@ -47,11 +43,6 @@ impl Slopes {
         }
     }
 
-    fn push_point(&mut self, place: usize, slope: Vec2<f64>) {
-        self.push(place, slope.x);
-        self.push(place + 1, slope.y);
-    }
-
     pub(super) fn entries(&self) -> &[(usize, f64)] {
         &self.entries[..self.len]
     }
@@ -83,6 +74,14 @@ impl Chain {
         }
         places.push(place);
         places
+    }
+
+    /// Becomes another chain, in the room that is there.
+    pub(super) fn copy(&mut self, other: &Self) {
+        self.points.clone_from(&other.points);
+        self.curves.clone_from(&other.curves);
+        self.firsts.clone_from(&other.firsts);
+        (self.end, self.closed) = (other.end, other.closed);
     }
 
     /// Adds a change to all numbers.
@@ -127,46 +126,6 @@ impl Chain {
             }
         }
     }
-
-    /// By how much the curve passes `sample` along its axis, in its sigmas, and the slopes of that. `t` is the sample's parameter on
-    /// a cubic, made better. None where the curve has no length.
-    pub(super) fn misfit(&self, k: usize, sample: &Sample, places: &[usize], t: &mut f64) -> Option<(f64, Slopes)> {
-        let mut slopes = Slopes::default();
-        let (from, to) = (self.points[k], self.points[self.next(k)]);
-        let (first, last) = (places[k], places[self.next(k)]);
-        if let Some(cubic) = self.cubic(k) {
-            *t = nearer(&cubic, sample.point, *t);
-            let (place, velocity) = at(&cubic, *t);
-            let across = unit(velocity)?.perp();
-            let across = across / (held(across.dot(sample.axis), 1.0) * sample.sigma);
-            let share = basis(*t);
-            for (share, place) in share.into_iter().zip([first, first + 2, first + 4, last]) {
-                slopes.push_point(place, across * share);
-            }
-            return Some(((place - sample.point).dot(across), slopes));
-        }
-        let bulge = if let Curve::Arc(bulge) = self.curves[k] { bulge } else { 0.0 };
-        // The circle through both ends is where g = bulge (|q|^2 - |c|^2 / 4) + (bulge^2 - 1) / 2 (c x q) is 0: c the chord, q from its
-        // middle to the point. At bulge 0 it is the straight line: no case of its own.
-        let (chord, q) = (to - from, sample.point - (from + to) * 0.5);
-        let (quarter, cross) = (q.length_squared() - 0.25 * chord.length_squared(), chord.cross(q));
-        let factor = 0.5 * (bulge * bulge - 1.0);
-        let g = bulge * quarter + factor * cross;
-        let by_q = q * (2.0 * bulge) + chord.perp() * factor;
-        let by_chord = chord * (-0.5 * bulge) - q.perp() * factor;
-        let steepness = by_q.length_squared().sqrt();
-        let along = held(by_q.dot(sample.axis), steepness) * sample.sigma;
-        if steepness <= 0.0 || !along.is_finite() {
-            return None;
-        }
-        let scale = -1.0 / along;
-        slopes.push_point(first, (by_q * -0.5 - by_chord) * scale);
-        slopes.push_point(last, (by_q * -0.5 + by_chord) * scale);
-        if let Curve::Arc(_) = self.curves[k] {
-            slopes.push(first + 2, (quarter + bulge * cross) * scale);
-        }
-        Some((g * scale, slopes))
-    }
 }
 
 impl Sample {
@@ -175,10 +134,4 @@ impl Sample {
         let offset = self.point - corner;
         offset.cross(self.axis).abs() < 0.55 && offset.dot(self.axis).abs() < 2.0
     }
-}
-
-/// A component of a vector of given length, away from 0.
-fn held(component: f64, length: f64) -> f64 {
-    let least = LEAST_COSINE * length;
-    if component.abs() >= least { component } else { least.copysign(component) }
 }

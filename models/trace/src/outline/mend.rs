@@ -10,6 +10,7 @@ use core::ops::Range;
 use dvp_core::Vec2;
 
 use super::chain::{Chain, Curve};
+use super::gauge::Gauge;
 use super::solve::{Fitted, huber, samples_of, spoiled_chi2};
 use super::track::Track;
 use crate::ruler::Ruler;
@@ -50,25 +51,25 @@ pub(super) fn mend(fitted: &Fitted, track: &Track, ruler: &Ruler) -> Option<Fitt
 
 /// Bits of what the chain misses each sample by; unlike lines and circles its curves have ends.
 fn misfits(chain: &Chain, track: &Track, ruler: &Ruler) -> Vec<f64> {
-    let places = chain.places();
     let mut off = vec![0.0; track.len()];
     for k in 0..chain.curves.len() {
         let range = samples_of(chain, track.len(), k);
         let ends = [k, chain.next(k)].map(|point| chain.points[point]);
         let directions = chain.directions(k);
+        let gauge = Gauge::of(chain, k);
         for number in range.clone() {
             let index = number % track.len();
             let sample = &track.samples[index];
             #[expect(clippy::cast_precision_loss, reason = "counts of samples are small")]
-            let mut t = (number - range.start) as f64 / range.len() as f64;
-            let misfit = (0..4).filter_map(|_| chain.misfit(k, sample, &places, &mut t)).last();
+            let t = (number - range.start) as f64 / range.len() as f64;
+            let misfit = gauge.misfit(sample, t);
             let beyond = directions.map_or(0.0, |[leave, arrive]| {
                 let [before, behind] = ends.map(|end| sample.point - end);
                 let is_first = before.length_squared() < behind.length_squared();
                 if is_first { -before.dot(leave) } else { behind.dot(arrive) }
             });
             let beyond = (beyond - BEYOND).max(0.0) / sample.sigma;
-            let mut chi2 = misfit.map_or(f64::INFINITY, |(misfit, _)| huber(misfit)) + huber(beyond);
+            let mut chi2 = misfit.map_or(f64::INFINITY, huber) + huber(beyond);
             if ends.iter().any(|&end| sample.holds(end)) {
                 chi2 = chi2.min(spoiled_chi2());
             }

@@ -8,7 +8,7 @@
 //! | `nodes` | places where pieces may meet |
 //! | `moments`, `cubic` | how well a line, a circle, a cubic explains a stretch |
 //! | `programme` | the cheapest row of pieces: a dynamic programme |
-//! | `chain`, `skyline`, `solve` | all numbers of a row of pieces together, by least squares |
+//! | `chain`, `gauge`, `equations`, `skyline`, `solve` | all numbers of a row of pieces together, by least squares |
 //! | `ties` | lines along the axes, smooth joins, equal radii, where they make the description shorter |
 //! | `revise` | curves joined, left out, put in at corners |
 //! | `mend` | polygons where all that is far off |
@@ -20,7 +20,9 @@ mod as_ring;
 mod chain;
 mod conic;
 mod cubic;
+mod equations;
 mod figure;
+mod gauge;
 mod mend;
 mod moments;
 mod nodes;
@@ -140,16 +142,13 @@ pub fn fit_closed(ring: &RingSamples, ruler: &Ruler) -> Option<Outline> {
         return Some(outline);
     }
     let draft = path::draft_ring(&mut track, ruler)?;
-    let path = draft.finish(&track, ruler);
-    let whole = whole::fit(&track, &path, ruler);
-    let path = draft.mended(&track, ruler).unwrap_or(path);
+    // A whole outline is looked for along the path as it was cut: where that is far off, what mends it has corners that nobody drew.
+    let mended = draft.mended(&track, ruler);
+    let ring = if mended.is_some() { Some(draft.ring()) } else { None };
+    let path = mended.unwrap_or_else(|| draft.finish(&track, ruler));
+    let whole = whole::fit(&track, ring.as_ref().unwrap_or(&path.ring), path.bits + path.misfit, ruler);
     let FittedPath { ring, bits, misfit } = path;
-    whole.filter(|whole| whole.bits + whole.misfit <= bits + misfit).or(Some(Outline {
-        shape: OutlineShape::Path(ring),
-        bits,
-        misfit,
-        deviations: Vec::new(),
-    }))
+    whole.or(Some(Outline { shape: OutlineShape::Path(ring), bits, misfit, deviations: Vec::new() }))
 }
 
 /// The shortest description of an open line through samples.

@@ -73,6 +73,11 @@ impl Draft {
         finish(tie(self.fitted.clone(), track, ruler), ruler)
     }
 
+    /// The path before it is mended.
+    pub(super) fn ring(&self) -> PathRing<f64> {
+        ring_of(&self.fitted.chain, &[])
+    }
+
     /// The path with polygons where it would be far off; none if it is not.
     pub(super) fn mended(&self, track: &Track, ruler: &Ruler) -> Option<FittedPath> {
         let mut mended = mend(&self.fitted, track, ruler)?;
@@ -208,17 +213,16 @@ fn without_bridge(chain: &Chain, track: &Track, k: usize) -> Option<Chain> {
 
 fn finish(tied: Tied, ruler: &Ruler) -> FittedPath {
     let misfit = tied.fitted.misfit(ruler);
-    let ring = ring_of(&tied);
+    let ring = ring_of(&tied.fitted.chain, &tied.ties);
     #[expect(clippy::cast_precision_loss, reason = "counts of pieces are small")]
     let pieces = ring.segments.len() as f64;
     FittedPath { ring, bits: tied.number_bits.max(0.0) + tuning::OUTLINE_PIECE_BITS * (pieces + 1.0), misfit }
 }
 
 /// The path of a chain; what is tied is exact.
-fn ring_of(tied: &Tied) -> PathRing<f64> {
-    let chain = &tied.fitted.chain;
+fn ring_of(chain: &Chain, ties: &[(Tie, f64)]) -> PathRing<f64> {
     let mut points: Vec<[f64; 2]> = chain.points.iter().map(|point| point.to_array()).collect();
-    for &(tie, _) in &tied.ties {
+    for &(tie, _) in ties {
         let (line, axis) = match tie {
             Tie::Horizontal { line } => (line, 1),
             Tie::Vertical { line } => (line, 0),

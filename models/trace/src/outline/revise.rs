@@ -10,6 +10,7 @@ use num_traits::Float as _;
 use super::chain::{Chain, Curve};
 use super::cubic;
 use super::figure::as_f64;
+use super::gauge::Gauge;
 use super::solve::{Fitted, samples_of, spoiled_chi2};
 use super::ties::tie;
 use super::track::Track;
@@ -170,12 +171,11 @@ impl Reviser<'_> {
         {
             return None;
         }
-        let places = pair.places();
         let chi2 = |k: usize, range: core::ops::Range<usize>| {
             let samples = range.map(|sample| &self.track.samples[sample % self.track.len()]);
+            let gauge = Gauge::of(pair, k);
             let misfits = samples.filter_map(|sample| {
-                let mut t = if k == 0 { 1.0 } else { 0.0 };
-                let (misfit, _) = (0..4).filter_map(|_| pair.misfit(k, sample, &places, &mut t)).last()?;
+                let misfit = gauge.misfit(sample, if k == 0 { 1.0 } else { 0.0 })?;
                 let most = if sample.holds(pair.points[1]) { spoiled_chi2() } else { f64::INFINITY };
                 Some((misfit * misfit).min(most))
             });

@@ -7,13 +7,26 @@ use alloc::vec::Vec;
 use num_traits::Float as _;
 
 /// The lower triangle of a symmetric matrix, or of its Cholesky factor.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(crate) struct Skyline {
     /// First column of each row.
     first: Vec<usize>,
     /// Where each row starts in the entries, less its first column.
     start: Vec<usize>,
     entries: Vec<f64>,
+}
+
+impl Clone for Skyline {
+    fn clone(&self) -> Self {
+        Self { first: self.first.clone(), start: self.start.clone(), entries: self.entries.clone() }
+    }
+
+    /// Into the room that is there: least squares need a factor in every step.
+    fn clone_from(&mut self, other: &Self) {
+        self.first.clone_from(&other.first);
+        self.start.clone_from(&other.start);
+        self.entries.clone_from(&other.entries);
+    }
 }
 
 impl Skyline {
@@ -42,12 +55,43 @@ impl Skyline {
         }
     }
 
+    /// Zeros again.
+    pub(crate) fn clear(&mut self) {
+        self.entries.fill(0.0);
+    }
+
+    /// The entries where the rows and columns `places`, rising, meet: the lower triangle, zeros beyond.
+    pub(crate) fn block<const N: usize>(&self, places: &[usize; N]) -> [[f64; N]; N] {
+        let mut block = [[0.0; N]; N];
+        for (k, (&row, entries)) in places.iter().zip(&mut block).enumerate() {
+            for (&column, entry) in places[..=k].iter().zip(entries) {
+                *entry = self.entries[self.start[row] + column - self.first[row]];
+            }
+        }
+        block
+    }
+
+    /// Puts entries where [`Self::block`] has them from.
+    pub(crate) fn set_block<const N: usize>(&mut self, places: &[usize; N], block: &[[f64; N]; N]) {
+        for (k, (&row, entries)) in places.iter().zip(block).enumerate() {
+            for (&column, &entry) in places[..=k].iter().zip(entries) {
+                self.entries[self.start[row] + column - self.first[row]] = entry;
+            }
+        }
+    }
+
     /// The Cholesky factor of this matrix with its diagonal multiplied by 1 + `damping` and `ridge` added; none if it is not
     /// positive.
     pub(crate) fn factor(&self, damping: f64, ridge: f64) -> Option<Self> {
         let mut factor = self.clone();
+        factor.factorize(damping, ridge)?;
+        Some(factor)
+    }
+
+    /// The same in place; what is left is of no use where there is none.
+    pub(crate) fn factorize(&mut self, damping: f64, ridge: f64) -> Option<()> {
         for row in 0..self.first.len() {
-            let (done, rest) = factor.entries.split_at_mut(self.start[row]);
+            let (done, rest) = self.entries.split_at_mut(self.start[row]);
             let row_first = self.first[row];
             let entries = &mut rest[..row + 1 - row_first];
             for column in row_first..row {
@@ -62,7 +106,7 @@ impl Skyline {
             let value = entries[row - row_first] * (1.0 + damping) + ridge - sum;
             entries[row - row_first] = (value > 0.0 && value.is_finite()).then(|| value.sqrt())?;
         }
-        Some(factor)
+        Some(())
     }
 
     /// Of a factor: the solution of L x = `right`, in place.

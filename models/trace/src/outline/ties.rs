@@ -38,6 +38,8 @@ pub(super) struct Tied {
 
 /// Step of central differences, pixels.
 const STEP: f64 = 1e-5;
+/// Share of a direction that is nothing but rounding.
+const FADED: f64 = 1e-12;
 /// How much harder a tie is held than the samples hold its number.
 const HOLD: f64 = 1e6;
 
@@ -66,15 +68,14 @@ impl Tie {
         }
     }
 
-    /// The value and its slopes.
-    pub(super) fn violation(self, chain: &Chain, places: &[usize]) -> Option<(f64, Slopes)> {
-        let value = self.value(chain)?;
+    /// The value and its slopes; the chain is moved for them and back again.
+    pub(super) fn violation(self, moved: &mut Chain, places: &[usize]) -> Option<(f64, Slopes)> {
+        let value = self.value(moved)?;
         let mut slopes = Slopes::default();
-        let mut moved = chain.clone();
-        let [a, b] = self.curves(chain);
+        let both = self.curves(moved);
         let mut seen: Vec<usize> = Vec::with_capacity(14);
-        for k in if a == b { vec![a] } else { vec![a, b] } {
-            let end = places[chain.next(k)];
+        for &k in if both[0] == both[1] { &both[..1] } else { &both[..] } {
+            let end = places[moved.next(k)];
             for (local, place) in (places[k]..places[k + 1]).chain(end..end + 2).enumerate() {
                 if seen.contains(&place) {
                     continue;
@@ -82,11 +83,11 @@ impl Tie {
                 seen.push(place);
                 let old = *moved.number_mut(k, local)?;
                 *moved.number_mut(k, local)? = old + STEP;
-                let above = self.value(&moved)?;
+                let above = self.value(moved);
                 *moved.number_mut(k, local)? = old - STEP;
-                let below = self.value(&moved)?;
+                let below = self.value(moved);
                 *moved.number_mut(k, local)? = old;
-                let slope = (above - below) / (2.0 * STEP);
+                let slope = (above? - below?) / (2.0 * STEP);
                 if slope.abs() > 0.0 {
                     slopes.push(place, slope);
                 }
@@ -139,7 +140,8 @@ impl Chain {
 /// Accepts the ties that make the description of a chain shorter.
 pub(super) fn tie(fitted: Fitted, track: &Track, ruler: &Ruler) -> Tied {
     let number_bits = fitted.number_bits(ruler);
-    let mut judge = Judge { fitted: &fitted, ruler, places: fitted.chain.places(), held: Vec::new() };
+    let places = fitted.chain.places();
+    let mut judge = Judge { fitted: &fitted, ruler, places, moved: fitted.chain.clone(), held: Vec::new() };
     let proposed = [axis_ties, smooth_ties, radius_ties].into_iter().flat_map(|propose| propose(&fitted.chain));
     let accepted: Vec<Verdict> = proposed.filter_map(|tie| judge.verdict(tie)).collect();
     // All of them or, if together they pull harder than expected, those along the axes alone.
@@ -170,22 +172,32 @@ struct Judge<'a> {
     fitted: &'a Fitted,
     ruler: &'a Ruler,
     places: Vec<usize>,
-    /// Of each tie accepted: its direction among all numbers in units of their doubt, at right angles to those before and of
-    /// length 1, and by how much it is violated along it.
-    held: Vec<(Vec<f64>, f64)>,
+    /// Room to move the chain in.
+    moved: Chain,
+    held: Vec<Direction>,
+}
+
+/// Of a tie that is accepted: its direction among all numbers in units of their doubt, at right angles to those before and of length 1.
+struct Direction {
+    /// The first number in it, and the parts along this and those after it, up to the last that counts.
+    first: usize,
+    parts: Vec<f64>,
+    /// By how much the tie is violated along it.
+    violation: f64,
 }
 
 impl Judge<'_> {
     /// *Source*: the ratio of Savage and Dickey: the density at 0 of what should be 0, after over before the samples were seen.
     fn verdict(&mut self, tie: Tie) -> Option<Verdict> {
-        let (mut value, slopes) = tie.violation(&self.fitted.chain, &self.places)?;
+        let (mut value, slopes) = tie.violation(&mut self.moved, &self.places)?;
         let mut direction = vec![0.0; self.places.last().copied().unwrap_or(0)];
         slopes.entries().iter().for_each(|&(place, slope)| direction[place] = slope);
         self.fitted.factor.solve_lower(&mut direction);
         let free: f64 = direction.iter().map(|x| x * x).sum();
-        for (other, violation) in &self.held {
-            let share: f64 = direction.iter().zip(other).map(|(a, b)| a * b).sum();
-            direction.iter_mut().zip(other).for_each(|(a, b)| *a -= share * b);
+        for Direction { first, parts, violation } in &self.held {
+            let own = &mut direction[*first..];
+            let share: f64 = own.iter().zip(parts).map(|(a, b)| a * b).sum();
+            own.iter_mut().zip(parts).for_each(|(a, b)| *a -= share * b);
             value -= share * violation;
         }
         let variance: f64 = direction.iter().map(|x| x * x).sum();
@@ -199,8 +211,12 @@ impl Judge<'_> {
         if misfit.is_nan() || misfit >= price {
             return None;
         }
-        direction.iter_mut().for_each(|x| *x /= sigma);
-        self.held.push((direction, value / sigma));
+        // What a tie says of numbers further on fades away.
+        let counts = |x: &f64| x.abs() > FADED * sigma;
+        let first = direction.iter().position(counts).unwrap_or(0);
+        let end = direction.iter().rposition(counts).map_or(first, |last| last + 1);
+        let parts = direction[first..end].iter().map(|x| x / sigma).collect();
+        self.held.push(Direction { first, parts, violation: value / sigma });
         Some(Verdict { tie, weight: HOLD / variance, price })
     }
 }

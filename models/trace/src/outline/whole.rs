@@ -10,7 +10,6 @@ use num_traits::Float as _;
 
 use super::conic;
 use super::figure::{Figure, MOST_NUMBERS, as_f64};
-use super::path::FittedPath;
 use super::solve::spoiled_chi2;
 use super::track::{LEAST_COSINE, Track};
 use super::{Outline, OutlineShape};
@@ -49,11 +48,10 @@ pub(super) fn fit_plain(track: &Track, ruler: &Ruler) -> Option<Outline> {
     best
 }
 
-/// The cheapest whole outline that costs less than `path`.
-pub(super) fn fit(track: &Track, path: &FittedPath, ruler: &Ruler) -> Option<Outline> {
-    let most = path.bits + path.misfit;
+/// The cheapest whole outline about along a path that costs less than `most` bits.
+pub(super) fn fit(track: &Track, path: &PathRing<f64>, most: f64, ruler: &Ruler) -> Option<Outline> {
     let mut best: Option<Outline> = None;
-    for (figure, start, free) in starts(track, &path.ring) {
+    for (figure, start, free) in starts(track, path) {
         let most = best.as_ref().map_or(most, |best| best.bits + best.misfit);
         let trial = Trial { track, ruler, figure, free, renderer: tuning::RENDERER_SIGMA };
         best = trial.run(start, most).or(best);

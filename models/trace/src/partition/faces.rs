@@ -78,12 +78,15 @@ fn label([width, height]: [usize; 2], mixed: &Mixed) -> (Vec<u32>, Vec<Face>) {
     let colors = &mixed.colors;
     let sides = super::checker::sides(colors, &mixed.is_flat, [width, height]);
     let same = |i: usize, j: usize| colors[i] == colors[j] && (sides[i] == sides[j] || sides[i] == 0 || sides[j] == 0);
+    // What a way of single steps joins needs no union of its own: in flat parts all but those down the columns.
+    let is_way = |way: [usize; 3]| same(way[0], way[1]) && same(way[1], way[2]);
     let mut sets = DisjointSets::default();
     sets.reset(index(colors.len()));
     for y in 0..height {
         for x in 0..width {
             let i = y * width + x;
-            if x + 1 < width && same(i, i + 1) {
+            let is_joined_above = || y > 0 && is_way([i, i - width, i + 1 - width]) && same(i + 1 - width, i + 1);
+            if x + 1 < width && same(i, i + 1) && !is_joined_above() {
                 sets.unite(index(i), index(i + 1));
             }
             if y + 1 < height && same(i, i + width) {
@@ -94,8 +97,10 @@ fn label([width, height]: [usize; 2], mixed: &Mixed) -> (Vec<u32>, Vec<Face>) {
                 let [nw, ne, sw, se] = four;
                 let (falls, rises) = (same(nw, se), same(ne, sw));
                 if falls && (!rises || falling_joins(&mixed.shares, four)) {
-                    sets.unite(index(nw), index(se));
-                } else if rises {
+                    if !(is_way([nw, ne, se]) || is_way([nw, sw, se])) {
+                        sets.unite(index(nw), index(se));
+                    }
+                } else if rises && !(is_way([ne, nw, sw]) || is_way([ne, se, sw])) {
                     sets.unite(index(ne), index(sw));
                 }
             }

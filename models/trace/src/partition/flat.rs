@@ -83,14 +83,24 @@ pub(super) fn find(pixels: &[[f32; 3]], size: [usize; 2], noise: &Noise) -> Flat
     let mut sets = DisjointSets::default();
     sets.reset(u32::try_from(pixels.len()).unwrap_or(NONE));
     let mut is_flat = vec![false; pixels.len()];
+    // The last block that was flat, and those of the row above.
+    let (mut last, mut above) = (None, vec![false; width]);
     for (i, range) in ranges(pixels, size) {
-        if range <= noise.flat {
-            let block = [i, i + 1, i + width, i + width + 1];
-            for j in block {
-                is_flat[j] = true;
+        let is_block = range <= noise.flat;
+        let is_above_flat = core::mem::replace(&mut above[i % width], is_block);
+        if !is_block {
+            continue;
+        }
+        // What two blocks share is of one region already.
+        let is_left_flat = last.is_some_and(|last: usize| last + 1 == i);
+        last = Some(i);
+        for (j, is_united) in [(i + 1, is_above_flat), (i + width, is_left_flat), (i + width + 1, false)] {
+            is_flat[j] = true;
+            if !is_united {
                 sets.unite(index(i), index(j));
             }
         }
+        is_flat[i] = true;
     }
     let mut number = vec![NONE; pixels.len()];
     let mut means: Vec<([f64; 3], usize)> = Vec::new();

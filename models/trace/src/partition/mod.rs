@@ -99,11 +99,13 @@ impl Partition {
             if widest > tuning::THIN_WIDTH && colors.colors.len() < 3 {
                 continue;
             }
-            let taken = take_lines(&mut pixels, size, &flats, &colors, f64::from(noise.mixed), widest);
+            let (taken, is_changed) = take_lines(&mut pixels, size, &flats, &colors, f64::from(noise.mixed), widest);
             // Wide lines may pass under thin ones.
             lines.splice(0..0, taken);
-            flats = flat::find(&pixels, size, &noise);
-            colors = palette::Palette::of(&flats, &noise)?;
+            if is_changed {
+                flats = flat::find(&pixels, size, &noise);
+                colors = palette::Palette::of(&flats, &noise)?;
+            }
         }
         let mixed = mix::explain(&pixels, size, &flats, colors, &noise);
         Ok(Self { coded: noise.is_coded(), lines, ..faces::cut(size, pixels, mixed) })
@@ -123,7 +125,7 @@ impl Partition {
     }
 }
 
-/// Mends seams, and takes lines up to some width (pixels) out of the picture.
+/// Mends seams, and takes lines up to some width (pixels) out of the picture: the lines, and whether any pixel is another than before.
 fn take_lines(
     pixels: &mut [[f32; 3]],
     size: [usize; 2],
@@ -131,10 +133,10 @@ fn take_lines(
     colors: &palette::Palette,
     noise: f64,
     widest: f64,
-) -> Vec<ThinLine> {
+) -> (Vec<ThinLine>, bool) {
     let flat = cross::thick(&flats.regions, size[0], &colors.of_region, widest as u16 + 1);
     let mut open = mix::open(pixels, size, &flat, &colors.colors, noise);
-    seam::mend(pixels, size, &flat, &mut open, &colors.colors, noise);
+    let is_mended = seam::mend(pixels, size, &flat, &mut open, &colors.colors, noise);
     let canvas = cross::Canvas { pixels, size, flat: &flat, open: &open, noise, widest };
     let mut lines = thin::find(&canvas, &colors.colors);
     if widest > tuning::THIN_WIDTH {
@@ -143,5 +145,6 @@ fn take_lines(
     let known = flat.iter().map(|&color| color != u16::MAX).collect();
     let mut eraser = erase::Eraser { pixels, size, open: &open, known, palette: &colors.colors };
     eraser.erase(lines.iter().map(|(_, chain)| chain));
-    lines.into_iter().map(|(line, _)| line).collect()
+    let is_changed = is_mended || !lines.is_empty();
+    (lines.into_iter().map(|(line, _)| line).collect(), is_changed)
 }

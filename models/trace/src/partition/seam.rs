@@ -11,7 +11,7 @@ use crate::tuning;
 /// Colors that may show through, by falling area: what lies behind much is large.
 const BEHIND: usize = 3;
 
-/// Mends the pixels of `open` that are seams; they are open no more.
+/// Mends the pixels of `open` that are seams; they are open no more. Whether there were any.
 pub(super) fn mend(
     pixels: &mut [[f32; 3]],
     size: [usize; 2],
@@ -19,7 +19,8 @@ pub(super) fn mend(
     open: &mut [bool],
     palette: &[Color],
     noise: f64,
-) {
+) -> bool {
+    let mut is_mended = false;
     let mut near = Near::default();
     for i in 0..pixels.len() {
         if !open[i] {
@@ -45,8 +46,10 @@ pub(super) fn mend(
         if let (_, Some((front, other, share))) = best {
             pixels[i] = core::array::from_fn(|c| (share * front[c] + (1.0 - share) * other[c]) as f32);
             open[i] = false;
+            is_mended = true;
         }
     }
+    is_mended
 }
 
 /// Coverage by the front thing, and what is left, the most that a channel differs.

@@ -107,8 +107,17 @@ impl Line {
 
     /// Where the outline of the line's strip is nearest to a point; none if that is more than `limit` away.
     fn reading(&self, point: Vec2<f64>, half: f64, is_mitered: bool, limit: f64) -> Option<Reading> {
+        // The middle of every disk is on its piece: none that is further away than that and a window says anything.
+        let counts = |piece: usize| {
+            let is_end = [piece == 0, piece + 1 == self.pieces.len()];
+            self.ring.is_closed() || (0..2).all(|end| !(is_end[end] && self.is_covered[end]))
+        };
+        let middles = self.disks.iter().map(|&(center, _)| (point - center).length());
+        let nearest_middle = middles.enumerate().filter(|&(piece, _)| counts(piece)).map(|(_, distance)| distance);
+        let far = nearest_middle.fold(f64::INFINITY, f64::min) + 2.0 * WINDOW;
+        let reach = far.min(limit + half);
         let near = self.pieces.iter().zip(&self.disks).enumerate().filter_map(|(piece, (shape, &(center, radius)))| {
-            let is_near = (point - center).length() - radius < limit + half;
+            let is_near = (point - center).length() - radius < reach;
             let t = if is_near { nearest(shape, point) } else { return None };
             let is_covered = !self.ring.is_closed()
                 && (t <= 0.0 && piece == 0 && self.is_covered[0]

@@ -3,7 +3,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use dvp_core::shape::{Cap, Path, Piece, Segment};
+use dvp_core::shape::{Cap, Path, PathRing, Piece, Segment};
 use dvp_core::{Shape as _, Vec2};
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
@@ -12,6 +12,7 @@ use super::border::Border;
 use super::branch::BLOCK;
 use super::center::run_together;
 use super::draw::{Drawing, Foot, Line, gap};
+use super::piece::pieces;
 use crate::outline::{OutlineShape, Skyline};
 use crate::ruler::Ruler;
 use crate::tuning;
@@ -144,13 +145,19 @@ fn numbers(line: &Line) -> Vec<f64> {
 
 /// The line with other numbers.
 fn with_numbers(line: &Line, numbers: &[f64]) -> Option<Line> {
+    let (ring, figure) = ring_of(line, numbers)?;
+    Some(line.with_ring(ring)?.with_figure(figure))
+}
+
+/// The ring of a line with other numbers, and the figure that it is, if it is one.
+fn ring_of(line: &Line, numbers: &[f64]) -> Option<(PathRing<f64>, Option<OutlineShape>)> {
     if let Some(figure) = &line.figure {
         let figure = figure.with_numbers(numbers)?;
-        return Some(line.with_ring(figure.ring())?.with_figure(Some(figure)));
+        return Some((figure.ring(), Some(figure)));
     }
     let mut path = Path { rings: vec![line.ring.clone()], ..Path::default() };
     path.set_numbers(numbers).ok()?;
-    line.with_ring(path.rings.pop()?)
+    Some((path.rings.pop()?, None))
 }
 
 /// The drawing after a change of all numbers: those of its lines, and half the width.
@@ -200,14 +207,16 @@ fn equations(drawing: &Drawing, border: &Border, misses: &[Miss]) -> Option<(Sky
 fn slopes(line: &Line, half: f64, border: &Border, misses: &[&Miss]) -> Vec<Vec<(usize, f64)>> {
     let mut slopes = vec![Vec::new(); misses.len()];
     let mut numbers = numbers(line);
+    let measured = |pieces: &[Piece<f64>], miss: &Miss| gap(pieces, miss.foot, border.marks[miss.mark].point, half);
+    let gaps: Vec<f64> = misses.iter().map(|miss| measured(&line.pieces, miss)).collect();
     for number in 0..numbers.len() {
         let old = numbers[number];
         numbers[number] = old + STEP;
-        let moved = with_numbers(line, &numbers);
+        let moved = ring_of(line, &numbers).map(|(ring, _)| pieces(&ring));
         numbers[number] = old;
-        let Some(Line { pieces: moved, .. }) = moved else { continue };
+        let Some(moved) = moved.filter(|moved| moved.len() == line.pieces.len()) else { continue };
         let is_moved: Vec<_> = line.pieces.iter().zip(&moved).map(|(a, b)| a != b).collect();
-        for (slopes, miss) in slopes.iter_mut().zip(misses) {
+        for ((slopes, miss), before) in slopes.iter_mut().zip(misses).zip(&gaps) {
             let piece = match miss.foot {
                 Foot::Body { piece, .. } | Foot::Tangent { piece, .. } => piece,
                 Foot::Face { at_finish } => {
@@ -219,9 +228,7 @@ fn slopes(line: &Line, half: f64, border: &Border, misses: &[&Miss]) -> Vec<Vec<
                 }
             };
             if is_moved.get(piece) == Some(&true) {
-                let point = border.marks[miss.mark].point;
-                let change = |pieces: &[Piece<f64>]| gap(pieces, miss.foot, point, half);
-                slopes.push((number, (change(&moved) - change(&line.pieces)) / STEP));
+                slopes.push((number, (measured(&moved, miss) - before) / STEP));
             }
         }
     }
