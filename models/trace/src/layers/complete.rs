@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use core::cell::{Cell, RefCell};
 
 use dvp_core::Vec2;
-use dvp_core::shape::{FillRule, Outline as Polygons, Path, PathRing, Shape as _};
+use dvp_core::shape::PathRing;
 
 use super::memo::Memo;
 use super::order::Order;
@@ -235,7 +235,7 @@ impl Completion<'_> {
     }
 
     fn check(&self, outlines: &[Outline], wanted: impl Fn(u32) -> Option<bool>) -> Result<(), Vec<[usize; 2]>> {
-        let polygons: Vec<Vec<[f64; 2]>> = outlines.iter().filter_map(polygon).collect();
+        let polygons: Vec<Vec<[f64; 2]>> = outlines.iter().filter_map(raster::polygon).collect();
         if polygons.is_empty() { Err(Vec::new()) } else { raster::check(self.partition, &polygons, wanted) }
     }
 
@@ -312,14 +312,6 @@ fn pin(walks: &mut [Walk<'_>], wrong: &[[usize; 2]]) -> bool {
         }
     }
     !places.is_empty()
-}
-
-/// The polygon of an outline.
-fn polygon(outline: &Outline) -> Option<Vec<[f64; 2]>> {
-    let path = Path { rings: vec![outline.shape.ring()], fill: FillRule::EvenOdd };
-    let mut polygons = Polygons::default();
-    path.boundary().ok()?.flatten(0.1, &mut polygons).ok()?;
-    (polygons.vertices.len() > 2).then_some(polygons.vertices)
 }
 
 /// The faces that each face touches.

@@ -1,11 +1,23 @@
 //! Which pixels an outline covers: the check that a layer hides nothing that lies behind it, and shows all that is its own.
 
 use alloc::collections::BTreeMap;
+use alloc::vec;
 use alloc::vec::Vec;
 use core::ops::Range;
 
+use dvp_core::shape::{FillRule, Outline as Polygons, Path, Shape as _};
+
+use crate::outline::Outline;
 use crate::partition::{Face, OUTSIDE, Partition};
 use crate::tuning;
+
+/// The polygon of an outline.
+pub(super) fn polygon(outline: &Outline) -> Option<Vec<[f64; 2]>> {
+    let path = Path { rings: vec![outline.shape.ring()], fill: FillRule::EvenOdd };
+    let mut polygons = Polygons::default();
+    path.boundary().ok()?.flatten(0.1, &mut polygons).ok()?;
+    (polygons.vertices.len() > 2).then_some(polygons.vertices)
+}
 
 /// Whether what polygons (pixels, even-odd) cover is what they should cover, but for few pixels: of all pixels that are `wanted`
 /// (Some(true)), and of every face that is not (Some(false)), however small it is. Mixed pixels count for nothing. Else the pixels

@@ -111,7 +111,8 @@ impl Skyline {
 
     /// Of a factor: the solution of L x = `right`, in place.
     pub(crate) fn solve_lower(&self, right: &mut [f64]) {
-        for row in 0..right.len() {
+        // As long as the right side is 0 the solution is.
+        for row in right.iter().position(|&value| value != 0.0).unwrap_or(right.len())..right.len() {
             let (first, entries) = (self.first[row], self.row(row));
             let sum: f64 = entries.iter().zip(&right[first..row]).map(|(a, b)| a * b).sum();
             right[row] = (right[row] - sum) / entries[row - first];
