@@ -3,7 +3,7 @@
 use alloc::collections::{BTreeMap, BTreeSet};
 use alloc::vec;
 use alloc::vec::Vec;
-use core::cell::{Cell, RefCell};
+use core::cell::RefCell;
 
 use dvp_core::Vec2;
 use dvp_core::shape::PathRing;
@@ -11,7 +11,7 @@ use dvp_core::shape::PathRing;
 use super::memo::Memo;
 use super::order::Order;
 use super::visible::{self, Hidden};
-use super::{link, raster};
+use super::{link, raster, sheet};
 use crate::boundary::{Ring, Step};
 use crate::outline::{Outline, OutlineShape};
 use crate::partition::{OUTSIDE, Partition};
@@ -19,6 +19,9 @@ use crate::ruler::Ruler;
 use crate::sample::RingSamples;
 use crate::stroke::StrokeFit;
 use crate::tuning;
+
+/// Bits that tell of a sheet as large as the picture: that it is one, and of which kind.
+const FRAME_BITS: f64 = 8.0;
 
 /// Most ways to link the parts of one thing that are tried.
 const MOST_LINKED: usize = 4;
@@ -42,8 +45,6 @@ pub(super) struct Completion<'a> {
     pub(super) united: Vec<(u32, u32)>,
     /// Outlines that were found, by the faces painted together and those in front of them.
     pub(super) known: RefCell<BTreeMap<(Vec<u32>, Vec<u32>), Completed>>,
-    /// Samples that outlines were fitted to.
-    pub(super) spent: Cell<usize>,
     /// Outlines that were fitted.
     pub(super) memo: Memo,
 }
@@ -124,7 +125,7 @@ impl Completion<'_> {
     /// Whether so many outlines were fitted that no other order or group is tried any more.
     pub(super) fn is_spent(&self) -> bool {
         let steps: usize = self.rings.iter().flatten().map(|ring| ring.steps.len()).sum();
-        self.spent.get() > (tuning::MOST_TRIED * steps).min(tuning::MOST_TRIED_SAMPLES)
+        self.memo.spent.get() > (tuning::MOST_TRIED * steps).min(tuning::MOST_TRIED_SAMPLES)
     }
 
     /// Faces are painted in this order.
@@ -171,14 +172,20 @@ impl Completion<'_> {
         let is_seen = |at: Vec2<f64>| self.pure_face(at).is_some_and(|face| wanted(face).is_some());
         let mut samples: Vec<RingSamples> = walks.iter().map(Walk::samples).collect();
         let most = if group.len() > 1 { MOST_LINKED } else { 1 };
-        let linked = link::relinked(&samples, is_seen, most).into_iter().map(|samples| self.fit(&samples));
+        let linked = link::relinked(&samples, is_seen, most).into_iter().map(|samples| self.framed(&samples));
         let linked = linked.filter(|linked| self.check(&linked.outlines, wanted).is_ok());
         let linked = linked.min_by(|a, b| a.bits.total_cmp(&b.bits));
-        loop {
+        let mut linked = linked;
+        for round in 0.. {
             let walked = self.fit(&samples);
             match self.check(&walked.outlines, wanted) {
                 Ok(()) => return linked.filter(|linked| linked.bits <= walked.bits).unwrap_or(walked),
                 Err(wrong) => {
+                    if round == 0 {
+                        let led = sheet::bordered(&samples, self.partition.size, is_seen).map(|led| self.fit(&led));
+                        let led = led.filter(|led| self.check(&led.outlines, wanted).is_ok());
+                        linked = [linked, led].into_iter().flatten().min_by(|a, b| a.bits.total_cmp(&b.bits));
+                    }
                     if !pin(&mut walks, &wrong) {
                         break;
                     }
@@ -209,9 +216,21 @@ impl Completion<'_> {
 
     /// The outlines through samples.
     fn fit(&self, samples: &[RingSamples]) -> Completed {
-        let count: usize = samples.iter().flat_map(|ring| &ring.runs).map(Vec::len).sum();
-        self.spent.set(self.spent.get() + count);
         Completed::new(samples.iter().filter_map(|samples| self.memo.fit_closed(samples, &self.ruler)).collect(), true)
+    }
+
+    /// The outlines through samples, within that of the picture where they go around what they leave free: corners around a disk are a
+    /// sheet with an opening.
+    fn framed(&self, samples: &[RingSamples]) -> Completed {
+        let mut completed = self.fit(samples);
+        if samples.iter().map(link::area).sum::<f64>() < 0.0 {
+            let [width, height] = self.partition.size.map(|side| side as f64);
+            let points = vec![[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]];
+            let shape = OutlineShape::Path(PathRing::polygon(points));
+            completed.bits += FRAME_BITS;
+            completed.outlines.push(Outline { shape, bits: FRAME_BITS, misfit: 0.0, deviations: Vec::new() });
+        }
+        completed
     }
 
     /// The face at a place if nothing else has a share there.

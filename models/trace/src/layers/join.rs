@@ -180,6 +180,9 @@ pub(super) fn candidates(completion: &Completion<'_>) -> Vec<Vec<u32>> {
             sets.unite(face, other);
         }
     }
+    for &(a, b) in &completion.united {
+        sets.unite(a, b);
+    }
     let mut groups: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
     for face in painted {
         groups.entry(sets.root(face)).or_default().push(face);

@@ -98,6 +98,13 @@ fn swapped(mut next: Vec<usize>, price: impl Fn(&[usize]) -> f64) -> Vec<usize> 
     }
 }
 
+/// Square pixels that the polygon through the samples of a ring encloses, negative where it goes around what is free.
+pub(super) fn area(ring: &RingSamples) -> f64 {
+    let points: Vec<Vec2<f64>> = ring.runs.iter().flatten().map(|sample| sample.point).collect();
+    let next = points.iter().cycle().skip(1);
+    points.iter().zip(next).map(|(point, next)| 0.5 * point.cross(*next)).sum()
+}
+
 /// The rings that stretches make, each followed by the one that `next` names.
 fn followed(next: &[usize], runs: &[&Vec<Sample>]) -> Vec<RingSamples> {
     let mut is_done = vec![false; next.len()];
@@ -119,15 +126,15 @@ fn followed(next: &[usize], runs: &[&Vec<Sample>]) -> Vec<RingSamples> {
 
 /// The end of a stretch.
 #[derive(Clone, Copy, Debug)]
-struct Tip {
-    at: Vec2<f64>,
+pub(super) struct Tip {
+    pub(super) at: Vec2<f64>,
     /// Into what is hidden, a unit vector.
-    direction: Vec2<f64>,
+    pub(super) direction: Vec2<f64>,
 }
 
 impl Tip {
     /// The tip where `samples` begin.
-    fn of<'a>(mut samples: impl Iterator<Item = &'a Sample>) -> Option<Self> {
+    pub(super) fn of<'a>(mut samples: impl Iterator<Item = &'a Sample>) -> Option<Self> {
         let at = samples.next()?.point;
         let inner = samples.take(TIP).last()?.point;
         Some(Self { at, direction: (at - inner).normalized()? })

@@ -2,7 +2,7 @@
 
 use alloc::collections::BTreeMap;
 use alloc::vec::Vec;
-use core::cell::RefCell;
+use core::cell::{Cell, RefCell};
 
 use crate::outline::{Outline, fit_closed};
 use crate::ruler::Ruler;
@@ -12,12 +12,18 @@ use crate::sample::RingSamples;
 #[derive(Default)]
 pub(super) struct Memo {
     known: RefCell<BTreeMap<Vec<u64>, Option<Outline>>>,
+    /// Samples that outlines were fitted to, those known before aside.
+    pub(super) spent: Cell<usize>,
 }
 
 impl Memo {
     /// What [`fit_closed`] gives; the ruler is always the same.
     pub(super) fn fit_closed(&self, ring: &RingSamples, ruler: &Ruler) -> Option<Outline> {
-        self.known.borrow_mut().entry(key(ring)).or_insert_with(|| fit_closed(ring, ruler)).clone()
+        let fit = || {
+            self.spent.set(self.spent.get() + ring.runs.iter().map(Vec::len).sum::<usize>());
+            fit_closed(ring, ruler)
+        };
+        self.known.borrow_mut().entry(key(ring)).or_insert_with(fit).clone()
     }
 }
 

@@ -9,6 +9,7 @@
 //! | `join` | faces of one color that are one thing behind another |
 //! | `visible` | what of a boundary is a layer's own |
 //! | `link` | which visible stretch goes on as which behind others |
+//! | `sheet` | what reaches as far as the picture does |
 //! | `complete` | outlines through what is seen |
 //! | `memo` | outlines that were fitted before |
 //! | `raster` | the check that an outline hides nothing |
@@ -22,10 +23,11 @@ mod order;
 mod pen;
 mod raster;
 mod settle;
+mod sheet;
 mod visible;
 
 use alloc::vec::Vec;
-use core::cell::{Cell, RefCell};
+use core::cell::RefCell;
 
 use dvp_core::shape::Stroke;
 
@@ -95,7 +97,6 @@ pub fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<Color>) 
         ruler,
         united: Vec::new(),
         known: RefCell::default(),
-        spent: Cell::new(0),
         memo,
     };
     settle::settle(&mut completion);

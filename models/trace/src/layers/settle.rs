@@ -61,11 +61,12 @@ pub(super) fn settle(completion: &mut Completion<'_>) {
             }
         }
         is_changed |= search.unite(&mut order, &mut total);
+        is_changed |= search.frame(&mut order, &mut total);
         if !is_changed || search.completion.is_spent() {
             break;
         }
     }
-    completion.spent.set(0);
+    completion.memo.spent.set(0);
 }
 
 struct Search<'a, 'b> {
@@ -117,6 +118,50 @@ impl Search<'_, '_> {
             self.completion.paint(order);
         }
         is_changed
+    }
+
+    /// Puts faces of one color at the border of the picture in front of everything, where they are shorter as one sheet with an opening.
+    fn frame(&mut self, order: &mut Vec<u32>, total: &mut Option<f64>) -> bool {
+        let mut is_changed = false;
+        for faces in self.at_border() {
+            let is_known = faces.windows(2).all(|pair| self.completion.united.contains(&(pair[0], pair[1])));
+            if is_known || self.completion.is_spent() {
+                continue;
+            }
+            let mut moved = order.clone();
+            moved.retain(|face| !faces.contains(face));
+            moved.extend(&faces);
+            let net = |other: u32, face: u32| self.completion.order.net(other, face).max(0.0);
+            let behind = |face: u32| self.completion.neighbors[face as usize].iter().map(move |&other| net(other, face));
+            let against: f64 = faces.iter().flat_map(|&face| behind(face)).sum();
+            let before = *total.get_or_insert_with(|| join::total(self.completion));
+            self.completion.paint(&moved);
+            let count = self.completion.united.len();
+            self.completion.united.extend(faces.windows(2).map(|pair| (pair[0], pair[1])));
+            let after = join::total(self.completion);
+            if after + against < before - tuning::LEAST_SAVED {
+                *order = moved;
+                is_changed = true;
+                *total = Some(after);
+            } else {
+                self.completion.united.truncate(count);
+            }
+            self.completion.paint(order);
+        }
+        is_changed
+    }
+
+    /// Several painted faces of one color at the border of the picture, for every color that has such.
+    fn at_border(&self) -> Vec<Vec<u32>> {
+        let completion = &*self.completion;
+        let mut of_color: BTreeMap<usize, Vec<u32>> = BTreeMap::new();
+        for face in completion.painted() {
+            let mut steps = completion.rings[face as usize].iter().flat_map(|ring| &ring.steps);
+            if completion.pen(&[face]).is_none() && steps.any(|step| step.other == OUTSIDE) {
+                of_color.entry(completion.partition.faces[face as usize].color).or_default().push(face);
+            }
+        }
+        of_color.into_values().filter(|faces| (2..=tuning::MOST_PAIRED).contains(&faces.len())).collect()
     }
 
     /// Faces of one color that another one, painted before one of them, lies between: (face, face, between).
