@@ -194,4 +194,4 @@ pub const CLEAR_VOTE: f64 = 7.0;
 /// and again for groups of faces; the usual picture needs one to three times as many.
 pub const MOST_TRIED: usize = 4;
 /// The same for pictures with long boundaries, samples: a few tenths of a second.
-pub const MOST_TRIED_SAMPLES: usize = 20_000;
+pub const MOST_TRIED_SAMPLES: usize = 14_000;
