@@ -27,7 +27,7 @@ mod png;
 mod scene_json;
 
 pub use atomic::write_atomic;
-pub use bank::{bank_to_json, mdshr_bank, read_bank};
+pub use bank::{bank_to_json, mdshr_bank, parse_bank, read_bank};
 pub use data_set::{DataSet, SCENES_FILE, Sample, bank_near, pictures_of, read_scene_lines};
 pub use error::{FormatError, Place};
 pub use labels::{labels_beside, read_labels};
