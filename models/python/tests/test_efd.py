@@ -25,7 +25,9 @@ def test_descriptors_are_those_of_pyefd() -> None:
         expected = pyefd.elliptic_fourier_descriptors(closed, order=12)
         assert np.allclose(dvp.efd(contour, 12, normalize=False), expected, atol=1e-12)
         assert np.allclose(dvp.efd(closed, 12, normalize=False), expected, atol=1e-12)
-        normal, own = pyefd.normalize_efd(expected), dvp.efd(contour, 12)
+        normal, own = pyefd.normalize_efd(expected.copy()), dvp.efd(contour, 12)
+        # Which way the long axis points is open there: a_1 may be -1.
+        normal = normal * np.sign(normal[0, 0])
         twin = normal * np.where(np.arange(1, 13) % 2 == 0, -1, 1)[:, None]
         assert np.allclose(own, normal, atol=1e-9) or np.allclose(own, twin, atol=1e-9)
         center = pyefd.calculate_dc_coefficients(closed)

@@ -17,7 +17,7 @@ PICTURES: list[tuple[Any, str]] = [
     (np.full((8, 8, 3), 255.0), "255.0; floats must lie from 0 to 1"),
     (np.full((8, 8, 3), -0.5, np.float32), "-0.5"),
     (np.zeros((0, 0, 3), np.uint8), "0 x 0 pixels"),
-    (np.zeros((0, 5), np.float32), "5 x 0 pixels"),
+    (np.zeros((0, 5), np.float32), "0 x 5 pixels"),
     (np.zeros((8, 8, 2), np.uint8), "height x width"),
     (np.zeros((8, 8, 5), np.uint8), "height x width"),
     (np.zeros((2, 8, 8, 3), np.uint8), "height x width"),
@@ -70,10 +70,8 @@ def test_what_is_huge_is_refused() -> None:
     with pytest.raises(dvp.DvpError):
         scene.render((-1, 5))
     text = scene.to_json().replace('"width":128,"height":128', '"width":1000000,"height":1000000')
-    large = dvp.Scene.from_json(text)
-    for pixels in (large.render, large.labels, large.whole, large.measures, large.outlines, large.efd):
-        with pytest.raises(dvp.DvpError, match="pixels"):
-            pixels()
+    with pytest.raises(dvp.DvpError, match="above the limit"):
+        dvp.Scene.from_json(text)
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (1, 300), (300, 1), (2, 2), (3, 2)])

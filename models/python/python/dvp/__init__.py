@@ -6,7 +6,7 @@
 >>> scene = dvp.fit(picture)
 >>> scene.objects[0].kind, scene.objects[0].color
 ('rectangle', (0.11764706, 0.23529412, 0.78431374))
->>> abs(scene.render().astype(int) - picture).max() <= 1
+>>> bool((scene.render() == picture).all())
 True
 
 =====================  =====================================================================

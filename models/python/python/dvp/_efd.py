@@ -20,20 +20,21 @@ def efd(
     *Conventions*. Row n - 1 holds (a_n, b_n, c_n, d_n) of x(t) = sum a_n cos 2 pi n t + b_n sin 2 pi n t and
     y(t) = sum c_n cos 2 pi n t + d_n sin 2 pi n t, t the share of the contour's length from its first point. The last point may repeat
     the first. They are those of pyefd's ``elliptic_fourier_descriptors(contour, order, normalize=False)`` for contours whose last point
-    repeats the first (pyefd leaves the closing edge out of others), and of Momocs' ``efourier``, whose an, bn, cn, dn are the columns.
+    repeats the first (pyefd leaves the closing edge out of others); an, bn, cn, dn of Momocs' ``efourier`` are the columns.
     The center is not among them: :func:`efd_center`.
 
     ``normalize`` takes position, size, angle and starting point out by the ellipse of the first harmonic, as pyefd's ``normalize_efd``
     and Momocs' ``efourier_norm`` do: a_1 = 1, b_1 = c_1 = 0, abs(d_1) <= 1. That leaves two starting points, the ends of the long
-    axis; the one that lies farther from the center is taken (pyefd and Momocs take the one nearer to the first point: where they
-    differ, all rows of even n have the other sign). Contours that turn the other way have a negative d_1.
+    axis; the one that lies farther from the center is taken, so that the contour's first point does not matter. pyefd and Momocs
+    leave it to the first point: their rows of even n may have the other sign, and pyefd's a_1 may be -1, with all signs changed.
+    Contours that turn the other way have a negative d_1 (pyefd turns them round).
 
     Raises :class:`DvpError` for fewer than three distinct points, numbers that are not finite or no size to normalize by.
 
     >>> import dvp, numpy
     >>> square = numpy.array([[0, 0], [1, 0], [1, 1], [0, 1]])
     >>> dvp.efd(square, 1, normalize=False).round(3)
-    array([[-0.405, -0.405,  0.405, -0.405]])
+    array([[-0.405,  0.405, -0.405, -0.405]])
     """
     if not 1 <= harmonics <= 1024:
         raise DvpError(f"{harmonics} harmonics: must be 1 to 1024")

@@ -5,12 +5,30 @@ from __future__ import annotations
 import functools
 import os
 from collections.abc import Iterable, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypedDict
 
 from . import _dvp
 from ._dvp import DvpError
 from ._inputs import Bank, Picture, bank_text, labels, source, stem_of
 from ._scene import Scene
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+
+class Options(TypedDict, total=False):
+    """The options of :class:`Fitter`."""
+
+    bank: Bank | None
+    method: str
+    max_objects: int | None
+    objects: int
+    start: str | os.PathLike[str] | None
+    model: str | os.PathLike[str] | None
+    seed: int
+    compositing: str | None
+    max_pixels: int
+
 
 #: Most pixels of a picture unless the user says otherwise: a square of 4096.
 MAX_PIXELS = 1 << 24
@@ -64,7 +82,7 @@ class Fitter:
         for name, count in (("max_objects", max_objects), ("objects", objects), ("seed", seed), ("max_pixels", max_pixels)):
             if count is not None and not 0 <= count < 1 << 63:
                 raise DvpError(f"{name}={count}: must be from 0 to 2**63 - 1")
-        self._options = dict(
+        self._options: dict[str, Any] = dict(
             bank=bank,
             method=method,
             max_objects=max_objects,
@@ -124,12 +142,12 @@ def _default() -> Fitter:
     return Fitter()
 
 
-def _fitter(options: dict[str, Any]) -> Fitter:
+def _fitter(options: Options) -> Fitter:
     return Fitter(**options) if options else _default()
 
 
 def fit(
-    picture: Picture = None, *, masks: Any = None, coded: bool | None = None, name: str | None = None, **options: Any
+    picture: Picture = None, *, masks: Any = None, coded: bool | None = None, name: str | None = None, **options: Unpack[Options]
 ) -> Scene:
     """Finds the objects of a picture: shapes, positions, sizes, angles, colors; what ``dvp fit`` finds.
 
@@ -146,7 +164,7 @@ def fit(
     >>> picture = numpy.full((48, 64, 3), 255, numpy.uint8)
     >>> picture[10:30, 20:50] = (200, 30, 30)
     >>> [(o.kind, o.translation) for o in dvp.fit(picture).objects]
-    [('rectangle', (0.7291666666666666, 0.4166666666666667))]
+    [('rectangle', (0.7291667, 0.41666666))]
     """
     return _fitter(options).fit(picture, masks=masks, coded=coded, name=name)
 
@@ -157,7 +175,7 @@ def fit_many(
     threads: int = 0,
     coded: bool | None = None,
     names: Sequence[str] | None = None,
-    **options: Any,
+    **options: Unpack[Options],
 ) -> list[Scene | DvpError]:
     """The scenes of many pictures, in their order; the :class:`DvpError` in place of each that failed.
 
@@ -165,6 +183,6 @@ def fit_many(
 
     >>> import dvp
     >>> dvp.fit_many([dvp.generate()[0].render(), "missing.png"])
-    [<dvp.Scene 128 x 128, 3 objects>, DvpError('missing.png: cannot be read: No such file or directory (os error 2)')]
+    [<dvp.Scene 128 x 128, 2 objects>, DvpError('missing.png: cannot be read: ...')]
     """
     return _fitter(options).fit_many(pictures, threads=threads, coded=coded, names=names)

@@ -109,7 +109,10 @@ def plan(
                 raise DvpError(f"{name} is missing")
             tensor = framework.full(like, tail, defaults[name])
         laid[name] = framework.broadcast_to(tensor, (batch, *tail))
-    shapes = [laid[name].reshape((batch, objects, -1)) for name in _names(efd, rings)]
+    shapes = [
+        laid[name].reshape((batch, objects, int(tensor.shape[-2]) * int(tensor.shape[-1])))
+        for name, tensor in zip(_names(efd, rings), outlines)
+    ]
     poses = [laid["translation"], laid["scale"].reshape((batch, objects, 1)), laid["rotation"].reshape((batch, objects, 1))]
     flat = [
         framework.concatenate(shapes, 2) if len(shapes) > 1 else shapes[0],

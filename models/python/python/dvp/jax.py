@@ -33,6 +33,10 @@ _JAX = Framework(
 )
 
 
+# It has no types of its own.
+_extents: Any = jax.ShapeDtypeStruct
+
+
 def _flat(array: Any) -> Any:
     return np.ascontiguousarray(array).reshape(-1)
 
@@ -44,7 +48,7 @@ def _call(function: Any, shape: Any, *arrays: Any) -> Any:
 @partial(jax.custom_vjp, nondiff_argnums=(0, 1))
 def _render(step: _dvp.SceneStep, image: tuple[int, ...], numbers: Any) -> Any:
     shape = (numbers.shape[0], *image)
-    return _call(lambda x: step.render(_flat(x)).reshape(shape), jax.ShapeDtypeStruct(shape, numbers.dtype), numbers)
+    return _call(lambda x: step.render(_flat(x)).reshape(shape), _extents(shape, numbers.dtype), numbers)
 
 
 def _render_forward(step: _dvp.SceneStep, image: tuple[int, ...], numbers: Any) -> tuple[Any, Any]:
@@ -55,7 +59,7 @@ def _render_backward(step: _dvp.SceneStep, image: tuple[int, ...], numbers: Any,
     def pull(numbers: Any, grad: Any) -> Any:
         return step.render_vjp(_flat(numbers), _flat(grad)).reshape(numbers.shape)
 
-    return (_call(pull, jax.ShapeDtypeStruct(numbers.shape, numbers.dtype), numbers, grad),)
+    return (_call(pull, _extents(numbers.shape, numbers.dtype), numbers, grad),)
 
 
 _render.defvjp(_render_forward, _render_backward)
@@ -63,12 +67,12 @@ _render.defvjp(_render_forward, _render_backward)
 
 @partial(jax.custom_vjp, nondiff_argnums=(0, 1))
 def _loss(step: _dvp.SceneStep, kind: str, numbers: Any, targets: Any) -> Any:
-    shape = jax.ShapeDtypeStruct((numbers.shape[0],), numbers.dtype)
+    shape = _extents((numbers.shape[0],), numbers.dtype)
     return _call(lambda x, y: step.loss(_flat(x), _flat(y), kind, False)[0], shape, numbers, targets)
 
 
 def _loss_forward(step: _dvp.SceneStep, kind: str, numbers: Any, targets: Any) -> tuple[Any, Any]:
-    shapes = [jax.ShapeDtypeStruct(shape, numbers.dtype) for shape in ((numbers.shape[0],), numbers.shape)]
+    shapes = [_extents(shape, numbers.dtype) for shape in ((numbers.shape[0],), numbers.shape)]
 
     def both(numbers: Any, targets: Any) -> Any:
         values, grads = step.loss(_flat(numbers), _flat(targets), kind, True)

@@ -51,7 +51,7 @@ class _Render(torch.autograd.Function):
         return _tensor(step.render(_flat(numbers)), numbers, (numbers.shape[0], *image))
 
     @staticmethod
-    @once_differentiable  # type: ignore[untyped-decorator]
+    @once_differentiable
     def backward(ctx: Any, grad: torch.Tensor) -> tuple[torch.Tensor, None, None]:
         (numbers,) = ctx.saved_tensors
         pulled = ctx.step.render_vjp(_flat(numbers), _flat(grad))
@@ -70,7 +70,7 @@ class _Loss(torch.autograd.Function):
         return _tensor(values, numbers, (numbers.shape[0],))
 
     @staticmethod
-    @once_differentiable  # type: ignore[untyped-decorator]
+    @once_differentiable
     def backward(ctx: Any, grad: torch.Tensor) -> tuple[torch.Tensor, None, None, None]:
         (own,) = ctx.saved_tensors
         return own * grad[:, None], None, None, None
@@ -83,7 +83,7 @@ def _plan(options: dict[str, Any]) -> Plan:
         given.update({f"rings[{k}]": ring for k, ring in enumerate(rings)})
     for name in ("efd", "rings", "translation", "scale", "rotation", "color", "confidence", "background"):
         value = options[name]
-        if value is not None and name not in given and not isinstance(value, (list, tuple)):
+        if value is not None and name not in given and not (name == "rings" and isinstance(value, (list, tuple))):
             raise DvpError(f"{name} is of type {type(value).__name__}, must be a tensor")
     types = {tensor.dtype for tensor in given.values()}
     if types - {torch.float32, torch.float64} or len(types) != 1:
