@@ -12,7 +12,12 @@ use pyo3::create_exception;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-create_exception!(dvp, DvpError, PyValueError, "What dvp could not do: what was wrong, where, and what to do about it.");
+create_exception!(
+    dvp,
+    DvpError,
+    PyValueError,
+    "What dvp could not do: what was wrong, where, and what to do about it."
+);
 
 /// Most pixels of an image that is painted or measured: memory that cannot be had would end the process.
 pub(crate) const MOST_PIXELS: usize = 1 << 28;

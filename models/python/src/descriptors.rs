@@ -8,6 +8,9 @@ use pyo3::prelude::*;
 
 use crate::border::unlocked;
 
+/// Descriptors, and the center.
+type Described<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>);
+
 /// The descriptors of a closed contour (points x 2), harmonics x 4, and its center (2), which normalizing takes out.
 #[pyfunction]
 pub(crate) fn efd<'py>(
@@ -15,7 +18,7 @@ pub(crate) fn efd<'py>(
     contour: PyReadonlyArray2<'py, f64>,
     harmonics: usize,
     normalize: bool,
-) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>)> {
+) -> PyResult<Described<'py>> {
     let values: Vec<f64> = contour.as_array().iter().copied().collect();
     let (rows, center) = unlocked(py, || {
         let points = values.as_chunks().0;

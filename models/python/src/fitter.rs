@@ -10,7 +10,7 @@ use std::sync::{Mutex, PoisonError};
 
 use dvp::format::FormatError;
 use dvp::method::load_network;
-use dvp::solve::{MaskFit, Method, Scratch, Solved, SolveError, Solver, Start, fit_masks};
+use dvp::solve::{MaskFit, Method, Scratch, SolveError, Solved, Solver, Start, fit_masks};
 use dvp_core::render::Compositing;
 use dvp_fit::{Bank, FitOptions};
 use pyo3::prelude::*;
@@ -189,7 +189,9 @@ impl Fitter {
                 let next = || results.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(INTERRUPT_CHECK);
                 match py.detach(next) {
                     Ok(found) => return Ok(found),
-                    Err(mpsc::RecvTimeoutError::Disconnected) => return Err(refusal("the threads of the run have died")),
+                    Err(mpsc::RecvTimeoutError::Disconnected) => {
+                        return Err(refusal("the threads of the run have died"));
+                    }
                     Err(mpsc::RecvTimeoutError::Timeout) => {
                         if let Err(interrupt) = py.check_signals() {
                             stop.store(true, Ordering::Relaxed);

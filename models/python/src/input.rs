@@ -4,8 +4,8 @@ use core::fmt;
 use std::path::{Path, PathBuf};
 
 use dvp::format::{
-    BitDepth, FormatError, Picture, decode_picture, decode_picture_rgba, mdshr_bank, parse_bank, read_bank, read_labels,
-    read_npy, read_picture, read_picture_rgba,
+    BitDepth, FormatError, Picture, decode_picture, decode_picture_rgba, mdshr_bank, parse_bank, read_bank,
+    read_labels, read_npy, read_picture, read_picture_rgba,
 };
 use dvp_core::ImageSize;
 use dvp_core::image::{ImageError, RgbaImage};
@@ -94,9 +94,7 @@ impl Source {
                 let real = |value: u8| f64::from(value) / 255.0;
                 of_pixels(*extents, values, real, BitDepth::Eight, max_pixels)?
             }
-            Self::Float(extents, values) => {
-                of_pixels(*extents, values, f64::from, BitDepth::Sixteen, max_pixels)?
-            }
+            Self::Float(extents, values) => of_pixels(*extents, values, f64::from, BitDepth::Sixteen, max_pixels)?,
         };
         Ok(Picture { coded, ..picture })
     }

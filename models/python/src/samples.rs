@@ -36,7 +36,9 @@ impl Settings {
         let range = |range: Option<[f32; 2]>, otherwise| match range {
             None => Ok(otherwise),
             Some([low, high]) if low.is_finite() && high.is_finite() && low <= high => Ok(Range::new(low, high)),
-            Some([low, high]) => Err(refusal(format!("({low}, {high}) is no range; give two numbers, the smaller one first"))),
+            Some([low, high]) => {
+                Err(refusal(format!("({low}, {high}) is no range; give two numbers, the smaller one first")))
+            }
         };
         if let Some([fewest, most]) = self.visible {
             (to.fewest, to.most) = (fewest, most);

@@ -177,12 +177,7 @@ impl Scene {
     }
 
     /// Pixels of `size` (width, height): height x width x 3, or 4 with straight colors.
-    fn render<'py>(
-        &self,
-        py: Python<'py>,
-        size: [usize; 2],
-        rgba: bool,
-    ) -> PyResult<Bound<'py, PyArray3<f32>>> {
+    fn render<'py>(&self, py: Python<'py>, size: [usize; 2], rgba: bool) -> PyResult<Bound<'py, PyArray3<f32>>> {
         let [width, height] = size;
         let size = paintable(width, height)?;
         let values = unlocked(py, || {
@@ -209,12 +204,7 @@ impl Scene {
     }
 
     /// Objects x harmonics x 4; NaN for objects that enclose nothing.
-    fn efd<'py>(
-        &self,
-        py: Python<'py>,
-        harmonics: usize,
-        normalize: bool,
-    ) -> PyResult<Bound<'py, PyArray3<f64>>> {
+    fn efd<'py>(&self, py: Python<'py>, harmonics: usize, normalize: bool) -> PyResult<Bound<'py, PyArray3<f64>>> {
         paintable(self.size.width(), self.size.height())?;
         let values = unlocked(py, || {
             let measured = self.measured(String::new(), String::new())?;

@@ -8,7 +8,7 @@ use std::sync::{Mutex, PoisonError};
 use dvp_core::image::{CHANNELS, ImageError, ImageView, RGBA_CHANNELS};
 use dvp_core::render::{ContourRenderer, PixelLoss, RenderError, Renderer};
 use dvp_core::scene::{DrawingGrad, ObjectGrad, SceneGrad};
-use dvp_core::shape::{AnyShape, Efd, OUTLINE_TOLERANCE, Flattening, OutlineBasis, Polygon, ShapeError};
+use dvp_core::shape::{AnyShape, Efd, Flattening, OUTLINE_TOLERANCE, OutlineBasis, Polygon, ShapeError};
 use dvp_core::{Drawing, ImageSize, Object, Pose, Real, Scene};
 use rayon::prelude::*;
 
@@ -111,9 +111,8 @@ impl<T: Real> Step<T> {
         self.size.pixels() * if self.rgba { RGBA_CHANNELS } else { CHANNELS }
     }
 
-    /// The images of the items of `input`, planar, alpha premultiplied.
-    pub(crate) fn render(&self, input: &[T]) -> Result<Vec<T>, StepError> {
-        let mut images = vec![T::zero(); input.len() / self.width() * self.image_len()];
+    /// Paints the items of `input` into `images`, planar, alpha premultiplied. What stood there does not matter.
+    pub(crate) fn render(&self, input: &[T], images: &mut [T]) -> Result<(), StepError> {
         let items = input.par_chunks(self.width()).zip(images.par_chunks_mut(self.image_len())).enumerate();
         let one = |lent: &mut Lent<'_, T>, (item, (input, image)): (usize, (&[T], &mut [T]))| {
             let Memory { scene, drawing, renderer, .. } = &mut lent.own;
@@ -125,8 +124,7 @@ impl<T: Real> Step<T> {
             };
             painted.map_err(|source| StepError::Render { item, source })
         };
-        all(items.map_init(|| self.lend(), one))?;
-        Ok(images)
+        all(items.map_init(|| self.lend(), one))
     }
 
     /// The gradient of sum(`grad_images` x images) with respect to `input`.
@@ -135,7 +133,8 @@ impl<T: Real> Step<T> {
         let width = self.width();
         let items = input.par_chunks(width).zip(grad_images.par_chunks(self.image_len()));
         let items = items.zip(grads.par_chunks_mut(width)).enumerate();
-        let one = |lent: &mut Lent<'_, T>, (item, ((input, grad_image), own)): (usize, ((&[T], &[T]), &mut [T]))| {
+        type Item<'a, T> = (usize, ((&'a [T], &'a [T]), &'a mut [T]));
+        let one = |lent: &mut Lent<'_, T>, (item, ((input, grad_image), own)): Item<'_, T>| {
             let Memory { scene, drawing, grad, scene_grad, renderer } = &mut lent.own;
             self.draw(item, input, scene, drawing)?;
             grad.reset(drawing);

@@ -2,7 +2,7 @@
 
 use dvp_core::Real;
 use dvp_core::render::{Compositing, ContourRenderer, EdgeLaw, EdgeProfile, PixelLoss};
-use numpy::{Element, IntoPyArray as _, PyReadonlyArray1};
+use numpy::{Element, IntoPyArray as _, PyReadonlyArray1, PyReadwriteArray1};
 use pyo3::prelude::*;
 
 use crate::border::{exception, refusal, unlocked};
@@ -28,6 +28,13 @@ enum Precision {
 pub(crate) enum Numbers<'py> {
     Single(PyReadonlyArray1<'py, f32>),
     Double(PyReadonlyArray1<'py, f64>),
+}
+
+/// What images are painted into: flat, in C order. The caller's memory, which a loop can use again and again.
+#[derive(FromPyObject)]
+pub(crate) enum Images<'py> {
+    Single(PyReadwriteArray1<'py, f32>),
+    Double(PyReadwriteArray1<'py, f64>),
 }
 
 /// Flat arrays of either precision.
@@ -63,7 +70,9 @@ impl SceneStep {
         };
         let per_object = [harmonics, vertices].iter().copied().chain([shapes.numbers()]).max().unwrap_or(0);
         if objects.saturating_mul(per_object) > MOST_NUMBERS {
-            return Err(refusal(format!("{objects} objects of {per_object} numbers: must be {MOST_NUMBERS} at most in all")));
+            return Err(refusal(format!(
+                "{objects} objects of {per_object} numbers: must be {MOST_NUMBERS} at most in all"
+            )));
         }
         let compositing = match compositing {
             "over" => Compositing::Over,
@@ -100,22 +109,21 @@ impl SceneStep {
         }
     }
 
-    /// Batch x channels x height x width, flat.
-    fn render<'py>(&self, py: Python<'py>, input: Numbers<'py>) -> PyResult<Bound<'py, PyAny>> {
-        match (&self.precision, input) {
-            (Precision::Single(step), Numbers::Single(input)) => render(py, step, &input),
-            (Precision::Double(step), Numbers::Double(input)) => render(py, step, &input),
+    /// Paints into `images`: batch x channels x height x width, flat.
+    fn render<'py>(&self, py: Python<'py>, input: Numbers<'py>, images: Images<'py>) -> PyResult<()> {
+        match (&self.precision, input, images) {
+            (Precision::Single(step), Numbers::Single(input), Images::Single(images)) => {
+                render(py, step, &input, images)
+            }
+            (Precision::Double(step), Numbers::Double(input), Images::Double(images)) => {
+                render(py, step, &input, images)
+            }
             _ => Err(other_precision()),
         }
     }
 
     /// The gradient of the numbers, given that of the images.
-    fn render_vjp<'py>(
-        &self,
-        py: Python<'py>,
-        input: Numbers<'py>,
-        grad: Numbers<'py>,
-    ) -> PyResult<Bound<'py, PyAny>> {
+    fn render_vjp<'py>(&self, py: Python<'py>, input: Numbers<'py>, grad: Numbers<'py>) -> PyResult<Bound<'py, PyAny>> {
         match (&self.precision, input, grad) {
             (Precision::Single(step), Numbers::Single(input), Numbers::Single(grad)) => {
                 render_vjp(py, step, &input, &grad)
@@ -175,10 +183,13 @@ fn render<'py, T: Real + Element>(
     py: Python<'py>,
     step: &Step<T>,
     input: &PyReadonlyArray1<'py, T>,
-) -> PyResult<Bound<'py, PyAny>> {
+    mut images: PyReadwriteArray1<'py, T>,
+) -> PyResult<()> {
     let input = contiguous(input)?;
-    items("numbers", input.len(), step.width(), None)?;
-    Ok(unlocked(py, || step.render(input))?.into_pyarray(py).into_any())
+    let batch = items("numbers", input.len(), step.width(), None)?;
+    let images = images.as_slice_mut().map_err(|_| refusal("images must lie one after the other"))?;
+    items("images", images.len(), step.image_len(), Some(batch))?;
+    unlocked(py, || step.render(input, images))
 }
 
 fn render_vjp<'py, T: Real + Element>(

@@ -48,7 +48,13 @@ def _call(function: Any, shape: Any, *arrays: Any) -> Any:
 @partial(jax.custom_vjp, nondiff_argnums=(0, 1))
 def _render(step: _dvp.SceneStep, image: tuple[int, ...], numbers: Any) -> Any:
     shape = (numbers.shape[0], *image)
-    return _call(lambda x: step.render(_flat(x)).reshape(shape), _extents(shape, numbers.dtype), numbers)
+
+    def paint(numbers: Any) -> Any:
+        images = np.empty(shape, numbers.dtype)
+        step.render(_flat(numbers), images.reshape(-1))
+        return images
+
+    return _call(paint, _extents(shape, numbers.dtype), numbers)
 
 
 def _render_forward(step: _dvp.SceneStep, image: tuple[int, ...], numbers: Any) -> tuple[Any, Any]:

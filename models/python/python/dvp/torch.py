@@ -48,7 +48,10 @@ class _Render(torch.autograd.Function):
     def forward(ctx: Any, numbers: torch.Tensor, step: _dvp.SceneStep, image: tuple[int, ...]) -> torch.Tensor:
         ctx.save_for_backward(numbers)
         ctx.step = step
-        return _tensor(step.render(_flat(numbers)), numbers, (numbers.shape[0], *image))
+        # Memory of PyTorch, which gives the same out again.
+        images = torch.empty((numbers.shape[0], *image), dtype=numbers.dtype)
+        step.render(_flat(numbers), images.numpy().reshape(-1))
+        return images.to(numbers.device)
 
     @staticmethod
     @once_differentiable
