@@ -113,7 +113,7 @@ impl<T: Real> Step<T> {
 
     /// Paints the items of `input` into `images`, planar, alpha premultiplied. What stood there does not matter.
     pub(crate) fn render(&self, input: &[T], images: &mut [T]) -> Result<(), StepError> {
-        let items = input.par_chunks(self.width()).zip(images.par_chunks_mut(self.image_len())).enumerate();
+        let items = input.chunks(self.width()).zip(images.chunks_mut(self.image_len())).enumerate();
         let one = |lent: &mut Lent<'_, T>, (item, (input, image)): (usize, (&[T], &mut [T]))| {
             let Memory { scene, drawing, renderer, .. } = &mut lent.own;
             self.draw(item, input, scene, drawing)?;
@@ -124,15 +124,15 @@ impl<T: Real> Step<T> {
             };
             painted.map_err(|source| StepError::Render { item, source })
         };
-        all(items.map_init(|| self.lend(), one))
+        all(items.collect(), || self.lend(), one)
     }
 
     /// The gradient of sum(`grad_images` x images) with respect to `input`.
     pub(crate) fn render_vjp(&self, input: &[T], grad_images: &[T]) -> Result<Vec<T>, StepError> {
         let mut grads = vec![T::zero(); input.len()];
         let width = self.width();
-        let items = input.par_chunks(width).zip(grad_images.par_chunks(self.image_len()));
-        let items = items.zip(grads.par_chunks_mut(width)).enumerate();
+        let items = input.chunks(width).zip(grad_images.chunks(self.image_len()));
+        let items = items.zip(grads.chunks_mut(width)).enumerate();
         type Item<'a, T> = (usize, ((&'a [T], &'a [T]), &'a mut [T]));
         let one = |lent: &mut Lent<'_, T>, (item, ((input, grad_image), own)): Item<'_, T>| {
             let Memory { scene, drawing, grad, scene_grad, renderer } = &mut lent.own;
@@ -146,7 +146,7 @@ impl<T: Real> Step<T> {
             pulled.map_err(|source| StepError::Render { item, source })?;
             self.pull(item, scene, grad, scene_grad, own)
         };
-        all(items.map_init(|| self.lend(), one))?;
+        all(items.collect(), || self.lend(), one)?;
         Ok(grads)
     }
 
@@ -165,8 +165,8 @@ impl<T: Real> Step<T> {
         // Without a way back every item has an empty gradient.
         let own_grads: Vec<&mut [T]> =
             if backward { grads.chunks_mut(width).collect() } else { (0..batch).map(|_| &mut [][..]).collect() };
-        let items = input.par_chunks(width).zip(targets.par_chunks(self.image_len()));
-        let items = items.zip(own_grads.into_par_iter().zip(&mut losses)).enumerate();
+        let items = input.chunks(width).zip(targets.chunks(self.image_len()));
+        let items = items.zip(own_grads.into_iter().zip(&mut losses)).enumerate();
         type Item<'a, T> = (usize, ((&'a [T], &'a [T]), (&'a mut [T], &'a mut T)));
         let one = |lent: &mut Lent<'_, T>, (item, ((input, target), (own, value))): Item<'_, T>| {
             let memory = &mut lent.own;
@@ -184,7 +184,7 @@ impl<T: Real> Step<T> {
             }
             Ok(())
         };
-        all(items.map_init(|| self.lend(), one))?;
+        all(items.collect(), || self.lend(), one)?;
         Ok((losses, grads))
     }
 
@@ -278,8 +278,17 @@ impl<T: Real> Step<T> {
     }
 }
 
-/// The first error in order of items.
-fn all(items: impl IndexedParallelIterator<Item = Result<(), StepError>>) -> Result<(), StepError> {
-    let done: Vec<Result<(), StepError>> = items.collect();
+/// Does `one` of all items with the memory of its thread; the first error in order of items. A single item, and all items of a
+/// single thread, stay on the caller's, for which no other has to be woken.
+fn all<I: Send, M>(
+    items: Vec<I>,
+    memory: impl Fn() -> M + Sync + Send,
+    one: impl Fn(&mut M, I) -> Result<(), StepError> + Sync + Send,
+) -> Result<(), StepError> {
+    if items.len() < 2 || rayon::current_num_threads() == 1 {
+        let mut memory = memory();
+        return items.into_iter().try_for_each(|item| one(&mut memory, item));
+    }
+    let done: Vec<Result<(), StepError>> = items.into_par_iter().map_init(memory, one).collect();
     done.into_iter().collect()
 }
