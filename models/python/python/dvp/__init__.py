@@ -20,12 +20,14 @@ True
 :func:`evaluate`       scores of scenes
 ``dvp.torch``          the renderer and its loss, differentiable in PyTorch
 ``dvp.jax``            the same in JAX
+``dvp.ray``            many pictures on a cluster; :func:`map_in_arrow` for Spark
 ``python -m dvp``      the command
 =====================  =====================================================================
 
 Coordinates of objects are in units of the *shorter* side of the picture, x to the right, y down; measures are in pixels.
 """
 
+from ._batches import map_in_arrow
 from ._dvp import VERSION as __version__
 from ._dvp import DvpError
 from ._efd import efd, efd_center
@@ -47,6 +49,7 @@ __all__ = [
     "fit",
     "fit_many",
     "generate",
+    "map_in_arrow",
     "measures",
     "table",
 ]
