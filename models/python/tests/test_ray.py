@@ -98,6 +98,7 @@ def test_a_killed_worker_loses_and_doubles_nothing(cluster: None, pictures: list
 
 
 def test_pipelines_of_ray_data(cluster: None, pictures: list[str]) -> None:
+    pytest.importorskip("pandas", reason="Ray Data needs pandas")
     import dvp.ray
 
     some = pictures[-20:]

@@ -36,7 +36,7 @@ class BatchFitter:
             raise DvpError(f"the batch has no column {self._column!r}; it has {', '.join(_columns(batch))}")
         names = _values(batch, self._name) if self._name is not None else None
         if names is None:
-            names = pictures if all(isinstance(picture, str) for picture in pictures) else range(len(pictures))
+            names = pictures if all(isinstance(picture, str) for picture in pictures) else list(range(len(pictures)))
         scenes = self._fitter.fit_many(pictures, threads=1)
         return table(scenes, names=[str(name) for name in names], pixel_mm=self._pixel_mm)
 
