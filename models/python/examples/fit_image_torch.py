@@ -1,44 +1,39 @@
-"""Fits circles to an image through the renderer, in PyTorch: python examples/fit_image_torch.py [picture.png]"""
+"""Fits outlines to an image through the renderer, in PyTorch: python examples/fit_image_torch.py [picture.png]"""
 
 import sys
 
+import numpy as np
 import torch
 
 import dvp
 import dvp.torch
 
 
-def target() -> torch.Tensor:
-    """A picture from disk, or a random scene; 3 x height x width."""
-    if len(sys.argv) > 1:
-        from PIL import Image
-        from numpy import asarray
-
-        return torch.tensor(asarray(Image.open(sys.argv[1]).convert("RGB"))).permute(2, 0, 1) / 255
-    return torch.tensor(dvp.generate(seed=5)[0].render()).permute(2, 0, 1) / 255
-
-
 def main(objects: int = 6, harmonics: int = 6, steps: int = 300) -> tuple[float, float]:
     torch.manual_seed(1)
-    picture = target()
-    size = (picture.shape[1], picture.shape[2])
+    if len(sys.argv) > 1:
+        from PIL import Image
+
+        pixels = np.asarray(Image.open(sys.argv[1]).convert("RGB"))
+    else:
+        pixels = dvp.generate(seed=5)[0].render()
+    picture = torch.tensor(pixels).permute(2, 0, 1) / 255
     efd = torch.zeros(objects, harmonics, 4)
-    efd[:, 0] = torch.tensor([1.0, 0.0, 0.0, 1.0])
-    efd.requires_grad_()
-    translation = (0.2 + 0.6 * torch.rand(objects, 2)).requires_grad_()
-    log_scale = torch.full((objects,), -2.0, requires_grad=True)
-    color, background = torch.zeros(objects, 3, requires_grad=True), torch.zeros(3, requires_grad=True)
-    optimizer = torch.optim.Adam([efd, translation, log_scale, color, background], lr=0.02)
+    efd[:, 0] = torch.tensor([1.0, 0.0, 0.0, 1.0])  # circles
+    translation, log_scale = 0.2 + 0.6 * torch.rand(objects, 2), torch.full((objects,), -2.0)
+    numbers = [efd, translation, log_scale, torch.zeros(objects, 3), torch.zeros(3)]
+    efd, translation, log_scale, color, background = (tensor.requires_grad_() for tensor in numbers)
+    optimizer = torch.optim.Adam(numbers, lr=0.02)
     losses = []
     for step in range(steps):
         place = dict(translation=translation, scale=log_scale.exp(), color=color.sigmoid(), background=background.sigmoid())
-        # Soft edges see far at first, sharp ones see well at last.
-        loss = dvp.torch.loss(picture, efd=efd, **place, edge=max(0.5, 8 * (1 - step / steps)))
+        # Soft edges see far at first, sharp ones see well at last; a few softnesses, as each is a layout of its own.
+        loss = dvp.torch.loss(picture, efd=efd, **place, edge=8.0 / 2 ** (5 * step // steps))
         optimizer.zero_grad()
         loss.backward()
         optimizer.step()
         losses.append(loss.item())
-    print(f"{objects} objects, {size[1]} x {size[0]} pixels: mean absolute error {losses[0]:.4f}, then {losses[-1]:.4f}")
+    print(f"{objects} objects: mean absolute error {losses[0]:.4f}, then {losses[-1]:.4f}")
     return losses[0], losses[-1]
 
 

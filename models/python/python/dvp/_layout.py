@@ -10,6 +10,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+import numpy.typing as npt
+
 from . import _dvp
 from ._dvp import DvpError
 
@@ -35,6 +38,29 @@ class Plan:
     image: tuple[int, int, int]
     #: Whether the tensors had no dimension of a batch.
     single: bool
+    objects: int
+    #: Names of the outlines, with their extents per scene.
+    outlines: list[tuple[str, tuple[int, ...]]]
+
+    def split(self, grads: npt.NDArray[Any]) -> dict[str, npt.NDArray[Any]]:
+        """The columns of an array that is laid out as the numbers are: batch x extents of each tensor."""
+        batch, objects = grads.shape[0], self.objects
+        widths = [extents[-2] * extents[-1] for _, extents in self.outlines]
+        ends = np.cumsum([objects * width for width in (sum(widths), 4, 3, 1)])
+        shapes, poses, color, confidence, background = np.split(grads, ends, axis=1)
+        poses = poses.reshape(batch, objects, 4)
+        parts = dict(
+            translation=poses[..., :2],
+            scale=poses[..., 2],
+            rotation=poses[..., 3],
+            color=color.reshape(batch, objects, 3),
+            confidence=confidence,
+            background=background,
+        )
+        of_outlines = np.split(shapes.reshape(batch, objects, sum(widths)), np.cumsum(widths)[:-1], axis=2)
+        for (name, extents), part in zip(self.outlines, of_outlines):
+            parts[name] = part.reshape(batch, *extents)
+        return parts
 
 
 @functools.lru_cache(maxsize=64)
@@ -130,7 +156,8 @@ def plan(
     step = _step(
         (width_px, height_px, objects), lengths, harmonics, vertices, law, sigma_px, compositing, rgba, double
     )
-    return Plan(step, numbers, (4 if rgba else 3, height_px, width_px), not batches)
+    extents = [(name, tail) for name, _, tail in parts[: len(outlines)]]
+    return Plan(step, numbers, (4 if rgba else 3, height_px, width_px), not batches, objects, extents)
 
 
 def _outlines(efd: Any, rings: Any) -> list[Any]:

@@ -19,80 +19,128 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
 import torch
 from torch.autograd.function import once_differentiable
 
-from . import _dvp
 from ._dvp import DvpError
 from ._layout import Framework, Plan, plan
 
 __all__ = ["loss", "render"]
 
-_TORCH = Framework(
-    broadcast_to=torch.broadcast_to,
-    concatenate=torch.cat,
-    full=lambda like, shape, value: torch.full(shape, value, dtype=like.dtype, device=like.device),
+# Numbers are laid out outside of the graph: one node of it costs less than a dozen.
+_NUMPY = Framework(
+    broadcast_to=np.broadcast_to,
+    concatenate=lambda arrays, axis: np.concatenate(arrays, axis),
+    full=lambda like, shape, value: np.full(shape, value, dtype=like.dtype),
 )
+
+#: The tensors of a scene, in the order in which the nodes take them; of rings there may be several.
+_NAMES = ("translation", "scale", "rotation", "color", "confidence", "background")
+
+
+def _array(tensor: torch.Tensor) -> Any:
+    return tensor.detach().cpu().numpy()
 
 
 def _flat(tensor: torch.Tensor) -> Any:
-    return tensor.detach().cpu().contiguous().numpy().reshape(-1)
+    return _array(tensor.contiguous()).reshape(-1)
 
 
-def _tensor(array: Any, like: torch.Tensor, shape: tuple[int, ...]) -> torch.Tensor:
-    return torch.from_numpy(array).reshape(shape).to(like.device)
+class _Scenes:
+    """What a node keeps of its tensors: how they are laid out, and what they were."""
+
+    def __init__(self, options: dict[str, Any], names: list[str], tensors: Sequence[torch.Tensor]) -> None:
+        arrays: dict[str, Any] = {name: None for name in ("efd", "rings", *_NAMES)}
+        arrays.update({name: _array(tensor) for name, tensor in zip(names, tensors)})
+        rings = [arrays.pop(name) for name in names if name.startswith("rings[")]
+        if rings:
+            arrays["rings"] = rings
+        double = tensors[0].dtype == torch.float64
+        self.plan: Plan = plan(_NUMPY, **options, **arrays, double=double)
+        self.numbers = self.plan.numbers
+        self.names = names
+        self.shapes = [tuple(tensor.shape) for tensor in tensors]
+        self.device = tensors[0].device
+
+    def gradients(self, grads: Any, needed: Sequence[bool]) -> list[torch.Tensor | None]:
+        """The gradient of each tensor from that of the numbers; shared tensors get the sum over the batch."""
+        parts = self.plan.split(grads.reshape(self.numbers.shape))
+        found: list[torch.Tensor | None] = []
+        for name, shape, is_needed in zip(self.names, self.shapes, needed):
+            if not is_needed:
+                found.append(None)
+                continue
+            part = parts[name]
+            if shape != part.shape:
+                part = part.sum(axis=0, keepdims=len(shape) == part.ndim)
+            found.append(torch.from_numpy(np.ascontiguousarray(part)).to(self.device))
+        return found
 
 
 class _Render(torch.autograd.Function):
     @staticmethod
-    def forward(ctx: Any, numbers: torch.Tensor, step: _dvp.SceneStep, image: tuple[int, ...]) -> torch.Tensor:
-        ctx.save_for_backward(numbers)
-        ctx.step = step
+    def forward(ctx: Any, options: dict[str, Any], names: list[str], *tensors: torch.Tensor) -> torch.Tensor:
+        scenes = ctx.scenes = _Scenes(options, names, tensors)
+        laid = scenes.plan
         # Memory of PyTorch, which gives the same out again.
-        images = torch.empty((numbers.shape[0], *image), dtype=numbers.dtype)
-        step.render(_flat(numbers), images.numpy().reshape(-1))
-        return images.to(numbers.device)
+        images = torch.empty((laid.numbers.shape[0], *laid.image), dtype=tensors[0].dtype)
+        laid.step.render(laid.numbers.reshape(-1), images.numpy().reshape(-1))
+        return (images[0] if laid.single else images).to(scenes.device)
 
     @staticmethod
     @once_differentiable
-    def backward(ctx: Any, grad: torch.Tensor) -> tuple[torch.Tensor, None, None]:
-        (numbers,) = ctx.saved_tensors
-        pulled = ctx.step.render_vjp(_flat(numbers), _flat(grad))
-        return _tensor(pulled, numbers, tuple(numbers.shape)), None, None
+    def backward(ctx: Any, grad: torch.Tensor) -> tuple[torch.Tensor | None, ...]:
+        scenes: _Scenes = ctx.scenes
+        pulled = scenes.plan.step.render_vjp(scenes.numbers.reshape(-1), _flat(grad))
+        return None, None, *scenes.gradients(pulled, ctx.needs_input_grad[2:])
 
 
 class _Loss(torch.autograd.Function):
     @staticmethod
     def forward(
-        ctx: Any, numbers: torch.Tensor, targets: torch.Tensor, step: _dvp.SceneStep, kind: str
+        ctx: Any, options: dict[str, Any], names: list[str], target: torch.Tensor, kind: str, *tensors: torch.Tensor
     ) -> torch.Tensor:
-        backward = ctx.needs_input_grad[0]
-        values, grads = step.loss(_flat(numbers), _flat(targets), kind, backward)
-        if backward:
-            ctx.save_for_backward(_tensor(grads, numbers, tuple(numbers.shape)))
-        return _tensor(values, numbers, (numbers.shape[0],))
+        scenes = ctx.scenes = _Scenes(options, names, tensors)
+        laid = scenes.plan
+        count = laid.numbers.shape[0]
+        single = laid.single and target.dim() == 3
+        if target.dim() == 4 and target.shape[0] != count:
+            if count != 1:
+                raise DvpError(f"target is a batch of {target.shape[0]}, the scenes of {count}")
+            count = target.shape[0]
+            scenes.numbers = np.repeat(laid.numbers, count, axis=0)
+        targets = _flat(target.expand(count, *laid.image))
+        backward = any(ctx.needs_input_grad[4:])
+        values, ctx.grads = laid.step.loss(scenes.numbers.reshape(-1), targets, kind, backward)
+        losses = torch.from_numpy(values).to(scenes.device)
+        return losses[0] if single else losses
 
     @staticmethod
     @once_differentiable
-    def backward(ctx: Any, grad: torch.Tensor) -> tuple[torch.Tensor, None, None, None]:
-        (own,) = ctx.saved_tensors
-        return own * grad[:, None], None, None, None
+    def backward(ctx: Any, grad: torch.Tensor) -> tuple[torch.Tensor | None, ...]:
+        scenes: _Scenes = ctx.scenes
+        own = ctx.grads.reshape(scenes.numbers.shape) * _array(grad).reshape(-1, 1)
+        return None, None, None, None, *scenes.gradients(own, ctx.needs_input_grad[4:])
 
 
-def _plan(options: dict[str, Any]) -> Plan:
-    given = {name: value for name, value in options.items() if isinstance(value, torch.Tensor)}
-    rings = options["rings"]
-    if isinstance(rings, (list, tuple)):
-        given.update({f"rings[{k}]": ring for k, ring in enumerate(rings)})
-    for name in ("efd", "rings", "translation", "scale", "rotation", "color", "confidence", "background"):
-        value = options[name]
-        if value is not None and name not in given and not (name == "rings" and isinstance(value, (list, tuple))):
+def _tensors(options: dict[str, Any]) -> tuple[list[str], list[torch.Tensor]]:
+    """Takes the tensors out of the options: their names, and themselves."""
+    given: dict[str, Any] = {}
+    for name in ("efd", "rings", *_NAMES):
+        value = options.pop(name)
+        if name == "rings" and isinstance(value, (list, tuple)):
+            given.update({f"rings[{k}]": ring for k, ring in enumerate(value)})
+        elif value is not None:
+            given[name] = value
+    for name, value in given.items():
+        if not isinstance(value, torch.Tensor):
             raise DvpError(f"{name} is of type {type(value).__name__}, must be a tensor")
     types = {tensor.dtype for tensor in given.values()}
     if types - {torch.float32, torch.float64} or len(types) != 1:
         names = ", ".join(f"{name}: {tensor.dtype}" for name, tensor in given.items())
         raise DvpError(f"tensors must all be float32, or all float64; got {names or 'none'}")
-    return plan(_TORCH, **options, double=torch.float64 in types)
+    return list(given), list(given.values())
 
 
 def render(
@@ -136,9 +184,9 @@ def render(
     numbers that are not finite.
     """
     options = dict(locals())
-    laid = _plan(options)
-    image: torch.Tensor = _Render.apply(laid.numbers, laid.step, laid.image)
-    return image[0] if laid.single else image
+    names, tensors = _tensors(options)
+    image: torch.Tensor = _Render.apply(options, names, *tensors)
+    return image
 
 
 def loss(
@@ -165,15 +213,9 @@ def loss(
     options = {name: value for name, value in locals().items() if name not in ("target", "kind")}
     if not isinstance(target, torch.Tensor) or target.dim() not in (3, 4) or target.shape[-3] not in (3, 4):
         raise DvpError("target must be a tensor of (batch x) 3 x height x width, or x 4")
-    height, width = int(target.shape[-2]), int(target.shape[-1])
-    laid = _plan(dict(options, size=(height, width), rgba=target.shape[-3] == 4))
-    numbers, single = laid.numbers, laid.single and target.dim() == 3
-    if target.dtype != numbers.dtype:
-        raise DvpError(f"target is {target.dtype}, the scenes are {numbers.dtype}; cast one of them")
-    if target.dim() == 4 and target.shape[0] != numbers.shape[0]:
-        if numbers.shape[0] != 1:
-            raise DvpError(f"target is a batch of {target.shape[0]}, the scenes of {numbers.shape[0]}")
-        numbers = numbers.expand(target.shape[0], -1)
-    targets = target.expand(numbers.shape[0], *laid.image)
-    values: torch.Tensor = _Loss.apply(numbers, targets, laid.step, kind)
-    return values[0] if single else values
+    names, tensors = _tensors(options)
+    if target.dtype != tensors[0].dtype:
+        raise DvpError(f"target is {target.dtype}, the scenes are {tensors[0].dtype}; cast one of them")
+    options.update(size=tuple(target.shape[-2:]), rgba=target.shape[-3] == 4)
+    values: torch.Tensor = _Loss.apply(options, names, target.detach(), kind, *tensors)
+    return values
