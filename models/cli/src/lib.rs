@@ -9,6 +9,8 @@
 //! | [`paint`] | scenes to images with a renderer chosen by name |
 //! | [`generate`] | random scenes |
 //! | [`method`] | the methods that find scenes, by name |
+//! | [`solve`] | pictures to scenes: what `dvp fit` does with each |
+//! | [`score`] | scenes against what was drawn: what `dvp evaluate` does with each |
 //! | [`agreement`] | whether a scene found is the true one |
 //! | [`command`] | the sub-commands: arguments, threads, tables |
 //!
@@ -30,4 +32,7 @@ pub mod generate;
 pub mod method;
 pub mod paint;
 mod region;
+pub mod score;
+pub mod solve;
+mod statistics;
 pub mod svg;

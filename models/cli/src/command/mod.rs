@@ -23,11 +23,8 @@ mod progress;
 mod prototypes;
 mod refine;
 mod render;
-mod score;
 #[cfg(feature = "lab")]
 mod stability;
-mod statistics;
-mod totals;
 mod train;
 
 use std::ffi::OsString;

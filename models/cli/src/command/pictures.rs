@@ -5,10 +5,10 @@ use dvp_core::{Image, ImageSize, Scene};
 use dvp_net::propose::TRAINED_SIDE;
 
 use super::options::square;
-use super::statistics::mean;
 use crate::format::{DataSet, Sample};
 use crate::generate;
 use crate::paint::{Painter, RendererName};
+use crate::statistics::mean;
 
 /// An image and the scene that it was painted from.
 #[derive(Clone)]

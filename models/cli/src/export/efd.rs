@@ -21,7 +21,17 @@ use super::{MeasuredObject, MeasuredPicture, Region};
 /// # Errors
 /// [`ShapeError::TooFewPoints`] if nothing is enclosed, [`ShapeError::Degenerate`] if the first harmonic vanishes.
 pub(super) fn normal_form(region: &Region, harmonics: usize) -> Result<Efd<f64>, ShapeError> {
-    let ring = region.largest_ring().unwrap_or(&[]);
+    normal_efd(region.largest_ring().unwrap_or(&[]), harmonics)
+}
+
+/// The first `harmonics` normalized descriptors of a closed contour, by the conventions of `dvp fit --efd`: position, size, angle
+/// and starting point are taken out by the first harmonic, a_1 = 1, b_1 = c_1 = 0, |d_1| <= 1, and of the two ends of its long axis
+/// the one farther from the center is the start. d_1 > 0 for contours that turn from +x to +y.
+///
+/// # Errors
+/// [`ShapeError::TooFewPoints`] below three distinct points, [`ShapeError::NotFinite`], [`ShapeError::TooLarge`],
+/// [`ShapeError::Degenerate`] if the first harmonic vanishes.
+pub fn normal_efd(ring: &[[f64; 2]], harmonics: usize) -> Result<Efd<f64>, ShapeError> {
     let (efd, _) = Efd::from_contour(ring, harmonics)?;
     let normal = efd.normalize()?.efd;
     let twin = normal.half_turn();

@@ -39,7 +39,7 @@ mod tests;
 mod whole;
 
 pub use coco::coco;
-pub use efd::{efd_csv, efd_nef};
+pub use efd::{efd_csv, efd_nef, normal_efd};
 pub use error::ExportError;
 pub use geojson::geojson;
 pub use label_map::{label_map, label_map_png};
@@ -47,8 +47,8 @@ pub use measure::{Deviations, MeasuredObject, measure};
 pub use region::{Polygon, Region};
 pub use roi::roi_zip;
 pub use scale::Scale;
-pub use table::{HAS_PARQUET, table_csv, table_parquet};
-pub use whole::whole_png;
+pub use table::{ColumnValues, HAS_PARQUET, TableColumn, table_columns, table_csv, table_parquet};
+pub use whole::{whole_coverage, whole_png};
 
 use dvp_core::ImageSize;
 

@@ -43,7 +43,7 @@ pub fn mdshr_bank<T: Real>() -> Bank<T> {
 /// # Errors
 /// [`FormatError`] if the file cannot be read, is no bank, is empty or holds a bad number.
 pub fn read_bank<T: Real>(path: &Path) -> Result<Bank<T>, FormatError> {
-    parse(&read_text(path)?, path)
+    parse_bank(&read_text(path)?, path)
 }
 
 /// The text of a bank in our layout, one prototype per line.
@@ -60,7 +60,11 @@ pub fn bank_to_json<T: Real>(bank: &Bank<T>) -> String {
     format!("{{\"version\":1,\"prototypes\":[\n{}\n]}}\n", lines.join(",\n"))
 }
 
-fn parse<T: Real>(text: &[u8], path: &Path) -> Result<Bank<T>, FormatError> {
+/// The bank of a text in either layout; errors call the text `path`.
+///
+/// # Errors
+/// As [`read_bank`].
+pub fn parse_bank<T: Real>(text: &[u8], path: &Path) -> Result<Bank<T>, FormatError> {
     let place = Place::file(path);
     let refused = |source| FormatError::Json { place: place.clone(), expected: "a bank of shapes", source };
     let is_table = serde_json::from_slice::<serde_json::Value>(text).is_ok_and(|json| json.get("order").is_some());

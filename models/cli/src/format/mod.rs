@@ -27,12 +27,12 @@ mod png;
 mod scene_json;
 
 pub use atomic::write_atomic;
-pub use bank::{bank_to_json, mdshr_bank, read_bank};
+pub use bank::{bank_to_json, mdshr_bank, parse_bank, read_bank};
 pub use data_set::{DataSet, SCENES_FILE, Sample, bank_near, pictures_of, read_scene_lines};
 pub use error::{FormatError, Place};
 pub use labels::{labels_beside, read_labels};
 pub use npy::read_npy;
-pub use picture::{DEFAULT_MAX_PIXELS, Picture, read_picture, read_picture_rgba};
+pub use picture::{DEFAULT_MAX_PIXELS, Picture, decode_picture, decode_picture_rgba, read_picture, read_picture_rgba};
 pub(crate) use png::to_byte;
 pub use png::{BitDepth, encode_gray8, encode_gray16, encode_png, encode_png_rgba, from_rgb8, to_rgb8};
 pub(crate) use scene_json::read_text;

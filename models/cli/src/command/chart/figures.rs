@@ -5,8 +5,8 @@ use super::published::PUBLISHED;
 use super::renderers::Rendered;
 use super::report::{Report, label};
 use crate::chart::{Mark, Scatter, Series, Shape, Strip};
-use crate::command::statistics::Quartiles;
 use crate::method::{Method, Precision, Start};
+use crate::statistics::Quartiles;
 
 /// Lowest error that charts tell apart from none.
 const FLOOR: f64 = 1e-6;

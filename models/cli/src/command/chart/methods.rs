@@ -9,11 +9,11 @@ use dvp_net::propose::Proposer;
 use crate::command::in_words;
 use crate::command::pictures::Picture;
 use crate::command::progress;
-use crate::command::score::{Score, Scratch, Truth, score};
-use crate::command::statistics::Quartiles;
-use crate::command::totals::{Row, Totals};
-use crate::method::{Method, Runner, Setting, Task, Tools, seed_of};
+use crate::method::{Memory, Method, Runner, Setting, Task, Tools, seed_of};
 use crate::paint::Painter;
+use crate::score::{Row, Totals};
+use crate::score::{Score, Scratch, Truth, score};
+use crate::statistics::Quartiles;
 
 /// What a method did on all images.
 pub(super) struct Charted {
@@ -53,7 +53,7 @@ pub(super) fn run(
     let new = |&(method, setting): &(Method, Setting)| Runner::new(method, setting, &tools);
     let runners: Vec<Runner> = settings.iter().map(new).collect::<Result<_>>()?;
     let mut rows: Vec<Vec<Row>> = runners.iter().map(|_| Vec::with_capacity(pictures.len())).collect();
-    let mut scratch = Scratch::default();
+    let mut scratch = (Scratch::default(), Memory::default());
     if let Some(first) = pictures.first() {
         for runner in &runners {
             // What fails here fails again below, and is counted there.
@@ -80,10 +80,11 @@ pub(super) fn run(
     Ok(charted.collect())
 }
 
-fn try_one(runner: &Runner, picture: &Picture, seed: u64, scratch: &mut Scratch) -> Result<Score> {
+fn try_one(runner: &Runner, picture: &Picture, seed: u64, memory: &mut (Scratch, Memory)) -> Result<Score> {
+    let (scratch, memory) = memory;
     let (image, truth) = (picture.image.view(), &picture.truth);
     let task = Task { image, start: None, truth: Some(truth), seed: seed_of(&picture.stem, seed) };
-    let found = runner.run(&task, &mut scratch.method)?;
+    let found = runner.run(&task, memory)?;
     let scenes = [&found.fit.scene, &found.there];
     let score = score(&Painter::default(), image, Some(&Truth::Scene(truth)), scenes, scratch)?;
     Ok(Score { cpu_ms: Some(found.cpu.as_secs_f64() * 1e3), ..score })

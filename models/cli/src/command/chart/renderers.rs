@@ -15,8 +15,8 @@ use dvp_core::{Drawing, DrawingGrad, Image, Real, Scene, SceneGrad};
 
 use super::dense;
 use crate::command::pictures::Picture;
-use crate::command::statistics::{Quartiles, mean};
 use crate::method::{Precision, cast_scene};
+use crate::statistics::{Quartiles, mean};
 
 /// Vertices and harmonics of the image that others are held against.
 const FINE: (usize, usize) = (1024, 64);

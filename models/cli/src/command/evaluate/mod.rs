@@ -11,12 +11,11 @@ use dvp_core::{Image, ImageSize, Scene};
 
 use self::finder::NetworkArguments;
 use super::options::{BatchArguments, PaintArguments};
-use super::score::{Score, Scratch, Truth, score};
-use super::totals::{Row, Totals};
 use super::{Console, Outcome, generated, in_words};
 use crate::format::{DataSet, Place, Sample, SceneJson, read_labels, read_npy, read_picture, read_scene, write_atomic};
-use crate::method::{Runner, Task, seed_of};
+use crate::method::{Memory, Runner, Task, seed_of};
 use crate::paint::Painter;
+use crate::score::{Row, Score, Scratch, Totals, Truth, score};
 
 /// Scores a folder of predictions (STEM.json, as `dvp fit` writes them), or a network, against a data set.
 ///
@@ -117,8 +116,8 @@ pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Ou
     let rows: Vec<Row> = arguments.batch.each(
         &judge.data.samples,
         |sample| sample.stem.clone(),
-        |scratch: &mut Scratch, index, sample| {
-            let result = judge.score(index, sample, scratch);
+        |memory: &mut (Scratch, Memory), index, sample| {
+            let result = judge.score(index, sample, memory);
             Row { stem: sample.stem.clone(), result: result.map_err(|error| in_words(&error)) }
         },
     )?;
@@ -140,7 +139,8 @@ pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Ou
 }
 
 impl Judge<'_> {
-    fn score(&self, index: usize, sample: &Sample, scratch: &mut Scratch) -> Result<Score> {
+    fn score(&self, index: usize, sample: &Sample, memory: &mut (Scratch, Memory)) -> Result<Score> {
+        let (scratch, memory) = memory;
         let truth = match &sample.scene {
             Some((json, place)) => Some(json.to_scene(Some(&self.data.bank), place)?),
             None => None,
@@ -163,7 +163,7 @@ impl Judge<'_> {
                 let image = self.true_image(index, sample, truth.as_ref(), None)?;
                 let seed = seed_of(&sample.stem, self.arguments.network.seed);
                 let task = Task { image: image.view(), start: None, truth: truth.as_ref(), seed };
-                let found = runner.run(&task, &mut scratch.method)?;
+                let found = runner.run(&task, memory)?;
                 let score = self.compare(sample, truth.as_ref(), &image, [&found.fit.scene, &found.there], scratch)?;
                 Ok(Score { cpu_ms: Some(found.cpu.as_secs_f64() * 1e3), ..score })
             }
@@ -181,7 +181,7 @@ impl Judge<'_> {
     ) -> Result<Score> {
         let labels = sample.labels.as_ref().map(|path| self.labels(path, image.size())).transpose()?;
         let known = labels.as_deref().map(Truth::Labels).or_else(|| truth.map(Truth::Scene));
-        score(&self.painter, image.view(), known.as_ref(), scenes, scratch)
+        Ok(score(&self.painter, image.view(), known.as_ref(), scenes, scratch)?)
     }
 
     fn labels(&self, path: &Path, size: ImageSize) -> Result<Vec<u32>> {

@@ -2,8 +2,7 @@
 
 use comfy_table::{Table, presets};
 
-use crate::command::score::Score;
-use crate::command::totals::{Row, Totals};
+use crate::score::{Row, Score, Totals};
 
 /// The means in the paper's columns.
 pub(super) fn table(totals: &Totals) -> String {

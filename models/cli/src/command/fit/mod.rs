@@ -3,9 +3,7 @@
 mod exports;
 mod inputs;
 mod masks;
-mod openings;
 mod report;
-mod solver;
 
 use core::time::Duration;
 use std::path::{Path, PathBuf};
@@ -18,7 +16,6 @@ use dvp_fit::FitOptions;
 use self::exports::{ExportArguments, Measurable, PictureFile};
 use self::inputs::Input;
 use self::report::{FoundScene, Report};
-use self::solver::{Method, Scratch, Solver, Start};
 use super::options::{BankChoice, BatchArguments, CompositingName};
 use super::{Console, Outcome, in_words};
 use crate::format::{
@@ -26,6 +23,7 @@ use crate::format::{
 };
 use crate::method::load_network;
 use crate::paint::{PaintScratch, Painter};
+use crate::solve::{Method, Scratch, Solved, Solver, Start};
 use crate::svg::to_svg_numbered;
 
 /// Finds the objects of pictures: shapes, poses and colors.
@@ -112,7 +110,7 @@ impl Arguments {
             }
             StartChoice::Net => Start::Network(Box::new(load_network(self.model.as_deref())?)),
         };
-        Solver::new(self.method, options, start, self.objects, self.seed)
+        Ok(Solver::new(self.method, options, start, self.objects, self.seed)?)
     }
 
     /// What the names of the files of a picture end with.
@@ -238,8 +236,7 @@ fn try_fit(
         }
         Some(frame) => stack_picture(stacks, &input.path, frame).context("image of the stack is gone")?,
     };
-    let (fit, time) = solver.solve(picture, &input.stem, scratch)?;
-    let fit = if picture.transparent { openings::cut_out(fit, picture, &mut scratch.paint)? } else { fit };
+    let Solved { fit, time } = solver.solve(picture, &input.stem, scratch)?;
     let scene = Measurable::new(&fit, solver.bank(), picture.image.size());
     finish(arguments, [&*input.name(), &input.stem], picture, &scene, time, &mut scratch.paint)
 }

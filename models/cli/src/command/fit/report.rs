@@ -6,9 +6,9 @@ use dvp_core::{ImageSize, Real};
 use dvp_fit::Fit;
 use serde::Serialize;
 
-use crate::command::statistics::{mean, quantile};
 use crate::export::MeasuredPicture;
 use crate::format::{DoubtJson, INVISIBLE, ObjectKnownJson, Picture, SceneKnownJson, StopJson};
+use crate::statistics::{mean, quantile};
 
 /// Tables of more pictures than this show the summary only.
 const MOST_ROWS: usize = 25;

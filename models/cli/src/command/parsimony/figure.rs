@@ -4,7 +4,7 @@ use super::spent::Law;
 use super::summary::MOST_BITS;
 use super::trial::{Contender, Trial};
 use crate::chart::{Mark, Scatter, Series, Shape};
-use crate::command::statistics::{Quartiles, mean};
+use crate::statistics::{Quartiles, mean};
 
 /// Ratios below this are drawn there.
 const FLOOR: f64 = 0.1;

@@ -4,7 +4,7 @@ use serde_json::{Map, Value, json};
 
 use super::traced::Drawn;
 use super::trial::{Contender, Figures, Trial};
-use crate::command::statistics::mean;
+use crate::statistics::mean;
 
 /// Asked of a method: images of the right count, also of those without objects, and bits in units of the true scene's.
 const EXACT: f64 = 0.999;

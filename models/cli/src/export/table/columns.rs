@@ -31,7 +31,6 @@ pub(in crate::export) enum Cell {
 #[derive(Clone, Debug)]
 pub(in crate::export) struct Column {
     pub(in crate::export) name: String,
-    #[cfg_attr(not(feature = "parquet"), expect(dead_code, reason = "text has no types of columns"))]
     pub(in crate::export) kind: Kind,
     /// What numbers are multiplied by.
     factor: f64,

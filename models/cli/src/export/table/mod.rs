@@ -5,13 +5,17 @@
 //! | `columns.rs` | which columns there are, and what stands in them |
 //! | `csv.rs` | text |
 //! | `parquet.rs` | Apache Parquet, with the feature of that name |
+//! | `values.rs` | columns of values, for programs |
 
 mod columns;
 mod csv;
 #[cfg(feature = "parquet")]
 mod parquet;
+mod values;
 
+use columns::Kind;
 pub(super) use columns::{Cell, Column, Row, columns};
+pub use values::{ColumnValues, TableColumn, table_columns};
 
 use super::{ExportError, MeasuredPicture, Scale};
 

@@ -5,7 +5,6 @@ use core::time::Duration;
 use std::panic::catch_unwind;
 use std::path::PathBuf;
 
-use anyhow::{Result, bail};
 use clap::ValueEnum;
 use dvp_core::loss::{ImagePair, Loss as _};
 use dvp_core::render::PixelLoss;
@@ -16,6 +15,8 @@ use dvp_fit::{Ambiguity, Bank, Fit, FitOptions, FitScratch, Fitter, StopReason};
 use dvp_net::propose::Proposer;
 use dvp_trace::{Known, PoseDeviation, tuning};
 
+use super::error::SolveError;
+use super::openings;
 use crate::format::{Picture, Place, read_scene};
 use crate::method;
 use crate::paint::{PaintScratch, Painter};
@@ -29,7 +30,7 @@ const WORSE: f32 = 1.2;
 
 /// How a scene is found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub(super) enum Method {
+pub enum Method {
     /// Segmentation, distance samples, Levenberg-Marquardt; with --start net Levenberg-Marquardt from what the network sees
     #[default]
     Segment,
@@ -43,7 +44,7 @@ pub(super) enum Method {
 
 /// What a fit starts from.
 #[derive(Debug)]
-pub(super) enum Start {
+pub enum Start {
     /// What the method makes of the picture itself.
     Picture,
     /// What a network sees.
@@ -52,8 +53,18 @@ pub(super) enum Start {
     Folder(PathBuf),
 }
 
+/// What was found in a picture.
+#[derive(Clone, Debug)]
+pub struct Solved {
+    /// The scene, and what is known of its numbers.
+    pub fit: Fit<f32>,
+    /// Processor time of the fit alone, on this thread.
+    pub time: Duration,
+}
+
 /// Everything that a method needs, shared between threads.
-pub(super) struct Solver {
+#[derive(Debug)]
+pub struct Solver {
     method: Method,
     options: FitOptions<f32>,
     fitter: Fitter<f32>,
@@ -62,40 +73,49 @@ pub(super) struct Solver {
     seed: u64,
 }
 
-/// Memory of one thread.
-#[derive(Default)]
-pub(super) struct Scratch {
+/// Memory of one thread, kept from picture to picture.
+#[derive(Debug, Default)]
+pub struct Scratch {
     fit: FitScratch<f32>,
     refine: RefineScratch<f32>,
-    pub(super) paint: PaintScratch<f32>,
+    /// To paint what was found.
+    pub paint: PaintScratch<f32>,
 }
 
 impl Solver {
-    pub(super) fn new(
+    /// A method with its options; `object_count` objects for methods that cannot tell how many there are, random starts drawn
+    /// from `seed`.
+    ///
+    /// # Errors
+    /// [`SolveError::Usage`] for a method and a start that do not go together, [`SolveError::Fit`] for options out of range.
+    pub fn new(
         method: Method,
         options: FitOptions<f32>,
         start: Start,
         object_count: usize,
         seed: u64,
-    ) -> Result<Self> {
-        match (&start, method) {
-            (Start::Picture, Method::OptP) => bail!("--method opt-p needs --start DIR, or --start net"),
-            (Start::Folder(_), Method::OptP) | (Start::Network(_), Method::OptP | Method::Segment) => (),
-            (Start::Folder(_), _) => bail!("--start DIR goes with --method opt-p only"),
-            (Start::Network(_), _) => bail!("--start net goes with --method segment or opt-p only"),
-            (Start::Picture, _) => (),
+    ) -> Result<Self, SolveError> {
+        let problem = match (&start, method) {
+            (Start::Picture, Method::OptP) => "--method opt-p needs --start DIR, or --start net",
+            (Start::Folder(_), Method::OptP)
+            | (Start::Network(_), Method::OptP | Method::Segment)
+            | (Start::Picture, _) => "",
+            (Start::Folder(_), _) => "--start DIR goes with --method opt-p only",
+            (Start::Network(_), _) => "--start net goes with --method segment or opt-p only",
+        };
+        if !problem.is_empty() {
+            return Err(SolveError::Usage(problem));
         }
         let fitter = Fitter::new(options.clone())?;
         Ok(Self { method, options, fitter, start, object_count, seed })
     }
 
-    /// The fit, and the processor time that it took on this thread.
-    pub(super) fn solve(
-        &self,
-        picture: &Picture<f32>,
-        stem: &str,
-        scratch: &mut Scratch,
-    ) -> Result<(Fit<f32>, Duration)> {
+    /// The fit of a picture, with the openings of a transparent one cut out. `stem` names it: for [`Start::Folder`] its scene is
+    /// `{stem}.json`, and random starts differ by it.
+    ///
+    /// # Errors
+    /// [`SolveError`]; of a panic in the fit [`SolveError::Defect`], with `scratch` as new.
+    pub fn solve(&self, picture: &Picture<f32>, stem: &str, scratch: &mut Scratch) -> Result<Solved, SolveError> {
         let read = match &self.start {
             Start::Folder(folder) => {
                 let path = folder.join(format!("{stem}.json"));
@@ -105,18 +125,19 @@ impl Solver {
         };
         // A defect in the fit of one picture must not cost the others.
         let run = || Ok(catch_unwind(AssertUnwindSafe(|| self.run(picture, read, stem, scratch))));
-        let (fit, time) = method::timed(run)?;
-        match fit {
-            Ok(fit) => Ok((fit?, time)),
-            Err(_) => {
-                *scratch = Scratch::default();
-                bail!("the fit failed on this picture, which is a defect of dvp; please report it with the picture")
-            }
-        }
+        let (fit, time) = method::timed(run).map_err(SolveError::Method)?;
+        let Ok(fit) = fit else {
+            *scratch = Scratch::default();
+            return Err(SolveError::Defect);
+        };
+        let fit = fit?;
+        let fit = if picture.transparent { openings::cut_out(fit, picture, &mut scratch.paint)? } else { fit };
+        Ok(Solved { fit, time })
     }
 
     /// The known shapes.
-    pub(super) fn bank(&self) -> Option<&Bank<f32>> {
+    #[must_use]
+    pub fn bank(&self) -> Option<&Bank<f32>> {
         self.options.bank.as_ref()
     }
 
@@ -126,7 +147,7 @@ impl Solver {
         read: Option<Scene<f32>>,
         stem: &str,
         scratch: &mut Scratch,
-    ) -> Result<Fit<f32>> {
+    ) -> Result<Fit<f32>, SolveError> {
         let image = picture.image.view();
         let start = match &self.start {
             Start::Network(network) => Some(network.objects(image)?),
@@ -137,23 +158,26 @@ impl Solver {
                 let FitOptions { compositing, max_objects, .. } = self.options;
                 let (compositing, settings) = (compositing.unwrap_or_default(), Refine::default());
                 method::refine(&settings, image, &start, compositing, max_objects, &mut scratch.refine)
+                    .map_err(SolveError::Method)
             }
             (Method::Segment, None) => self.segment(picture, scratch),
             (Method::RandOptP, _) => {
                 let seed = method::seed_of(stem, self.seed);
-                method::rand_opt_p(image, &method::random_start(self.bank(), self.object_count, seed))
+                let start = method::random_start(self.bank(), self.object_count, seed);
+                method::rand_opt_p(image, &start).map_err(SolveError::Method)
             }
-            (Method::OptP, Some(start)) => method::opt_p(image, &start),
+            (Method::OptP, Some(start)) => method::opt_p(image, &start).map_err(SolveError::Method),
             (Method::OptIter | Method::OptP, _) => {
                 let opt_iter = OptIter { object_count: self.object_count, ..OptIter::default() };
                 method::descend(&Scene::empty([0.0; 3]), |descent| Ok(opt_iter.fit(descent, image)?))
+                    .map_err(SolveError::Method)
             }
         }
     }
 
     /// The picture as a drawing, if it is one: flat colors with clear edges, and nothing known of its objects beforehand. Else, and where edges
     /// leave a doubt and it is nearer to the picture, as segments.
-    fn segment(&self, picture: &Picture<f32>, scratch: &mut Scratch) -> Result<Fit<f32>> {
+    fn segment(&self, picture: &Picture<f32>, scratch: &mut Scratch) -> Result<Fit<f32>, SolveError> {
         let image = picture.image.view();
         let is_known = self.options.bank.is_some() || self.options.compositing.is_some();
         let known = Known { matte: picture.transparent.then_some(picture.matte), coded: picture.coded };

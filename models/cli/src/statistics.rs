@@ -4,13 +4,13 @@
 use serde::Serialize;
 
 /// The mean; none of no values.
-pub(super) fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
+pub(crate) fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
     let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
     (count > 0.0).then(|| sum / count)
 }
 
 /// The smallest value that at least `percent` percent of the sorted values do not exceed; 0 if there are none.
-pub(super) fn quantile(sorted: &[f64], percent: usize) -> f64 {
+pub(crate) fn quantile(sorted: &[f64], percent: usize) -> f64 {
     let rank = (sorted.len() * percent).div_ceil(100);
     sorted.get(rank.saturating_sub(1)).copied().unwrap_or(0.0)
 }
@@ -18,16 +18,16 @@ pub(super) fn quantile(sorted: &[f64], percent: usize) -> f64 {
 #[cfg(feature = "lab")]
 /// The median and the quartiles beside it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub(super) struct Quartiles {
-    pub(super) low: f64,
-    pub(super) median: f64,
-    pub(super) high: f64,
+pub(crate) struct Quartiles {
+    pub(crate) low: f64,
+    pub(crate) median: f64,
+    pub(crate) high: f64,
 }
 
 #[cfg(feature = "lab")]
 impl Quartiles {
     /// Those of values in any order; zeros if there are none.
-    pub(super) fn of(mut values: Vec<f64>) -> Self {
+    pub(crate) fn of(mut values: Vec<f64>) -> Self {
         values.sort_by(f64::total_cmp);
         let [low, median, high] = [25, 50, 75].map(|percent| quantile(&values, percent));
         Self { low, median, high }

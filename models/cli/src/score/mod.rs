@@ -1,55 +1,90 @@
-//! The scores of one image, by the reference's rules as core implements them.
+//! Scenes against what was drawn, in the paper's columns.
+//!
+//! In: a picture, the scene that was found in it and, where known, the scene or the label map that it was drawn from. Out: a
+//! [`Score`], and of many pictures their [`Totals`]. Measures as core implements them.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `mod.rs` | [`score`]: one picture |
+//! | `totals.rs` | [`Totals`]: means of many |
+//!
+//! Proved by `tests/command`, which runs `dvp evaluate`.
 
-use anyhow::Result;
-use dvp_core::loss::{ImagePair, Loss, Ssim, SsimScratch};
-use dvp_core::metric::{MaskOverlap, Ownership, OwnershipRule, RandIndexScratch, adjusted_rand_index};
+mod totals;
+
+pub use totals::{Failure, Row, Totals};
+
+use dvp_core::loss::{ImagePair, Loss, LossError, Ssim, SsimScratch};
+use dvp_core::metric::{MaskOverlap, MetricError, Ownership, OwnershipRule, RandIndexScratch, adjusted_rand_index};
 use dvp_core::render::{Compositing, ContourRenderer, PixelLoss, Renderer};
 use dvp_core::{ImageSize, ImageView, Scene};
 
-use crate::method::Memory;
-use crate::paint::Painter;
+use crate::paint::{PaintError, Painter};
+
+/// Why a scene was not scored.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ScoreError {
+    /// The scene could not be painted.
+    #[error(transparent)]
+    Paint(#[from] PaintError),
+    /// The images could not be compared: their sizes differ, or a value is not finite.
+    #[error(transparent)]
+    Compare(#[from] LossError),
+    /// The pixels of objects could not be told or compared.
+    #[error(transparent)]
+    Metric(#[from] MetricError),
+}
 
 /// The scores of one image.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Score {
-    pub(super) mae: f64,
-    pub(super) mse: f64,
-    pub(super) ssim: f64,
+pub struct Score {
+    /// Mean absolute error over pixels and channels.
+    pub mae: f64,
+    /// Mean squared error over pixels and channels.
+    pub mse: f64,
+    /// Structural similarity; 1 for equal images.
+    pub ssim: f64,
     /// Where the true scene or a label map is known.
-    pub(super) masks: Option<MaskScore>,
+    pub masks: Option<MaskScore>,
     /// Processor time of the prediction, where it was made here.
-    pub(super) cpu_ms: Option<f64>,
+    pub cpu_ms: Option<f64>,
 }
 
 /// Scores of which pixels belong to which object.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct MaskScore {
+pub struct MaskScore {
     /// Of the union masks.
-    pub(super) overlap: MaskOverlap,
-    pub(super) ari: f64,
-    pub(super) true_objects: usize,
-    pub(super) found_objects: usize,
+    pub overlap: MaskOverlap,
+    /// Adjusted Rand index; 1 if both divide the pixels alike.
+    pub ari: f64,
+    /// Objects of the truth that own a pixel.
+    pub true_objects: usize,
+    /// Objects of the prediction that own a pixel.
+    pub found_objects: usize,
 }
 
-/// Memory of one thread.
-#[derive(Default)]
-pub(super) struct Scratch {
+/// Memory of one thread, kept from image to image.
+#[derive(Debug, Default)]
+pub struct Scratch {
     ssim: SsimScratch<f32>,
     rand_index: RandIndexScratch,
     render: <ContourRenderer<f32> as Renderer<f32>>::Scratch,
     found: Ownership,
     truth: Ownership,
-    pub(super) method: Memory,
 }
 
-/// Scores the scene that is painted, and that of the objects that count.
-pub(super) fn score(
+/// Scores the scene that is painted, and that of the objects that count: `[found, there]`.
+///
+/// # Errors
+/// [`ScoreError`]; of labels that are not one per pixel [`ScoreError::Metric`].
+pub fn score(
     painter: &Painter,
     image: ImageView<'_, f32>,
     known: Option<&Truth<'_>>,
     [found, there]: [&Scene<f32>; 2],
     scratch: &mut Scratch,
-) -> Result<Score> {
+) -> Result<Score, ScoreError> {
     let painted = painter.paint(found, image.size())?;
     let mut score = score_images(painted.view(), image, scratch)?;
     score.masks = known.map(|known| score_masks(painter, known, there, image.size(), scratch)).transpose()?;
@@ -57,7 +92,11 @@ pub(super) fn score(
 }
 
 /// Compares images of one size.
-fn score_images(painted: ImageView<'_, f32>, target: ImageView<'_, f32>, scratch: &mut Scratch) -> Result<Score> {
+fn score_images(
+    painted: ImageView<'_, f32>,
+    target: ImageView<'_, f32>,
+    scratch: &mut Scratch,
+) -> Result<Score, ScoreError> {
     let pair = ImagePair::new(painted, target)?;
     Ok(Score {
         mae: f64::from(PixelLoss::Mae.value(pair, &mut ())?),
@@ -69,10 +108,11 @@ fn score_images(painted: ImageView<'_, f32>, target: ImageView<'_, f32>, scratch
 }
 
 /// What predicted owners are compared with.
-pub(super) enum Truth<'a> {
+#[derive(Clone, Copy, Debug)]
+pub enum Truth<'a> {
     /// The scene that was painted.
     Scene(&'a Scene<f32>),
-    /// One label per pixel.
+    /// One label per pixel, row by row; 0 for the background.
     Labels(&'a [u32]),
 }
 
@@ -84,9 +124,9 @@ fn score_masks(
     found: &Scene<f32>,
     size: ImageSize,
     scratch: &mut Scratch,
-) -> Result<MaskScore> {
+) -> Result<MaskScore, ScoreError> {
     let Scratch { rand_index, render, found: found_owned, truth: truly_owned, .. } = scratch;
-    let mut own = |scene: &Scene<f32>, rule, owned: &mut Ownership| -> Result<()> {
+    let mut own = |scene: &Scene<f32>, rule, owned: &mut Ownership| -> Result<(), ScoreError> {
         // The visible edge, whatever renderer painted it.
         let renderer = ContourRenderer::new(scene.edge, scene.compositing);
         Ok(owned.fill_drawing(rule, &renderer, &painter.draw(scene, size)?, size, render)?)

@@ -3,43 +3,55 @@
 use dvp_core::metric::MaskOverlap;
 use serde::Serialize;
 
-use super::score::Score;
-use super::statistics::mean;
+use super::Score;
+use crate::statistics::mean;
 
 /// One image of the data set.
-pub(super) struct Row {
-    pub(super) stem: String,
-    pub(super) result: Result<Score, String>,
+#[derive(Clone, Debug)]
+pub struct Row {
+    /// Its name.
+    pub stem: String,
+    /// Its scores, or why there are none.
+    pub result: Result<Score, String>,
 }
 
 /// An image that was not scored.
-#[derive(Debug, Serialize)]
-pub(super) struct Failure {
-    stem: String,
-    error: String,
+#[derive(Clone, Debug, Serialize)]
+pub struct Failure {
+    /// Its name.
+    pub stem: String,
+    /// Why.
+    pub error: String,
 }
 
-/// The paper's columns.
-#[derive(Debug, Serialize)]
-pub(super) struct Totals {
+/// The paper's columns: means over the images that were scored. None where nothing is known.
+#[derive(Clone, Debug, Serialize)]
+pub struct Totals {
     /// Images scored.
-    pub(super) n: usize,
-    pub(super) mae: Option<f64>,
-    pub(super) mse: Option<f64>,
-    pub(super) ssim: Option<f64>,
+    pub n: usize,
+    /// Mean absolute error.
+    pub mae: Option<f64>,
+    /// Mean squared error.
+    pub mse: Option<f64>,
+    /// Structural similarity.
+    pub ssim: Option<f64>,
     /// Of the union masks, pooled over all images.
-    pub(super) iou: Option<f64>,
-    pub(super) ari: Option<f64>,
+    pub iou: Option<f64>,
+    /// Adjusted Rand index.
+    pub ari: Option<f64>,
     /// Share of images with the right number of objects.
-    pub(super) exact_count: Option<f64>,
+    pub exact_count: Option<f64>,
     /// Mean processor time per image of predictions that were made here.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) cpu_ms: Option<f64>,
-    pub(super) failed: Vec<Failure>,
+    pub cpu_ms: Option<f64>,
+    /// Images that were not scored.
+    pub failed: Vec<Failure>,
 }
 
 impl Totals {
-    pub(super) fn of(rows: &[Row]) -> Self {
+    /// Those of the images `rows`.
+    #[must_use]
+    pub fn of(rows: &[Row]) -> Self {
         let scores = || rows.iter().filter_map(|row| row.result.as_ref().ok());
         let masks = || scores().filter_map(|score| score.masks.as_ref());
         let mut pooled = MaskOverlap::default();

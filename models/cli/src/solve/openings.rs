@@ -4,13 +4,13 @@
 //! opening, and cut out of what is painted before it. Where the fit has taken another color for the background, that is an
 //! object as large as the picture.
 
-use anyhow::Result;
 use dvp_core::loss::{ImagePair, Loss as _};
 use dvp_core::render::PixelLoss;
 use dvp_core::shape::{Rectangle, ShapeError};
 use dvp_core::{ImageSize, Object, Pose, Real as _, Scene};
 use dvp_fit::Fit;
 
+use super::error::SolveError;
 use crate::format::Picture;
 use crate::method::cast_scene;
 use crate::paint::{PaintScratch, Painter};
@@ -27,7 +27,11 @@ const LEAST_AREA_PX: f64 = 1e-2;
 /// The fit of a transparent picture, without objects that show nothing.
 ///
 /// Where something is cut, what the fit knows of the numbers of its objects is lost: they are others.
-pub(super) fn cut_out(mut fit: Fit<f32>, picture: &Picture<f32>, scratch: &mut PaintScratch<f32>) -> Result<Fit<f32>> {
+pub(super) fn cut_out(
+    mut fit: Fit<f32>,
+    picture: &Picture<f32>,
+    scratch: &mut PaintScratch<f32>,
+) -> Result<Fit<f32>, SolveError> {
     let is_matte =
         |color: [f32; 3]| color.iter().zip(picture.matte).all(|(a, b)| f64::from((a - b).abs()) < SAME_COLOR);
     let scene = &fit.scene;

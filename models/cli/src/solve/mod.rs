@@ -1,0 +1,39 @@
+//! A picture to the objects it is made of: what `dvp fit` does with each, for every other program.
+//!
+//! In: a [`Picture`](crate::format::Picture), from a file, from bytes or from pixels. Out: a [`Solved`], whose fit holds the scene and
+//! its doubts. Label maps of other programs come in by [`fit_masks`].
+//!
+//! | file | holds |
+//! |---|---|
+//! | `solver.rs` | [`Solver`]: a method made ready, to be run on many pictures |
+//! | `masks.rs` | [`fit_masks`]: outlines of another program's masks |
+//! | `openings.rs` | what shows nothing in a transparent picture |
+//! | `error.rs` | [`SolveError`] |
+//!
+//! *Units*: scene units, the shorter side of the picture is 1. Proved by `tests/command`, which runs `dvp fit`.
+//!
+//! # Examples
+//! ```
+//! use dvp::format::Picture;
+//! use dvp::solve::{Method, Scratch, Solver, Start};
+//! use dvp_core::{Image, ImageSize};
+//! use dvp_fit::FitOptions;
+//! // A dark square on white.
+//! let size = ImageSize::new(32, 32)?;
+//! let dark = |i: usize| (8..24).contains(&(i % 32)) && (8..24).contains(&(i / 32));
+//! let pixels: Vec<f32> = (0..size.pixels()).flat_map(|i| [if dark(i) { 0.1 } else { 1.0 }; 3]).collect();
+//! let picture = Picture::from(Image::from_interleaved(size, &pixels)?);
+//! let solver = Solver::new(Method::Segment, FitOptions::default(), Start::Picture, 4, 0)?;
+//! let solved = solver.solve(&picture, "square", &mut Scratch::default())?;
+//! assert_eq!(solved.fit.scene.objects.len(), 1);
+//! # Ok::<(), Box<dyn core::error::Error>>(())
+//! ```
+
+mod error;
+mod masks;
+mod openings;
+mod solver;
+
+pub use error::SolveError;
+pub use masks::{MaskFit, fit_masks};
+pub use solver::{Method, Scratch, Solved, Solver, Start};
