@@ -42,12 +42,19 @@ fn painted(completion: &mut Completion<'_>) -> Vec<Group> {
     painted.into_iter().map(|(_, group)| group).collect()
 }
 
-/// Bits of everything that is painted, in the present order.
+/// Bits of everything that is painted, in the present order; a color costs again for what is no thing by itself, as in [`Group::join`].
 pub(super) fn total(completion: &mut Completion<'_>) -> f64 {
     let rank = completion.rank.clone();
     let groups = painted(completion);
     completion.rank = rank;
-    groups.iter().map(|group| group.completed.bits + COLOR_BITS).sum()
+    let mut of_colors: BTreeMap<usize, (usize, usize)> = BTreeMap::new();
+    for group in &groups {
+        let (all, whole) = of_colors.entry(completion.partition.faces[group.faces[0] as usize].color).or_default();
+        *all += 1;
+        *whole += usize::from(group.is_whole(completion));
+    }
+    let again: usize = of_colors.values().map(|&(all, whole)| all - whole.max(1)).sum();
+    groups.iter().map(|group| group.completed.bits).sum::<f64>() + again as f64 * COLOR_BITS
 }
 
 /// Faces that are painted together.
@@ -65,9 +72,10 @@ impl Group {
         Self { faces, completed }
     }
 
-    /// Whether it is a thing as people draw them; what is seen of a few pixels may be a part of anything.
+    /// Whether it is a thing as people draw them; what is seen of a few pixels, and a piece of a line, may be a part of anything.
     fn is_whole(&self, completion: &Completion<'_>) -> bool {
-        self.completed.is_whole() && !self.faces.iter().all(|&face| completion.is_small(face))
+        let is_pen = completion.pen(&self.faces).is_some();
+        self.completed.is_whole() && !is_pen && !self.faces.iter().all(|&face| completion.is_small(face))
     }
 
     /// Both as one, at the place of the hindmost in the order, with the bits that are saved; none if that is no shorter.
@@ -197,9 +205,7 @@ fn is_shown_behind(completion: &Completion<'_>, faces: &[u32], others: &[u32]) -
     let leads = |from: &[u32], to: &[u32]| {
         from.iter().any(|&face| reached(completion, face, is_shown).iter().any(|other| to.contains(other)))
     };
-    let is_united =
-        |&(a, b): &(u32, u32)| faces.contains(&a) && others.contains(&b) || faces.contains(&b) && others.contains(&a);
-    completion.united.iter().any(is_united) || leads(faces, others) || leads(others, faces)
+    leads(faces, others) || leads(others, faces)
 }
 
 /// The faces of the color of `face` that can be reached from it behind what is painted later; the first and the last that the way leads

@@ -132,7 +132,8 @@ impl Search<'_, '_> {
             moved.retain(|face| !faces.contains(face));
             moved.extend(&faces);
             let net = |other: u32, face: u32| self.completion.order.net(other, face).max(0.0);
-            let behind = |face: u32| self.completion.neighbors[face as usize].iter().map(move |&other| net(other, face));
+            let behind =
+                |face: u32| self.completion.neighbors[face as usize].iter().map(move |&other| net(other, face));
             let against: f64 = faces.iter().flat_map(|&face| behind(face)).sum();
             let before = *total.get_or_insert_with(|| join::total(self.completion));
             self.completion.paint(&moved);
