@@ -133,7 +133,7 @@ def test_the_lock_is_released(shipped: Path) -> None:
 
 @pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
 def test_an_interrupt_stops_a_long_run(shipped: Path) -> None:
-    # Half an hour of work on one thread, if nothing stopped it.
+    # Twenty minutes of work on one thread, if nothing stopped it.
     code = f"import dvp; print('on', flush=True); dvp.fit_many([{str(shipped)!r}] * 50000, threads=1)"
     process = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     assert process.stdout is not None and process.stdout.readline() == "on\n"
