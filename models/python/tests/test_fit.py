@@ -83,6 +83,8 @@ def test_masks_become_outlines(square: Any) -> None:
     assert len(dvp.fit(masks=masks)) == 1
     with pytest.raises(dvp.DvpError, match="64 x 64 pixels, its picture has 10 x 10"):
         dvp.fit(square[:10, :10], masks=masks)
+    with pytest.raises(dvp.DvpError, match="bank: of no use with masks"):
+        dvp.fit(square, masks=masks, bank="mdshr")
 
 
 def test_transparent_pictures_stay_transparent(square: Any) -> None:
