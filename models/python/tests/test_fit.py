@@ -136,7 +136,9 @@ def test_the_lock_is_released(shipped: Path) -> None:
 @pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
 def test_an_interrupt_stops_a_long_run(shipped: Path) -> None:
     # Twenty minutes of work on one thread, if nothing stopped it.
-    code = f"import dvp; print('on', flush=True); dvp.fit_many([{str(shipped)!r}] * 50000, threads=1)"
+    # What runs in the background of a shell has interrupts switched off, and hands that on.
+    listen = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)"
+    code = f"{listen}; import dvp; print('on', flush=True); dvp.fit_many([{str(shipped)!r}] * 50000, threads=1)"
     process = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     assert process.stdout is not None and process.stdout.readline() == "on\n"
     with pytest.raises(subprocess.TimeoutExpired):
