@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import os
 import pickle
+import signal
 import subprocess
 import sys
 import threading
@@ -82,6 +83,8 @@ def test_masks_become_outlines(square: Any) -> None:
     assert len(dvp.fit(masks=masks)) == 1
     with pytest.raises(dvp.DvpError, match="64 x 64 pixels, its picture has 10 x 10"):
         dvp.fit(square[:10, :10], masks=masks)
+    with pytest.raises(dvp.DvpError, match="bank: of no use with masks"):
+        dvp.fit(square, masks=masks, bank="mdshr")
 
 
 def test_transparent_pictures_stay_transparent(square: Any) -> None:
@@ -128,6 +131,21 @@ def test_the_lock_is_released(shipped: Path) -> None:
     counter.join()
     # A thread that waits for the lock would count not even once while a native call runs.
     assert during >= 5
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
+def test_an_interrupt_stops_a_long_run(shipped: Path) -> None:
+    # Twenty minutes of work on one thread, if nothing stopped it.
+    # What runs in the background of a shell has interrupts switched off, and hands that on.
+    listen = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)"
+    code = f"{listen}; import dvp; print('on', flush=True); dvp.fit_many([{str(shipped)!r}] * 50000, threads=1)"
+    process = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    assert process.stdout is not None and process.stdout.readline() == "on\n"
+    with pytest.raises(subprocess.TimeoutExpired):
+        process.wait(timeout=1)
+    process.send_signal(signal.SIGINT)
+    _, errors = process.communicate(timeout=60)
+    assert process.returncode != 0 and "KeyboardInterrupt" in errors
 
 
 def test_a_fitter_is_kept_and_sent(square: Any) -> None:

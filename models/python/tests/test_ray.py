@@ -84,7 +84,6 @@ def test_a_killed_worker_loses_and_doubles_nothing(cluster: None, pictures: list
     print(f"{COUNT} pictures: {seconds:.1f} s on 2 workers of Ray, one killed; {alone:.1f} s by fit_many on 2 threads")
     assert rows_of(out) == list(zip(expected["picture"], expected["object"]))
     assert done["rows"] == len(expected["picture"]) and done["made"] == done["shards"]
-    assert not list(out.glob("*.part")) or killed
     failed = [name for name, error in zip(expected["picture"], expected["error"]) if error is not None]
     assert failed == [pictures[-1]]
     # A second run fits nothing again; without one shard it fits that one.

@@ -166,6 +166,8 @@ def fit(
     >>> [(o.kind, o.translation) for o in dvp.fit(picture).objects]
     [('rectangle', (0.7291667, 0.41666666))]
     """
+    if masks is not None and (useless := sorted(set(options) - {"max_pixels"})):
+        raise DvpError(f"{', '.join(useless)}: of no use with masks, whose outlines are taken as they are; leave it away")
     return _fitter(options).fit(picture, masks=masks, coded=coded, name=name)
 
 
