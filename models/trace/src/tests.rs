@@ -6,7 +6,9 @@ use alloc::vec::Vec;
 use std::eprintln;
 
 use dvp_core::render::{Compositing, EdgeProfile, ExactArea, ExactRenderer, Renderer as _};
-use dvp_core::shape::{AnyShape, Cap, Circle, FillRule, Join, OutlineBasis, Path, PathRing, Rectangle, Star, Stroke};
+use dvp_core::shape::{
+    AnyShape, Cap, Circle, FillRule, Join, OutlineBasis, Path, PathRing, Rectangle, Segment, Star, Stroke,
+};
 use dvp_core::{Drawing, Image, ImageSize, Object, Pose, Scene};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -144,9 +146,17 @@ fn what_a_ring_encloses_lies_on_what_shows_through_it() {
     assert!(error(&picture, &found) < 1e-3);
 }
 
+/// The circle of a radius, as a ring of a path.
+fn disk(radius: f64) -> PathRing<f64> {
+    PathRing { points: vec![[-radius, 0.0], [radius, 0.0]], segments: vec![Segment::Arc { bulge: 1.0 }; 2] }
+}
+
+fn square(half: f64) -> PathRing<f64> {
+    PathRing::polygon([[-half, -half], [half, -half], [half, half], [-half, half]].to_vec())
+}
+
 /// A square frame: half the side of its outline and of its opening.
 fn square_frame(outer: f64, inner: f64) -> AnyShape<f64> {
-    let square = |half: f64| PathRing::polygon([[-half, -half], [half, -half], [half, half], [-half, half]].to_vec());
     AnyShape::Path(Path { rings: vec![square(outer), square(inner)], fill: FillRule::EvenOdd })
 }
 
@@ -159,6 +169,29 @@ fn what_an_opening_shows_is_a_part_of_what_lies_behind() {
     assert_eq!(found.objects.len(), 2, "{:?}", found.objects);
     assert!(matches!(found.objects[0].shape, AnyShape::Circle(_)), "{:?}", found.objects[0].shape);
     assert!(error(&picture, &found) < 1e-3);
+}
+
+#[test]
+fn both_sides_of_a_ring_show_the_ring_behind_it() {
+    let hollow = || AnyShape::Path(Path { rings: vec![disk(18.0), disk(11.0)], fill: FillRule::EvenOdd });
+    let ring = |center: [f64; 2], color: [f32; 3]| object(hollow(), center, 0.0, color);
+    let found = found(&paint(&scene(WHITE, vec![ring([40.0, 58.0], RED), ring([50.0, 40.0], BLUE)])));
+    assert_eq!(found.objects.len(), 2, "{:?}", found.objects);
+}
+
+#[test]
+fn corners_around_a_disk_are_one_sheet_over_stripes() {
+    let side = SIZE as f64;
+    let stripe =
+        |k: f64, color: [f32; 3]| object(rectangle(side, side / 3.0), [side / 2.0, (k + 0.5) * side / 3.0], 0.0, color);
+    let opening = vec![square(side + 2.0), disk(side / 2.0)];
+    let sheet =
+        object(AnyShape::Path(Path { rings: opening, fill: FillRule::EvenOdd }), [side / 2.0, side / 2.0], 0.0, WHITE);
+    let picture = paint(&scene(RED, vec![stripe(1.0, BLUE), stripe(2.0, [0.9, 0.8, 0.2]), sheet]));
+    let found = found(&picture);
+    let kinds: Vec<bool> = found.objects.iter().map(|object| matches!(object.shape, AnyShape::Rectangle(_))).collect();
+    assert_eq!(kinds, [true, true, false], "{:?}", found.objects);
+    assert!(error(&picture, &found) < 2e-3);
 }
 
 #[test]

@@ -11,6 +11,7 @@ use dvp_core::shape::PathRing;
 use super::memo::Memo;
 use super::order::Order;
 use super::visible::{self, Hidden};
+use super::walk::{self, Walk};
 use super::{link, raster, sheet};
 use crate::boundary::{Ring, Step};
 use crate::outline::{Outline, OutlineShape};
@@ -25,9 +26,6 @@ const FRAME_BITS: f64 = 8.0;
 
 /// Most ways to link the parts of one thing that are tried.
 const MOST_LINKED: usize = 4;
-
-/// Most pixels that are asked which stretch makes them wrong.
-const MOST_ASKED: usize = 32;
 
 /// What outlines follow from.
 pub(super) struct Completion<'a> {
@@ -153,6 +151,7 @@ impl Completion<'_> {
         completed
     }
 
+    /// [`Completion::outlines`] of a group at place `rank` that was not asked for before.
     fn completed(&self, group: &[u32], rank: usize) -> Completed {
         let wanted = |label: u32| self.wanted(label, group, rank);
         let parts = group.iter().flat_map(|&face| self.rings[face as usize].iter().map(move |ring| (face, ring)));
@@ -174,8 +173,7 @@ impl Completion<'_> {
         let most = if group.len() > 1 { MOST_LINKED } else { 1 };
         let linked = link::relinked(&samples, is_seen, most).into_iter().map(|samples| self.framed(&samples));
         let linked = linked.filter(|linked| self.check(&linked.outlines, wanted).is_ok());
-        let linked = linked.min_by(|a, b| a.bits.total_cmp(&b.bits));
-        let mut linked = linked;
+        let mut linked = linked.min_by(|a, b| a.bits.total_cmp(&b.bits));
         for round in 0.. {
             let walked = self.fit(&samples);
             match self.check(&walked.outlines, wanted) {
@@ -186,7 +184,7 @@ impl Completion<'_> {
                         let led = led.filter(|led| self.check(&led.outlines, wanted).is_ok());
                         linked = [linked, led].into_iter().flatten().min_by(|a, b| a.bits.total_cmp(&b.bits));
                     }
-                    if !pin(&mut walks, &wrong) {
+                    if !walk::pin(&mut walks, &wrong) {
                         break;
                     }
                     samples = walks.iter().map(Walk::samples).collect();
@@ -268,69 +266,6 @@ impl Completion<'_> {
         let bits = 2.0 * points.len() as f64 * self.ruler.number(0.1);
         Outline { shape: OutlineShape::Path(PathRing::polygon(points)), bits, misfit: 0.0, deviations: Vec::new() }
     }
-}
-
-/// A boundary, and what of it is hidden.
-struct Walk<'a> {
-    ring: &'a Ring,
-    /// How each of its steps is hidden, if it is.
-    hidden: Vec<Option<Hidden>>,
-}
-
-impl Walk<'_> {
-    fn samples(&self) -> RingSamples {
-        visible::samples(self.ring, &self.hidden)
-    }
-
-    /// The hidden stretch around step `k` follows what hides it.
-    fn pin(&mut self, k: usize) {
-        let n = self.hidden.len();
-        let is_free = |hidden: &Option<Hidden>| *hidden == Some(Hidden::Free);
-        let back = (0..n).find(|&j| !is_free(&self.hidden[(k + n - j) % n])).unwrap_or(n - 1);
-        let forth = (1..n).find(|&j| !is_free(&self.hidden[(k + j) % n])).unwrap_or(1);
-        // Beyond the border is another matter than behind others.
-        let is_beyond = |k: usize| self.ring.steps[k].other == OUTSIDE;
-        let kind = is_beyond(k);
-        for j in 0..back.max(1) {
-            let at = (k + n - j) % n;
-            if is_beyond(at) != kind {
-                break;
-            }
-            self.hidden[at] = None;
-        }
-        for j in 1..forth {
-            let at = (k + j) % n;
-            if is_beyond(at) != kind {
-                break;
-            }
-            self.hidden[at] = None;
-        }
-    }
-}
-
-/// Pins what is nearest to every pixel that is wrong; everything if there is no outline at all. Whether there was anything to pin.
-fn pin(walks: &mut [Walk<'_>], wrong: &[[usize; 2]]) -> bool {
-    if wrong.is_empty() {
-        let free = walks.iter_mut().flat_map(|walk| &mut walk.hidden).filter(|hidden| **hidden == Some(Hidden::Free));
-        return free.map(|hidden| *hidden = None).count() > 0;
-    }
-    let nearest = |&[x, y]: &[usize; 2]| {
-        let at = Vec2::new(x as f64 + 0.5, y as f64 + 0.5);
-        let free = walks.iter().enumerate().flat_map(|(w, walk)| {
-            let free = (0..walk.hidden.len()).filter(|&k| walk.hidden[k] == Some(Hidden::Free));
-            free.map(move |k| (w, k, (Ring::middle(walk.ring.steps[k].crack) - at).length_squared()))
-        });
-        free.min_by(|a, b| a.2.total_cmp(&b.2)).map(|(w, k, _)| (w, k))
-    };
-    // Few of many tell as much.
-    let every = wrong.len().div_ceil(MOST_ASKED);
-    let places: Vec<(usize, usize)> = wrong.iter().step_by(every.max(1)).filter_map(nearest).collect();
-    for &(w, k) in &places {
-        if walks[w].hidden[k].is_some() {
-            walks[w].pin(k);
-        }
-    }
-    !places.is_empty()
 }
 
 /// The faces that each face touches.

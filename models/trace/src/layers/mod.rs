@@ -8,6 +8,7 @@
 //! | `pen` | faces that a pen has drawn |
 //! | `join` | faces of one color that are one thing behind another |
 //! | `visible` | what of a boundary is a layer's own |
+//! | `walk` | what of a boundary follows what hides it |
 //! | `link` | which visible stretch goes on as which behind others |
 //! | `sheet` | what reaches as far as the picture does |
 //! | `complete` | outlines through what is seen |
@@ -25,6 +26,7 @@ mod raster;
 mod settle;
 mod sheet;
 mod visible;
+mod walk;
 
 use alloc::vec::Vec;
 use core::cell::RefCell;

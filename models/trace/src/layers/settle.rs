@@ -1,7 +1,8 @@
 //! The order of faces that meet, where another one is the shorter description.
 //!
-//! What lies in front has the boundary between two faces for its own; for what lies behind it costs nothing. The wrong order makes corners
-//! where something begins to hide something else.
+//! What lies in front has the boundary between two faces for its own; what lies behind may go on as it likes. The wrong order makes corners
+//! where something begins to hide something else, and parts of what is one thing. An order is taken if all that is painted, with its
+//! parts joined, is shorter by it, less what junctions say against it.
 
 use alloc::collections::{BTreeMap, BTreeSet};
 use alloc::vec::Vec;
