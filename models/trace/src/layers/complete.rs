@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use core::cell::RefCell;
 
 use dvp_core::Vec2;
-use dvp_core::shape::PathRing;
+use dvp_core::shape::{PathRing, Segment};
 
 use super::memo::Memo;
 use super::order::Order;
@@ -24,8 +24,14 @@ use crate::tuning;
 /// Bits that tell of a sheet as large as the picture: that it is one, and of which kind.
 const FRAME_BITS: f64 = 8.0;
 
+/// By how much opposite sides of a parallelogram may differ, per length.
+const ALMOST: f64 = 0.02;
+
 /// Most ways to link the parts of one thing that are tried.
 const MOST_LINKED: usize = 4;
+
+/// The faces painted together, and those in front of them.
+type Place = (Vec<u32>, Vec<u32>);
 
 /// What outlines follow from.
 pub(super) struct Completion<'a> {
@@ -42,7 +48,7 @@ pub(super) struct Completion<'a> {
     /// Pairs of faces that were found to be one thing behind another, when the order was.
     pub(super) united: Vec<(u32, u32)>,
     /// Outlines that were found, by the faces painted together and those in front of them.
-    pub(super) known: RefCell<BTreeMap<(Vec<u32>, Vec<u32>), Completed>>,
+    pub(super) known: RefCell<BTreeMap<Place, Completed>>,
     /// Outlines that were fitted.
     pub(super) memo: Memo,
 }
@@ -63,9 +69,13 @@ impl Completed {
         Self { outlines, bits: self.bits + other.bits, agrees: self.agrees && other.agrees }
     }
 
-    /// Whether it is a thing as people draw them.
+    /// Whether it is a thing as people draw them: figures, and paths that are parallelograms, as rectangles with a hidden side may be.
     pub(super) fn is_whole(&self) -> bool {
-        self.outlines.iter().all(|outline| !matches!(outline.shape, OutlineShape::Path(_)))
+        let is_figure = |outline: &Outline| match &outline.shape {
+            OutlineShape::Path(ring) => is_parallelogram(ring),
+            _ => true,
+        };
+        self.outlines.iter().all(is_figure)
     }
 
     /// Nothing to complete.
@@ -266,6 +276,15 @@ impl Completion<'_> {
         let bits = 2.0 * points.len() as f64 * self.ruler.number(0.1);
         Outline { shape: OutlineShape::Path(PathRing::polygon(points)), bits, misfit: 0.0, deviations: Vec::new() }
     }
+}
+
+/// Whether a ring is four straight lines, opposite ones about equal.
+fn is_parallelogram(ring: &PathRing<f64>) -> bool {
+    let [a, b, c, d] = ring.points[..] else { return false };
+    let [a, b, c, d] = [a, b, c, d].map(Vec2::from);
+    let off = (a - b) + (c - d);
+    ring.segments.iter().all(|segment| matches!(segment, Segment::Line))
+        && off.length() < ALMOST * ((a - b).length() + (b - c).length())
 }
 
 /// The faces that each face touches.
