@@ -52,6 +52,17 @@ pub const CODED_STEP: f32 = 6.5 / 255.0;
 pub const CLEAN_MIX: f32 = 5.0 / 255.0;
 /// The same in pictures that went through a coder.
 pub const CODED_MIX: f32 = 24.0 / 255.0;
+/// Weight of color differences beside brightness in pictures that went through a coder: across edges they are off by 13 levels and brightness
+/// by 5.
+pub const CODED_COLOR_WEIGHT: f64 = 0.35;
+/// Standard deviation of brightness in pixels at edges of pictures that went through a coder: 4.5 to 6 levels across edges, 3.5 beside.
+pub const CODED_SIGMA: f64 = 4.5 / 255.0;
+/// So many pixels of a coded picture are off by the same.
+pub const CODED_ALIKE: f64 = 16.0;
+/// Regions of coded pictures of up to so many pixels may be stains beside edges.
+pub const CODED_MOST_STAIN: usize = 600;
+/// How far from edges (pixels) coders stain: a block of 8.
+pub const CODED_REACH: usize = 4;
 /// Most colors of a drawing.
 pub const MOST_COLORS: usize = 96;
 /// Least difference of a channel that makes a color of its own of pixels that nothing else explains.

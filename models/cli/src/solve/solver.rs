@@ -192,7 +192,7 @@ impl Solver {
         let drawn = Fit { loss, bits: traced.bits, stop: StopReason::Converged, covariance, ambiguity, ..fit };
         // Stains of either sign: blur and profiles of their own leave too much of the other side beyond edges, filters that sharpen too little.
         let is_doubtful = traced.stained.abs() > tuning::DOUBTFUL_STAINED;
-        if !is_doubtful && !picture.coded {
+        if !is_doubtful {
             return Ok(drawn);
         }
         let segments = self.fitter.fit(image, &mut scratch.fit)?;

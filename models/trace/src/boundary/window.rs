@@ -58,7 +58,7 @@ fn sample(partition: &Partition, step: &Step) -> Option<Sample> {
     if contrast2 <= 0.0 {
         return None;
     }
-    let rounding = tuning::ROUNDING / contrast2.sqrt();
+    let rounding = partition.sigma / contrast2.sqrt();
     let [inner_at, outer_at] = step.crack.sides();
     // From the crack inward: missing coverage moves the boundary inward. Outward: coverage moves it outward.
     let missing = sum(partition, [inner_at, outer_at], step.inner, [outer, inner], rounding)?;

@@ -84,7 +84,7 @@ impl Layers {
 #[must_use]
 pub fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<Color>) -> Layers {
     let ruler = Ruler { extent: partition.size[0].max(partition.size[1]) as f64 };
-    let background = background(partition, rings, matte);
+    let background = background(partition, rings, matte.map(|matte| partition.as_palette(matte)));
     let memo = Memo::default();
     let mut pens = pen::find(partition, rings, background, &ruler, &memo);
     let order = Order::of(partition, rings, background, matte.is_some(), &mut pens);
@@ -104,7 +104,7 @@ pub fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<Color>) 
     settle::settle(&mut completion);
     let mut layers = Vec::new();
     for (group, outlines) in join::groups(&mut completion) {
-        let color = partition.color(group[0]);
+        let color = partition.rgb(partition.color(group[0]));
         match completion.pen(&group) {
             Some(pen) => {
                 let bits = (pen.bits + pen.misfit) / pen.strokes.len().max(1) as f64;
@@ -125,9 +125,9 @@ pub fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<Color>) 
     layers.extend(lines.map(|(color, stroke)| {
         let points: usize = stroke.rings.iter().map(|ring| ring.points.len()).sum();
         let bits = (2 * points + 1) as f64 * ruler.number(tuning::CRACK_SIGMA);
-        Layer { color, form: Form::Stroked(stroke), bits }
+        Layer { color: partition.rgb(color), form: Form::Stroked(stroke), bits }
     }));
-    Layers { background: partition.color(background), layers }
+    Layers { background: partition.rgb(partition.color(background)), layers }
 }
 
 /// The face that everything lies on: that of the matte, or else the largest, where what lies along the border counts more.

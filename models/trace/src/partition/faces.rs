@@ -62,6 +62,7 @@ fn partition(size: [usize; 2], pixels: Vec<[f32; 3]>, mixed: Mixed, labels: Vec<
         palette,
         coded: false,
         mix_noise: noise,
+        sigma: tuning::ROUNDING,
         is_hard,
         unexplained,
     }

@@ -15,6 +15,8 @@ pub(super) struct Noise {
     pub(super) flat: f32,
     /// Most difference of a channel from the mixture that explains a pixel.
     pub(super) mixed: f32,
+    /// Standard deviation of a channel in a pixel of an edge.
+    pub(super) sigma: f64,
 }
 
 /// Pixels in flat blocks, and the regions that these make.
@@ -33,7 +35,7 @@ impl Noise {
     /// From the blocks themselves: in a clean picture nearly all that are not equal are edges; noise leaves many that differ a little.
     pub(super) fn of(pixels: &[[f32; 3]], size: [usize; 2], coded: bool) -> Result<Self, NoPartition> {
         let [mut little, mut much] = [0usize; 2];
-        for range in ranges(pixels, size).map(|(_, range)| range) {
+        for range in ranges(pixels, size, [1.0; 3]).map(|(_, range)| range) {
             if range > tuning::CLEAN_STEP && range <= tuning::CODED_STEP {
                 little += 1;
             } else if range > tuning::CODED_STEP {
@@ -41,16 +43,23 @@ impl Noise {
             }
         }
         if coded {
-            return Ok(Self { flat: tuning::CODED_STEP, mixed: tuning::CODED_MIX });
+            return Ok(Self { flat: tuning::CODED_STEP, mixed: tuning::CODED_MIX, sigma: tuning::CODED_SIGMA });
         }
         if little > tuning::NOISY_BLOCKS * much {
             return Err(NoPartition::Noisy);
         }
-        Ok(Self { flat: tuning::CLEAN_STEP, mixed: tuning::CLEAN_MIX })
+        Ok(Self { flat: tuning::CLEAN_STEP, mixed: tuning::CLEAN_MIX, sigma: tuning::ROUNDING })
     }
 }
 
 impl Noise {
+    /// Weights of the channels where pixels or regions of one color are compared: color differences of coded pictures, which pass slowly into one
+    /// another, are not made less of there.
+    pub(super) fn weights(&self) -> [f32; 3] {
+        let color = if self.is_coded() { 1.0 / tuning::CODED_COLOR_WEIGHT as f32 } else { 1.0 };
+        [1.0, color, color]
+    }
+
     /// Whether it is that of a coder.
     pub(super) fn is_coded(&self) -> bool {
         self.flat > tuning::CLEAN_STEP
@@ -62,17 +71,33 @@ impl Flats {
     pub(super) fn pure_count(&self) -> usize {
         self.means.iter().map(|&(_, count)| count).sum()
     }
+
+    /// Numbers the regions anew, those that are not kept left out.
+    pub(super) fn keep(&mut self, is_kept: &[bool]) {
+        let mut number = vec![NONE; is_kept.len()];
+        let kept = is_kept.iter().enumerate().filter(|&(_, &kept)| kept).map(|(region, _)| region);
+        kept.enumerate().for_each(|(new, region)| number[region] = index(new));
+        for region in self.regions.iter_mut().filter(|region| **region != NONE) {
+            *region = number[*region as usize];
+        }
+        let mut kept = is_kept.iter();
+        self.means.retain(|_| kept.next().copied().unwrap_or(false));
+    }
 }
 
-/// Upper left corner (pixel index) of every block of two by two pixels, and the most that a channel differs inside.
-fn ranges(pixels: &[[f32; 3]], [width, height]: [usize; 2]) -> impl Iterator<Item = (usize, f32)> {
+/// Upper left corner (pixel index) of every block of two by two pixels, and the most that a channel, times its weight, differs inside.
+fn ranges(
+    pixels: &[[f32; 3]],
+    [width, height]: [usize; 2],
+    weights: [f32; 3],
+) -> impl Iterator<Item = (usize, f32)> {
     let blocks = (0..height.saturating_sub(1)).flat_map(move |y| (0..width - 1).map(move |x| y * width + x));
     blocks.map(move |i| {
         let four = [pixels[i], pixels[i + 1], pixels[i + width], pixels[i + width + 1]];
         let range = |c: usize| {
             let [low, high] =
                 four.iter().fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], p| [low.min(p[c]), high.max(p[c])]);
-            high - low
+            weights[c] * (high - low)
         };
         (i, range(0).max(range(1)).max(range(2)))
     })
@@ -85,7 +110,7 @@ pub(super) fn find(pixels: &[[f32; 3]], size: [usize; 2], noise: &Noise) -> Flat
     let mut is_flat = vec![false; pixels.len()];
     // The last block that was flat, and those of the row above.
     let (mut last, mut above) = (None, vec![false; width]);
-    for (i, range) in ranges(pixels, size) {
+    for (i, range) in ranges(pixels, size, noise.weights()) {
         let is_block = range <= noise.flat;
         let is_above_flat = core::mem::replace(&mut above[i % width], is_block);
         if !is_block {

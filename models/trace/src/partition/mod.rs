@@ -7,6 +7,7 @@
 
 mod chain;
 mod checker;
+mod coded;
 mod cross;
 mod erase;
 mod faces;
@@ -40,7 +41,7 @@ pub const OUTSIDE: u32 = u32::MAX;
 pub struct Partition {
     /// Columns and rows.
     pub size: [usize; 2],
-    /// Color of every pixel, row by row.
+    /// Color of every pixel, row by row; of a coded picture weighted, as `palette` is.
     pub pixels: Vec<[f32; 3]>,
     /// Face of every pixel: an index into `faces`.
     pub labels: Vec<u32>,
@@ -50,12 +51,14 @@ pub struct Partition {
     pub faces: Vec<Face>,
     /// Lines that were taken out before the cut.
     pub lines: Vec<ThinLine>,
-    /// The colors; faces name one of them.
+    /// The colors; faces name one of them. [`Self::rgb`] makes colors of them.
     pub palette: Vec<Color>,
     /// Whether it looks as if a coder of photographs had changed it.
     pub coded: bool,
     /// Most difference of a channel between a pixel and the mixture that explains it.
     pub mix_noise: f64,
+    /// Standard deviation of a channel in a pixel of an edge.
+    pub sigma: f64,
     /// Whether edges are steps from pixel to pixel, without mixtures: boundaries are then known no better than the cracks between pixels.
     pub is_hard: bool,
     /// Share of the pixels that no mixture of the palette explains, [0, 1].
@@ -86,12 +89,22 @@ impl Partition {
         let size = [image.size().width(), image.size().height()];
         let mut pixels: Vec<[f32; 3]> = (0..image.size().pixels()).map(|i| image.pixel(i)).collect();
         let noise = flat::Noise::of(&pixels, size, coded)?;
-        let flats = flat::find(&pixels, size, &noise);
+        let weighted = |pixels: &mut [[f32; 3]]| pixels.iter_mut().for_each(|pixel| *pixel = coded::weighted(*pixel));
+        if noise.is_coded() {
+            weighted(&mut pixels);
+        }
+        let find = |pixels: &[[f32; 3]]| {
+            let mut flats = flat::find(pixels, size, &noise);
+            if noise.is_coded() {
+                coded::dissolve(pixels, size, &mut flats);
+            }
+            flats
+        };
+        let mut flats = find(&pixels);
         let share = flats.pure_count() as f64 / pixels.len() as f64;
         if share < tuning::LEAST_FLAT {
             return Err(NoPartition::NotFlat { flat: share });
         }
-        let mut flats = flats;
         let mut colors = palette::Palette::of(&flats, &noise)?;
         let mut lines = Vec::new();
         for widest in [tuning::THIN_WIDTH, tuning::CROSSING_WIDTH] {
@@ -103,18 +116,30 @@ impl Partition {
             // Wide lines may pass under thin ones.
             lines.splice(0..0, taken);
             if is_changed {
-                flats = flat::find(&pixels, size, &noise);
+                flats = find(&pixels);
                 colors = palette::Palette::of(&flats, &noise)?;
             }
         }
         let mixed = mix::explain(&pixels, size, &flats, colors, &noise);
-        Ok(Self { coded: noise.is_coded(), lines, ..faces::cut(size, pixels, mixed) })
+        Ok(Self { coded: noise.is_coded(), sigma: noise.sigma, lines, ..faces::cut(size, pixels, mixed) })
     }
 
     /// Color of a face.
     #[must_use]
     pub fn color(&self, face: u32) -> Color {
         self.palette[self.faces[face as usize].color]
+    }
+
+    /// A color of the palette, or of a line, as the picture stores it.
+    #[must_use]
+    pub fn rgb(&self, color: Color) -> Color {
+        if self.coded { coded::as_rgb(color) } else { color }
+    }
+
+    /// A color that the picture stores as its palette has it.
+    #[must_use]
+    pub fn as_palette(&self, rgb: Color) -> Color {
+        if self.coded { coded::weighted(rgb.map(|value| value as f32)).map(f64::from) } else { rgb }
     }
 
     /// Face of a pixel; [`OUTSIDE`] beyond the border.

@@ -24,7 +24,9 @@ impl Palette {
         let mut of_region = vec![0; flats.means.len()];
         for region in order {
             let (mean, count) = flats.means[region];
-            let known = colors.iter().position(|(color, _)| distance(*color, mean) <= f64::from(noise.flat));
+            let weighted = |color: Color| core::array::from_fn(|c| color[c] * f64::from(noise.weights()[c]));
+            let is_known = |(color, _): &(Color, f64)| distance(weighted(*color), weighted(mean)) <= f64::from(noise.flat);
+            let known = colors.iter().position(is_known);
             of_region[region] = known.unwrap_or(colors.len());
             match known {
                 None if colors.len() == tuning::MOST_COLORS => return Err(NoPartition::TooManyColors),
