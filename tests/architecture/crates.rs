@@ -1,4 +1,4 @@
-//! Between crates: `core -> backends/*`, `core -> models/trace, models/fit -> models/net -> models/cli -> tests`, a tensor framework in
+//! Between crates: `core -> backends/*`, `core -> models/trace -> models/fit -> models/net -> models/cli -> tests`, a tensor framework in
 //! its own adapter only, and none in what a newcomer builds.
 
 use std::process::Command;
@@ -13,7 +13,7 @@ const PLAN: [(&str, &str, &[&str]); 9] = [
     ("dvp-burn", "backends/burn", &["dvp-core"]),
     ("dvp-candle", "backends/candle", &["dvp-core"]),
     ("dvp-trace", "models/trace", &["dvp-core"]),
-    ("dvp-fit", "models/fit", &["dvp-core"]),
+    ("dvp-fit", "models/fit", &["dvp-core", "dvp-trace"]),
     ("dvp-double", "models/double", &["dvp-core", "dvp-fit"]),
     ("dvp-net", "models/net", &["dvp-core", "dvp-fit"]),
     // The adapters behind features that the default build leaves out, as another test here shows.

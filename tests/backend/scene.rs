@@ -1,6 +1,5 @@
 //! Scenes in one graph: parameters, activations, prototypes, outlines, images, losses; and a fit by Adam.
 
-use dvp::method::cast_scene;
 use dvp_core::diff_op::Atan2;
 use dvp_core::loss::{SceneLoss, SceneLossOp};
 use dvp_core::optim::AdamSettings;
@@ -91,7 +90,7 @@ impl Graph {
         graph.targets = graph.image(&activated, &descriptors)?.to_f64()?;
         let truths = scenes(&activated, &descriptors)?;
         graph.scene_loss = step!(T => {
-            let truths = truths.iter().map(cast_scene).collect();
+            let truths = truths.iter().map(dvp_core::Scene::cast).collect();
             SceneLossOp::new(SceneLoss::<T>::reference(VERTICES, HARMONICS).unwrap(), truths, OBJECTS, HARMONICS)
                 .unwrap()
         });

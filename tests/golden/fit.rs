@@ -5,7 +5,6 @@ use std::path::Path;
 
 use dvp::format::mdshr_bank;
 use dvp::generate::{SceneSettings, sample_scene};
-use dvp::method::cast_scene;
 use dvp::paint::{Painter, RendererName};
 use dvp_core::loss::ImagePair;
 use dvp_core::metric::{Ownership, Scores, Tally, visible_object_count};
@@ -78,7 +77,7 @@ fn own_scenes(count: u64) -> Vec<Case> {
 }
 
 fn truths(shared: &Path, count: usize) -> Vec<Scene<f32>> {
-    fixture::mdshr_val(shared, count).iter().map(cast_scene).collect()
+    fixture::mdshr_val(shared, count).iter().map(dvp_core::Scene::cast).collect()
 }
 
 fn float_cases(shared: &Path) -> Vec<Case> {

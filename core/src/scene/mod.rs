@@ -6,8 +6,11 @@
 //! | `pose_op` | poses as a step of a batch, [`PoseOp`] | same file |
 //! | `edge` | how coverage falls off, [`EdgeProfile`] | |
 //! | `compositing` | how objects mix, [`Compositing`] | same file, [`Compositing::slopes`] |
+//! | `cast` | scenes in another precision, [`Scene::cast`] | |
+//! | `region` | what shapes have in common or not, [`Region`] | |
 //! | `draw` | scene to drawing, [`Scene::draw`] | `draw_vjp`, [`Scene::draw_vjp`] |
 
+mod cast;
 mod compositing;
 mod draw;
 mod draw_vjp;
@@ -15,6 +18,7 @@ mod edge;
 mod pose;
 mod pose_op;
 mod pose_vjp;
+mod region;
 #[cfg(test)]
 mod tests;
 
@@ -28,6 +32,7 @@ pub use edge::{EdgeLaw, EdgeProfile, PixelProfile};
 pub use pose::rotation_from_pair;
 pub use pose_op::PoseOp;
 pub use pose_vjp::{PoseGrad, rotation_from_pair_vjp};
+pub use region::{Placed, Region};
 
 /// Where a unit outline stands: v' = scale R(rotation) v + translation.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -90,3 +90,33 @@ fn shares_of_two_objects() {
     );
     assert_eq!(Compositing::Blend.shares::<f64>(&[], &mut []), 1.0);
 }
+
+#[test]
+fn regions_share_join_and_cut() {
+    use crate::shape::Rectangle;
+    // Squares of side 2 around (0, 0) and (1, 0): 2 x 2 shared, 3 x 2 together, 1 x 2 of the first alone.
+    let square = |x: f64| {
+        let shape = Rectangle { size: [2.0, 2.0], corner_radius: 0.0 }.into();
+        Region::of(&(shape, Pose { translation: [x, 0.0], ..Pose::identity() }), 1e-3).unwrap()
+    };
+    let (first, second) = (square(0.0), square(1.0));
+    let bounds = |region: &Region| region.bounds().map(|b| [b.min.to_array(), b.max.to_array()]);
+    assert_eq!(bounds(&first.intersection(&second).unwrap()), Some([[0.0, -1.0], [1.0, 1.0]]));
+    assert_eq!(bounds(&first.union(&second).unwrap()), Some([[-1.0, -1.0], [2.0, 1.0]]));
+    let left = first.difference(&second).unwrap();
+    assert_eq!(bounds(&left), Some([[-1.0, -1.0], [0.0, 1.0]]));
+    // Its area is 2.
+    assert!(left.to_placed(1.9).unwrap().is_some() && left.to_placed(2.1).unwrap().is_none());
+    assert_eq!(bounds(&first.difference(&first).unwrap()), None);
+    let boxed = |x: f64| square(x).bounds().unwrap();
+    assert!(first.union(&second).unwrap().contains(boxed(0.0)) && !first.contains(boxed(1.0)));
+}
+
+#[test]
+fn casting_there_and_back_rounds_to_the_nearest() {
+    let mut scene = scene();
+    scene.objects[0].pose.translation = [0.1, 0.5];
+    let back = scene.cast::<f32>().cast::<f64>();
+    assert_eq!(back.objects[0].pose.translation, [f64::from(0.1_f32), 0.5]);
+    assert_eq!(scene.cast::<f64>(), scene);
+}

@@ -31,7 +31,6 @@ pub mod format;
 pub mod generate;
 pub mod method;
 pub mod paint;
-mod region;
 pub mod score;
 pub mod solve;
 mod statistics;

@@ -11,6 +11,8 @@
 //! | `split` | samples of a segment that no single shape explains | several shapes of one color and their poses |
 //! | `free` | samples, no bank | elliptic Fourier descriptors, as few as the samples support |
 //! | `fitter` | all of it | a [`Fit`] |
+//! | [`picture`] | a picture of any kind | a [`Fit`]: as a drawing (`dvp-trace`) or as segments |
+//! | [`paint`] | a scene | its image |
 //! | [`prototypes`] | fits without a bank | the few shapes they share, a [`Bank`] |
 //! | [`masks`] | a label map of another program | an outline per label |
 //! | [`refine`] | an image, a start | a [`Fit`] by Levenberg-Marquardt |
@@ -24,7 +26,9 @@ pub mod adam;
 pub mod masks;
 pub mod opt_iter;
 pub mod opt_p;
+pub mod paint;
 pub mod parameters;
+pub mod picture;
 pub mod prototypes;
 pub mod rand_opt_p;
 pub mod refine;

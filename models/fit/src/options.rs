@@ -4,6 +4,7 @@ use alloc::string::String;
 use alloc::vec::Vec;
 
 use dvp_core::image::ImageError;
+use dvp_core::loss::LossError;
 use dvp_core::render::{Compositing, EdgeProfile, RenderError};
 use dvp_core::shape::{Efd, ShapeError};
 use dvp_core::{ImageView, Real};
@@ -93,6 +94,8 @@ pub enum FitError {
     Shape(ShapeError),
     /// A scene on the way could not be rendered.
     Render(RenderError),
+    /// The image of a scene on the way could not be compared with the picture.
+    Compare(LossError),
 }
 
 /// Refuses an image with NaN or infinity: a view may be made of an image that was written to since it was checked.
@@ -114,6 +117,7 @@ impl core::fmt::Display for FitError {
             Self::Setting { what, must } => write!(f, "{what} must be {must}"),
             Self::Shape(error) => write!(f, "{error}"),
             Self::Render(error) => write!(f, "{error}"),
+            Self::Compare(error) => write!(f, "{error}"),
         }
     }
 }
@@ -123,6 +127,7 @@ impl core::error::Error for FitError {
         match self {
             Self::Prototype { source, .. } | Self::Shape(source) => Some(source),
             Self::Render(source) => Some(source),
+            Self::Compare(source) => Some(source),
             _ => None,
         }
     }
@@ -137,5 +142,11 @@ impl From<ShapeError> for FitError {
 impl From<RenderError> for FitError {
     fn from(error: RenderError) -> Self {
         Self::Render(error)
+    }
+}
+
+impl From<LossError> for FitError {
+    fn from(error: LossError) -> Self {
+        Self::Compare(error)
     }
 }

@@ -1,6 +1,5 @@
 //! Cases of each step, away from where it has no derivative.
 
-use dvp::method::cast_scene;
 use dvp_core::diff_op::Atan2;
 use dvp_core::loss::{ImageLossOp, Pyramid, SceneLoss, SceneLossOp, Ssim};
 use dvp_core::render::{Compositing, ContourRenderer, EdgeProfile, ExactRenderer, PixelLoss, RenderLossOp, RenderOp};
@@ -215,7 +214,7 @@ fn scene_loss() -> Cases {
     vec(strategy::scene(1..3, 4..5), batch())
         .prop_flat_map(move |truths| {
             step!(T => {
-                let truths = truths.iter().map(cast_scene).collect();
+                let truths = truths.iter().map(dvp_core::Scene::cast).collect();
                 SceneLossOp::new(SceneLoss::<T>::reference(12, harmonics).unwrap(), truths, 3, harmonics).unwrap()
             })
             .with_inputs(

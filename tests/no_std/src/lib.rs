@@ -15,7 +15,8 @@ use dvp_core::matching::{CostMatrix, Hungarian};
 use dvp_core::render::{ContourRenderer, Renderer};
 use dvp_core::shape::OutlineBasis;
 use dvp_core::{Drawing, Efd, ImageSize, ImageView, Object, Pose, Scene};
-use dvp_fit::{FitOptions, fit_image};
+use dvp_fit::picture::{Known, fit_picture};
+use dvp_fit::{FitOptions, Fitter, fit_image};
 
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
@@ -74,5 +75,13 @@ fn proof() -> Result<(), i32> {
     }
     let view = ImageView::new(size, &image).map_err(|_| 13)?;
     let traced = dvp_trace::trace(&view, &dvp_trace::Known::default()).map_err(|_| 14)?;
-    if traced.scene.objects.len() == 1 { Ok(()) } else { Err(15) }
+    if traced.scene.objects.len() != 1 {
+        return Err(15);
+    }
+
+    // The same picture by the one entry that decides between the two fits; black is nothing, as in a transparent picture.
+    let fitter = Fitter::new(FitOptions::default()).map_err(|_| 16)?;
+    let known = Known { matte: Some([0.0; 3]), coded: false };
+    let fit = fit_picture(&fitter, view, &known, &mut Default::default()).map_err(|_| 17)?;
+    if fit.scene.transparent && fit.scene.objects.len() == 1 { Ok(()) } else { Err(18) }
 }

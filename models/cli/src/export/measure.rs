@@ -11,7 +11,6 @@ use dvp_fit::Bank;
 use super::error::ExportError;
 use super::region::Region;
 use crate::format::to_byte;
-use crate::method::cast_scene;
 use crate::paint::Painter;
 
 /// How far polygons may stray from the curves that they stand for, px.
@@ -102,7 +101,7 @@ pub fn measure(
 ) -> Result<Vec<MeasuredObject>, ExportError> {
     let unit = f64::from(u32::try_from(size.unit_px()).unwrap_or(u32::MAX));
     let seen = seen_areas(scene, size)?;
-    let scene = cast_scene::<f32, f64>(scene);
+    let scene = scene.cast::<f64>();
     let basis = OutlineBasis::new(REFERENCE_VERTICES, scene.harmonic_count().max(1));
     let basis = basis.map_err(|source| ExportError::Shape { object: 1, source })?;
     let mut objects = Vec::with_capacity(scene.objects.len());

@@ -9,7 +9,6 @@
 //! | `labels.rs` | STEM.labels.png | which object each pixel belongs to |
 //! | `npy.rs` | NumPy arrays of float pixels | images |
 //! | `picture.rs` | PNG, JPEG, BMP, GIF, WebP, PNM, TIFF | a [`Picture`] |
-//! | `matte.rs` | the colors and the alpha of a picture | the color that it is put over where it is transparent |
 //! | `png.rs` | an [`Image`](dvp_core::Image) | PNG |
 //! | `atomic.rs` | bytes | a file that is there whole or not at all |
 //!
@@ -20,7 +19,6 @@ mod bank;
 mod data_set;
 mod error;
 mod labels;
-mod matte;
 mod npy;
 mod picture;
 mod png;

@@ -1,7 +1,7 @@
 //! Pictures: files of the usual formats to RGB.
 //!
 //! Values are taken as stored (no gamma, no color profile): 8 bits over 255, 16 bits over 65535. Gray becomes three
-//! equal channels, palettes their colors, transparent pixels are put over a color that the picture does not show (`matte`), the
+//! equal channels, palettes their colors, transparent pixels are put over a color that the picture does not show ([`Ground`]), the
 //! orientation tag of cameras is obeyed, of an animation the first frame is taken.
 
 use std::fs::File;
@@ -10,10 +10,10 @@ use std::path::Path;
 
 use dvp_core::image::{ImageError, RgbaImage};
 use dvp_core::{Image, ImageSize, ImageView, Real};
+use dvp_fit::picture::Ground;
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 
 use super::error::FormatError;
-use super::matte::Ground;
 use super::png::BitDepth;
 
 /// Most pixels of a picture unless the user says otherwise: 2^24, a square of 4096.

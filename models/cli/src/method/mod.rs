@@ -10,7 +10,7 @@
 //! | `refine` | Levenberg-Marquardt from what a network sees |
 //! | `network` | networks, read from a file or built in |
 //! | `perturb` | starts near a truth |
-//! | `precision` | scenes and fits in another precision |
+//! | `precision` | banks and fits in another precision |
 
 mod adam;
 mod network;
@@ -26,7 +26,7 @@ use clap::ValueEnum;
 pub use adam::{descend, opt_p, rand_opt_p, random_start, seed_of};
 pub use network::load as load_network;
 pub use perturb::perturbed;
-pub use precision::{Precision, scene as cast_scene};
+pub use precision::Precision;
 pub use refine::refine;
 pub use runner::{Found, Memory, Runner, Task, Tools, timed};
 

@@ -220,7 +220,7 @@ impl Runner {
             }
             (None, None) => bail!("{name} needs a start, or the truth to make one from"),
         };
-        Ok(precision::scene(&start))
+        Ok(start.cast())
     }
 
     /// With a network.

@@ -7,7 +7,6 @@
 //! |---|---|
 //! | `solver.rs` | [`Solver`]: a method made ready, to be run on many pictures |
 //! | `masks.rs` | [`fit_masks`]: outlines of another program's masks |
-//! | `openings.rs` | what shows nothing in a transparent picture |
 //! | `error.rs` | [`SolveError`] |
 //!
 //! *Units*: scene units, the shorter side of the picture is 1. Proved by `tests/command`, which runs `dvp fit`.
@@ -31,7 +30,6 @@
 
 mod error;
 mod masks;
-mod openings;
 mod solver;
 
 pub use error::SolveError;

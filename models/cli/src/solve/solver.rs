@@ -6,27 +6,17 @@ use std::panic::catch_unwind;
 use std::path::PathBuf;
 
 use clap::ValueEnum;
-use dvp_core::loss::{ImagePair, Loss as _};
-use dvp_core::render::PixelLoss;
-use dvp_core::{Real as _, Scene};
+use dvp_core::Scene;
 use dvp_fit::opt_iter::OptIter;
+use dvp_fit::paint::Canvas;
+use dvp_fit::picture::{Known, PictureScratch, cut_openings, fit_picture};
 use dvp_fit::refine::{Refine, RefineScratch};
-use dvp_fit::{Ambiguity, Bank, Fit, FitOptions, FitScratch, Fitter, StopReason};
+use dvp_fit::{Bank, Fit, FitOptions, Fitter};
 use dvp_net::propose::Proposer;
-use dvp_trace::{Known, PoseDeviation, tuning};
 
 use super::error::SolveError;
-use super::openings;
 use crate::format::{Picture, Place, read_scene};
 use crate::method;
-use crate::paint::{PaintScratch, Painter};
-
-/// Where edges leave a doubt, and in coded pictures if that is the shorter description, segments are taken, whose edges are fitted, unless they miss
-/// the picture by so many times as much: ringing is read as faces, which come nearer to it but are none.
-const CLEARLY_WORSE: f32 = 2.0;
-
-/// The same in coded pictures, which tell nothing of their edges, if the drawing is the shorter description.
-const WORSE: f32 = 1.2;
 
 /// How a scene is found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
@@ -58,7 +48,7 @@ pub enum Start {
 pub struct Solved {
     /// The scene, and what is known of its numbers.
     pub fit: Fit<f32>,
-    /// Processor time of the fit alone, on this thread.
+    /// Processor time of the fit alone, with the cutting of openings, on this thread.
     pub time: Duration,
 }
 
@@ -76,10 +66,15 @@ pub struct Solver {
 /// Memory of one thread, kept from picture to picture.
 #[derive(Debug, Default)]
 pub struct Scratch {
-    fit: FitScratch<f32>,
+    picture: PictureScratch,
     refine: RefineScratch<f32>,
+}
+
+impl Scratch {
     /// To paint what was found.
-    pub paint: PaintScratch<f32>,
+    pub fn canvas(&mut self) -> &mut Canvas<f32> {
+        &mut self.picture.canvas
+    }
 }
 
 impl Solver {
@@ -130,9 +125,7 @@ impl Solver {
             *scratch = Scratch::default();
             return Err(SolveError::Defect);
         };
-        let fit = fit?;
-        let fit = if picture.transparent { openings::cut_out(fit, picture, &mut scratch.paint)? } else { fit };
-        Ok(Solved { fit, time })
+        Ok(Solved { fit: fit?, time })
     }
 
     /// The known shapes.
@@ -149,18 +142,22 @@ impl Solver {
         scratch: &mut Scratch,
     ) -> Result<Fit<f32>, SolveError> {
         let image = picture.image.view();
+        let matte = picture.transparent.then_some(picture.matte);
         let start = match &self.start {
             Start::Network(network) => Some(network.objects(image)?),
             _ => read,
         };
-        match (self.method, start) {
+        let fit = match (self.method, start) {
+            (Method::Segment, None) => {
+                let known = Known { matte, coded: picture.coded };
+                return Ok(fit_picture(&self.fitter, image, &known, &mut scratch.picture)?);
+            }
             (Method::Segment, Some(start)) => {
                 let FitOptions { compositing, max_objects, .. } = self.options;
                 let (compositing, settings) = (compositing.unwrap_or_default(), Refine::default());
                 method::refine(&settings, image, &start, compositing, max_objects, &mut scratch.refine)
                     .map_err(SolveError::Method)
             }
-            (Method::Segment, None) => self.segment(picture, scratch),
             (Method::RandOptP, _) => {
                 let seed = method::seed_of(stem, self.seed);
                 let start = method::random_start(self.bank(), self.object_count, seed);
@@ -172,55 +169,10 @@ impl Solver {
                 method::descend(&Scene::empty([0.0; 3]), |descent| Ok(opt_iter.fit(descent, image)?))
                     .map_err(SolveError::Method)
             }
+        }?;
+        match matte {
+            Some(matte) => Ok(cut_openings(fit, image, matte, scratch.canvas())?),
+            None => Ok(fit),
         }
     }
-
-    /// The picture as a drawing, if it is one: flat colors with clear edges, and nothing known of its objects beforehand. Else, and where edges
-    /// leave a doubt and it is nearer to the picture, as segments.
-    fn segment(&self, picture: &Picture<f32>, scratch: &mut Scratch) -> Result<Fit<f32>, SolveError> {
-        let image = picture.image.view();
-        let is_known = self.options.bank.is_some() || self.options.compositing.is_some();
-        let known = Known { matte: picture.transparent.then_some(picture.matte), coded: picture.coded };
-        let traced = if is_known { None } else { dvp_trace::trace(&image, &known).ok() };
-        let Some(traced) = traced else { return Ok(self.fitter.fit(image, &mut scratch.fit)?) };
-        let painter = Painter::default();
-        let drawing = painter.draw(&traced.scene, image.size())?;
-        let painted = painter.paint_in(&traced.scene, image.size(), &mut scratch.paint)?;
-        let loss = PixelLoss::Mae.value(ImagePair::new(painted.view(), image)?, &mut ())?;
-        let fit = Fit::of_painted(traced.scene, &drawing, &image, painted.data());
-        let (covariance, ambiguity) = doubt_of_poses(&traced.deviations);
-        let drawn = Fit { loss, bits: traced.bits, stop: StopReason::Converged, covariance, ambiguity, ..fit };
-        // Stains of either sign: blur and profiles of their own leave too much of the other side beyond edges, filters that sharpen too little.
-        let is_doubtful = traced.stained.abs() > tuning::DOUBTFUL_STAINED;
-        if !is_doubtful {
-            return Ok(drawn);
-        }
-        let segments = self.fitter.fit(image, &mut scratch.fit)?;
-        let worse = if is_doubtful || segments.bits < drawn.bits { CLEARLY_WORSE } else { WORSE };
-        Ok(if segments.loss < worse * drawn.loss { segments } else { drawn })
-    }
-}
-
-/// What is known of poses as a fit says it: covariances of (x, y, log scale, rotation), NaN where nothing is known, and which objects
-/// look alike at every angle.
-fn doubt_of_poses(deviations: &[Option<PoseDeviation>]) -> (Vec<[f32; 16]>, Vec<Ambiguity>) {
-    if deviations.iter().all(Option::is_none) {
-        return (Vec::new(), Vec::new());
-    }
-    let mut ambiguity = Vec::new();
-    let covariance = deviations.iter().enumerate().map(|(object, deviation)| {
-        let Some(PoseDeviation { translation: [x, y], log_scale, rotation }) = *deviation else {
-            return [f32::NAN; 16];
-        };
-        if rotation.is_none() {
-            ambiguity.push(Ambiguity::Symmetry { object, order: 0 });
-        }
-        let mut covariance = [0.0_f32; 16];
-        for (at, deviation) in [x, y, log_scale, rotation.unwrap_or(0.0)].into_iter().enumerate() {
-            covariance[5 * at] = f32::of(deviation * deviation);
-        }
-        covariance
-    });
-    let covariance = covariance.collect();
-    (covariance, ambiguity)
 }

@@ -109,6 +109,12 @@ pub fn fit_image<T: Real>(image: ImageView<'_, T>, options: &FitOptions<T>) -> R
 }
 
 impl<T: Real> Fitter<T> {
+    /// The settings.
+    #[must_use]
+    pub fn options(&self) -> &FitOptions<T> {
+        &self.options
+    }
+
     /// Prepares the shapes of the bank.
     ///
     /// # Errors

@@ -15,7 +15,7 @@ use dvp_core::{Drawing, DrawingGrad, Image, Real, Scene, SceneGrad};
 
 use super::dense;
 use crate::command::pictures::Picture;
-use crate::method::{Precision, cast_scene};
+use crate::method::Precision;
 use crate::statistics::{Quartiles, mean};
 
 /// Vertices and harmonics of the image that others are held against.
@@ -183,7 +183,7 @@ impl<T: Real, R: Renderer<T>> Tiles<T, R> {
 
     /// The scene with as many harmonics as there are.
     fn scene(&self, picture: &Picture) -> Scene<T> {
-        let mut scene = cast_scene(&picture.truth);
+        let mut scene = picture.truth.cast();
         for object in &mut scene.objects {
             if let Some(efd) = object.shape.efd_mut() {
                 *efd = efd.resized(self.basis.harmonic_count());

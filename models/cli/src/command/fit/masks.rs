@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail};
+use dvp_fit::paint::Canvas;
 
 use super::exports::Measurable;
 use super::inputs::{self, Input};
@@ -10,7 +11,6 @@ use super::report::{FoundScene, Report};
 use super::{Arguments, finish, refuse_overwriting, report_of};
 use crate::format::{read_labels, read_picture, read_picture_rgba};
 use crate::method::timed;
-use crate::paint::PaintScratch;
 use crate::solve::{MaskFit, fit_masks};
 
 /// A label map, and the picture that its objects have their colors from.
@@ -33,16 +33,16 @@ pub(super) fn fit_all(arguments: &Arguments, masks: &Path) -> Result<(Vec<Report
     let pictures = found.iter().filter_map(|masks| masks.picture.as_ref());
     refuse_overwriting(arguments, found.iter().map(|masks| &masks.input), pictures)?;
     let name = |masks: &MaskInput| masks.input.name();
-    let one = |scratch: &mut PaintScratch<f32>, _: usize, masks: &MaskInput| {
-        report_of(&masks.input, masks.picture_name(), try_fit(arguments, masks, scratch))
+    let one = |canvas: &mut Canvas<f32>, _: usize, masks: &MaskInput| {
+        report_of(&masks.input, masks.picture_name(), try_fit(arguments, masks, canvas))
     };
     Ok((arguments.batch.each(&found, name, one)?, failures))
 }
 
-fn try_fit(arguments: &Arguments, masks: &MaskInput, scratch: &mut PaintScratch<f32>) -> Result<FoundScene> {
+fn try_fit(arguments: &Arguments, masks: &MaskInput, canvas: &mut Canvas<f32>) -> Result<FoundScene> {
     let (MaskFit { fit, picture, labels }, time) = timed(|| fit(arguments, masks))?;
     let scene = Measurable::of_labels(&fit, picture.image.size(), &labels);
-    finish(arguments, [&*masks.picture_name(), &masks.input.stem], &picture, &scene, time, scratch)
+    finish(arguments, [&*masks.picture_name(), &masks.input.stem], &picture, &scene, time, canvas)
 }
 
 /// The label maps that `masks` names, with their pictures among `pictures`: with the only one if there is one label map, else

@@ -12,6 +12,7 @@ use anyhow::{Context, Result, bail};
 use clap::Args;
 use dvp_core::render::Compositing;
 use dvp_fit::FitOptions;
+use dvp_fit::paint::Canvas;
 
 use self::exports::{ExportArguments, Measurable, PictureFile};
 use self::inputs::Input;
@@ -22,7 +23,6 @@ use crate::format::{
     Picture, Place, SceneJson, encode_png, encode_png_rgba, labels_beside, read_npy, read_picture, write_atomic,
 };
 use crate::method::load_network;
-use crate::paint::{PaintScratch, Painter};
 use crate::solve::{Method, Scratch, Solved, Solver, Start};
 use crate::svg::to_svg_numbered;
 
@@ -238,7 +238,7 @@ fn try_fit(
     };
     let Solved { fit, time } = solver.solve(picture, &input.stem, scratch)?;
     let scene = Measurable::new(&fit, solver.bank(), picture.image.size());
-    finish(arguments, [&*input.name(), &input.stem], picture, &scene, time, &mut scratch.paint)
+    finish(arguments, [&*input.name(), &input.stem], picture, &scene, time, scratch.canvas())
 }
 
 /// Writes what is asked for of a scene, and says what it is. It has two names: that of its picture and the stem of its files.
@@ -248,12 +248,12 @@ fn finish(
     picture: &Picture<f32>,
     scene: &Measurable<'_>,
     time: Duration,
-    scratch: &mut PaintScratch<f32>,
+    canvas: &mut Canvas<f32>,
 ) -> Result<FoundScene> {
     let target = |ending: &str| arguments.target(names[1], ending);
     let mut found = FoundScene::new(scene.fit, picture, time.as_secs_f64() * 1e3);
     // Nothing is written unless all can be.
-    let mut files = encode_results(arguments, scene, picture, &target("json"), scratch)?;
+    let mut files = encode_results(arguments, scene, picture, &target("json"), canvas)?;
     found.measured = arguments.exports.of_picture(scene, names, &mut files)?;
     for (ending, bytes) in files {
         write_atomic(&target(ending), &bytes)?;
@@ -271,7 +271,7 @@ fn encode_results(
     scene: &Measurable<'_>,
     picture: &Picture<f32>,
     json: &Path,
-    scratch: &mut PaintScratch<f32>,
+    canvas: &mut Canvas<f32>,
 ) -> Result<Vec<PictureFile>> {
     let &Measurable { fit, bank, size, .. } = scene;
     let line = SceneJson::from_fit(fit, picture)?.to_line(&Place::file(json))? + "\n";
@@ -280,11 +280,10 @@ fn encode_results(
         files.push(("svg", to_svg_numbered(&fit.scene, size, bank, &scene.numbers())?.into_bytes()));
     }
     if !arguments.no_png {
-        let painter = Painter::default();
         let bytes = if fit.scene.transparent {
-            encode_png_rgba(&painter.paint_rgba(&fit.scene, size)?, picture.bits)?
+            encode_png_rgba(&canvas.paint_rgba(&fit.scene, size)?, picture.bits)?
         } else {
-            encode_png(painter.paint_in(&fit.scene, size, scratch)?.view(), picture.bits)?
+            encode_png(canvas.paint(&fit.scene, size)?.0.view(), picture.bits)?
         };
         files.push(("png", bytes));
     }

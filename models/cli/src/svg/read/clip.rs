@@ -3,14 +3,17 @@
 use alloc::rc::Rc;
 
 use dvp_core::Pose;
-use dvp_core::shape::Polygon;
+use dvp_core::scene::Region;
+use dvp_core::shape::{Polygon, ShapeError};
 use kurbo::{Affine, Point};
 use usvg::{ClipPath, Group, Mask, MaskType, Node};
 
 use super::error::SvgError;
 use super::place::{Placed, array};
 use super::walk::{Layer, Walk, affine_of};
-use crate::region::Region;
+
+/// Rings with less area than this, squared pixels, are left out: what rounding leaves where edges coincide.
+const LEAST_AREA_PX: f64 = 1e-6;
 
 /// Masks of less than this share hide, those of more than its complement show.
 const CLEAR: f64 = 2e-3;
@@ -154,4 +157,19 @@ fn common(outer: Option<&Region>, own: Region) -> Result<Region, SvgError> {
         None => Ok(own),
         Some(outer) => Ok(outer.intersection(&own)?),
     }
+}
+
+/// A shape inside of a region, with whether it was cut; none if nothing is left. `px` scene units per pixel.
+pub(super) fn cut(
+    placed: Placed,
+    region: &Rc<Region>,
+    tolerance: f64,
+    px: f64,
+) -> Result<Option<(Placed, bool)>, ShapeError> {
+    let own = Region::of(&placed, tolerance)?;
+    let Some(bounds) = own.bounds() else { return Ok(None) };
+    if region.contains(bounds) {
+        return Ok(Some((placed, false)));
+    }
+    Ok(own.intersection(region)?.to_placed(LEAST_AREA_PX * px * px)?.map(|placed| (placed, true)))
 }

@@ -16,7 +16,7 @@ const EQUAL: f64 = 1e-5;
 const REGULAR_PX: f64 = 2e-3;
 
 /// A shape and where it stands.
-pub(super) use crate::region::Placed;
+pub(super) use dvp_core::scene::Placed;
 
 /// A transform to scene units, and what it keeps.
 #[derive(Clone, Copy, Debug)]

@@ -3,12 +3,14 @@
 use alloc::rc::Rc;
 use std::collections::HashMap;
 
+use dvp_core::scene::Region;
 use dvp_core::shape::{FillRule, ShapeError};
 use dvp_core::{Object, Paint};
 use kurbo::Affine;
 use usvg::roxmltree::{Document, Node as Element};
 use usvg::{BlendMode, Group, Node, PaintOrder, Rect, Transform};
 
+use super::clip::cut;
 use super::error::SvgError;
 use super::figure::Figure;
 use super::forms::Forms;
@@ -17,7 +19,6 @@ use super::paint::{FlatPaint, flat};
 use super::place::{Frame, Placed};
 use super::source::by_id;
 use super::stroke;
-use crate::region::{Region, cut};
 
 /// Most lines and curves.
 const MOST_SEGMENTS: usize = 1 << 18;

@@ -3,29 +3,46 @@
 //! Rings of a region turn so that their windings add up to 1 inside and 0 outside. What two regions have in common is where the
 //! windings of both, less those of their union, do not cancel.
 
-use alloc::rc::Rc;
+use alloc::vec::Vec;
 
-use dvp_core::geometry::{Bounds, Vec2};
-use dvp_core::shape::{
+use super::Pose;
+use crate::contour;
+use crate::geometry::{Bounds, Vec2};
+use crate::shape::{
     AnyShape, Efd, FillRule, Flattening, Outline, OutlineBasis, Polygon, REFERENCE_VERTICES, Shape as _, ShapeError,
 };
-use dvp_core::{Pose, contour};
-
-/// Rings with less area than this, squared pixels, are left out: what rounding leaves where edges coincide.
-const LEAST_AREA_PX: f64 = 1e-6;
 
 /// A shape, and where it stands in scene units.
-pub(crate) type Placed = (AnyShape<f64>, Pose<f64>);
+pub type Placed = (AnyShape<f64>, Pose<f64>);
 
-/// A part of the plane, scene units.
+/// A part of the plane, scene units; the default is empty.
+///
+/// # Examples
+/// ```
+/// use dvp_core::Pose;
+/// use dvp_core::scene::Region;
+/// use dvp_core::shape::Rectangle;
+/// let square = |x: f64| {
+///     let shape = Rectangle { size: [2.0, 2.0], corner_radius: 0.0 }.into();
+///     Region::of(&(shape, Pose { translation: [x, 0.0], ..Pose::identity() }), 1e-3)
+/// };
+/// // Two squares of side 2, one apart: they share half of each.
+/// let shared = square(0.0)?.intersection(&square(1.0)?)?;
+/// let bounds = shared.bounds().map(|bounds| (bounds.min.to_array(), bounds.max.to_array()));
+/// assert_eq!(bounds, Some(([0.0, -1.0], [1.0, 1.0])));
+/// # Ok::<(), dvp_core::shape::ShapeError>(())
+/// ```
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Region {
+pub struct Region {
     outline: Outline<f64>,
 }
 
 impl Region {
-    /// What a shape covers; `tolerance` for its curves, scene units.
-    pub(crate) fn of((shape, pose): &Placed, tolerance: f64) -> Result<Self, ShapeError> {
+    /// What a shape covers, as polygons at most `tolerance` from its curves, scene units.
+    ///
+    /// # Errors
+    /// [`ShapeError`] if the numbers of the shape describe none, [`ShapeError::TooLarge`] if the size overflows.
+    pub fn of((shape, pose): &Placed, tolerance: f64) -> Result<Self, ShapeError> {
         let mut outline = Outline::default();
         let basis = OutlineBasis::new(REFERENCE_VERTICES, shape.efd().map_or(1, Efd::harmonic_count))?;
         shape.flatten(&Flattening::new(&basis, tolerance), &mut outline)?;
@@ -33,20 +50,35 @@ impl Region {
         Ok(Self { outline: outline.rings().resolved(FillRule::EvenOdd)? })
     }
 
-    pub(crate) fn union(&self, other: &Self) -> Result<Self, ShapeError> {
+    /// What is in this one, in the other, or in both.
+    ///
+    /// # Errors
+    /// [`ShapeError::NotFinite`], [`ShapeError::TooLarge`] if the size overflows.
+    pub fn union(&self, other: &Self) -> Result<Self, ShapeError> {
         sum(&[(self, false), (other, false)])
     }
 
-    pub(crate) fn intersection(&self, other: &Self) -> Result<Self, ShapeError> {
+    /// What is in both.
+    ///
+    /// # Errors
+    /// [`ShapeError::NotFinite`], [`ShapeError::TooLarge`] if the size overflows.
+    pub fn intersection(&self, other: &Self) -> Result<Self, ShapeError> {
         sum(&[(self, false), (other, false), (&self.union(other)?, true)])
     }
 
-    pub(crate) fn difference(&self, other: &Self) -> Result<Self, ShapeError> {
+    /// What is in this one and not in the other.
+    ///
+    /// # Errors
+    /// [`ShapeError::NotFinite`], [`ShapeError::TooLarge`] if the size overflows.
+    pub fn difference(&self, other: &Self) -> Result<Self, ShapeError> {
         sum(&[(&self.union(other)?, false), (other, true)])
     }
 
     /// The polygon of the rings with more area than `least`, scene units squared; none if there are none.
-    pub(crate) fn to_placed(&self, least: f64) -> Result<Option<Placed>, ShapeError> {
+    ///
+    /// # Errors
+    /// [`ShapeError`] if the rings are no polygon.
+    pub fn to_placed(&self, least: f64) -> Result<Option<Placed>, ShapeError> {
         let rings = self.outline.rings().iter().map(<[[f64; 2]]>::to_vec);
         let rings: Vec<_> = rings.filter(|ring| contour::signed_area(ring).abs() > least).collect();
         if rings.is_empty() {
@@ -55,13 +87,15 @@ impl Region {
         Ok(Some((AnyShape::from(Polygon::new(rings)?), Pose::identity())))
     }
 
-    /// The smallest upright box around it; none if it is empty.
-    pub(crate) fn bounds(&self) -> Option<Bounds<f64>> {
+    /// The smallest upright box around it, scene units; none if it is empty.
+    #[must_use]
+    pub fn bounds(&self) -> Option<Bounds<f64>> {
         Bounds::of(self.outline.vertices.iter().copied().map(Vec2::from))
     }
 
     /// Whether the whole box is inside, its border included.
-    fn contains(&self, bounds: Bounds<f64>) -> bool {
+    #[must_use]
+    pub fn contains(&self, bounds: Bounds<f64>) -> bool {
         let rings = self.outline.rings();
         let center = bounds.center().to_array();
         let is_inside = rings.iter().filter(|ring| contour::contains(ring, center)).count() % 2 == 1;
@@ -102,19 +136,4 @@ fn sum(parts: &[(&Region, bool)]) -> Result<Region, ShapeError> {
         }
     }
     Ok(Region { outline: all.rings().resolved(FillRule::NonZero)? })
-}
-
-/// A shape inside of a region, with whether it was cut; none if nothing is left. `px` scene units per pixel.
-pub(crate) fn cut(
-    placed: Placed,
-    region: &Rc<Region>,
-    tolerance: f64,
-    px: f64,
-) -> Result<Option<(Placed, bool)>, ShapeError> {
-    let own = Region::of(&placed, tolerance)?;
-    let Some(bounds) = own.bounds() else { return Ok(None) };
-    if region.contains(bounds) {
-        return Ok(Some((placed, false)));
-    }
-    Ok(own.intersection(region)?.to_placed(LEAST_AREA_PX * px * px)?.map(|placed| (placed, true)))
 }

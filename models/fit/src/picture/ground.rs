@@ -3,12 +3,14 @@
 //! A fit sees colors, not alpha. Over a color that the picture does not show itself, everything visible stands out, and soft edges
 //! are right: over one color, a pixel changes with alpha as it changes with coverage.
 
+use alloc::vec::Vec;
+
 /// Levels of a channel of the colors that are considered.
 const LEVELS: [f64; 3] = [1.0, 0.0, 0.5];
 
 /// What the alpha of a picture lets through.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Ground {
+pub enum Ground {
     /// Nothing: every pixel is opaque.
     Opaque,
     /// Pixels are put over this color.
@@ -18,10 +20,10 @@ pub(super) enum Ground {
 }
 
 impl Ground {
-    /// Of pixels (red, green, blue, alpha), [0, 1]: the color with levels of 0, 1/2 or 1 that is farthest from the nearest of
+    /// Of pixels (red, green, blue, alpha), colors not multiplied by alpha, [0, 1]: the color with levels of 0, 1/2 or 1 that is farthest from the nearest of
     /// theirs. Pixels less than half as opaque as the most opaque ones have no say: few steps of color are left of them, and
     /// some programs leave none.
-    pub(super) fn of(pixels: impl Iterator<Item = [f64; 4]> + Clone) -> Self {
+    pub fn of(pixels: impl Iterator<Item = [f64; 4]> + Clone) -> Self {
         let alphas = pixels.clone().map(|[.., alpha]| alpha);
         let (least, most) = alphas.fold((1.0_f64, 0.0_f64), |(least, most), a| (least.min(a), most.max(a)));
         if least >= 1.0 {
@@ -51,8 +53,9 @@ impl Ground {
         Self::Matte(farthest.map_or([1.0; 3], |(color, _)| color))
     }
 
-    /// The color of a pixel over it.
-    pub(super) fn under(self, [red, green, blue, alpha]: [f64; 4]) -> [f64; 3] {
+    /// The color of a pixel (red, green, blue, alpha) over it; white where nothing is visible.
+    #[must_use]
+    pub fn under(self, [red, green, blue, alpha]: [f64; 4]) -> [f64; 3] {
         let matte = match self {
             Self::Opaque => return [red, green, blue],
             Self::Matte(matte) => matte,

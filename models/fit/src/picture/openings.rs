@@ -4,17 +4,16 @@
 //! opening, and cut out of what is painted before it. Where the fit has taken another color for the background, that is an
 //! object as large as the picture.
 
+use alloc::vec::Vec;
+
 use dvp_core::loss::{ImagePair, Loss as _};
 use dvp_core::render::PixelLoss;
+use dvp_core::scene::Region;
 use dvp_core::shape::{Rectangle, ShapeError};
-use dvp_core::{ImageSize, Object, Pose, Real as _, Scene};
-use dvp_fit::Fit;
+use dvp_core::{ImageSize, ImageView, Object, Pose, Real as _, Scene};
 
-use super::error::SolveError;
-use crate::format::Picture;
-use crate::method::cast_scene;
-use crate::paint::{PaintScratch, Painter};
-use crate::region::Region;
+use crate::paint::Canvas;
+use crate::{Fit, FitError};
 
 /// Colors that differ from the matte by less than this in every channel are the matte: it is chosen to be much farther from the
 /// colors of the picture, and fits find flat colors to a hundredth.
@@ -24,35 +23,36 @@ const TOLERANCE_PX: f64 = 1.0 / 128.0;
 /// What rounding leaves where edges coincide has less area, square pixels.
 const LEAST_AREA_PX: f64 = 1e-2;
 
-/// The fit of a transparent picture, without objects that show nothing.
+/// The fit of a transparent picture, without objects that show nothing; its scene is transparent.
 ///
-/// Where something is cut, what the fit knows of the numbers of its objects is lost: they are others.
-pub(super) fn cut_out(
+/// `image` is the picture over `matte`, RGB, [0, 1]. Where something is cut, what the fit knows of the numbers of its objects is
+/// lost: they are others.
+///
+/// # Errors
+/// [`FitError`] if what is left could not be drawn.
+pub fn cut_openings(
     mut fit: Fit<f32>,
-    picture: &Picture<f32>,
-    scratch: &mut PaintScratch<f32>,
-) -> Result<Fit<f32>, SolveError> {
-    let is_matte =
-        |color: [f32; 3]| color.iter().zip(picture.matte).all(|(a, b)| f64::from((a - b).abs()) < SAME_COLOR);
+    image: ImageView<'_, f32>,
+    matte: [f32; 3],
+    canvas: &mut Canvas<f32>,
+) -> Result<Fit<f32>, FitError> {
+    let is_matte = |color: [f32; 3]| color.iter().zip(matte).all(|(a, b)| f64::from((a - b).abs()) < SAME_COLOR);
     let scene = &fit.scene;
     if is_matte(scene.background) && !scene.objects.iter().any(|object| is_matte(object.color())) {
         fit.scene.transparent = true;
         return Ok(fit);
     }
-    let size = picture.image.size();
-    let mut whole = cast_scene::<f32, f64>(scene);
+    let size = image.size();
+    let mut whole = scene.cast::<f64>();
     if !is_matte(scene.background) {
         whole.objects.insert(0, sheet(whole.background, size));
     }
-    whole.background = picture.matte.map(f64::from);
+    whole.background = matte.map(f64::from);
     whole.objects = without_openings(whole.objects, size, |object| is_matte(object.color().map(f32::of)))?;
-    let scene: Scene<f32> = cast_scene(&whole);
-    let painter = Painter::default();
-    let drawing = painter.draw(&scene, size)?;
-    let painted = painter.paint_in(&scene, size, scratch)?;
-    let image = &picture.image;
-    let loss = PixelLoss::Mae.value(ImagePair::new(painted.view(), image.view())?, &mut ())?;
-    let cut = Fit::of_painted(scene, &drawing, &image.view(), painted.data());
+    let scene: Scene<f32> = whole.cast();
+    let (painted, drawing) = canvas.paint(&scene, size)?;
+    let loss = PixelLoss::Mae.value(ImagePair::new(painted.view(), image)?, &mut ())?;
+    let cut = Fit::of_painted(scene, &drawing, &image, painted.data());
     let mut cut = Fit { loss, stop: fit.stop, steps: fit.steps, noise: fit.noise, ..cut };
     cut.scene.transparent = true;
     Ok(cut)

@@ -1,0 +1,135 @@
+//! A picture to its scene, whatever kind of picture it is: the one entry for programs that embed the fit.
+//!
+//! Two fits share the work. [`dvp_trace`] reads drawings: flat colors with clear edges. [`Fitter`] reads everything else: soft,
+//! noisy and coded pictures, and those whose shapes are known. [`fit_picture`] decides which one a picture takes, and cuts the
+//! openings out of transparent ones.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `mod` | [`fit_picture`]: the decision between the two fits |
+//! | `ground` | [`Ground`]: the color that transparent pictures are put over |
+//! | `openings` | [`cut_openings`]: what shows nothing in a transparent picture |
+//!
+//! *Units*: scene units, the shorter side of the picture is 1. Works in f32, as images come. Proved by the tests beside it, and by
+//! those of the command, which calls it.
+
+mod ground;
+mod openings;
+#[cfg(test)]
+mod tests;
+
+use alloc::vec::Vec;
+
+use dvp_core::loss::{ImagePair, Loss as _};
+use dvp_core::render::PixelLoss;
+use dvp_core::{ImageView, Real as _};
+use dvp_trace::{PoseDeviation, tuning};
+
+use crate::paint::Canvas;
+use crate::{Ambiguity, Fit, FitError, FitScratch, Fitter, StopReason};
+
+pub use dvp_trace::Known;
+pub use ground::Ground;
+pub use openings::cut_openings;
+
+/// Where edges leave a doubt, segments are taken, whose edges are fitted, unless they miss the picture by so many times as much:
+/// ringing is read as faces, which come nearer to it but are none.
+const CLEARLY_WORSE: f32 = 2.0;
+
+/// Memory of [`fit_picture`], one per thread, kept between pictures.
+#[derive(Debug, Default)]
+pub struct PictureScratch {
+    /// That of the fitter.
+    pub fit: FitScratch<f32>,
+    /// What scenes are painted on, to be compared with the picture.
+    pub canvas: Canvas<f32>,
+}
+
+/// The scene of a picture, with the openings of a transparent one cut out.
+///
+/// The picture is taken as a drawing if it is one (flat colors with clear edges) and the options of `fitter` know nothing of its
+/// objects beforehand: neither a bank nor how they mix. Else, and where edges leave a doubt and it is nearer to the picture, as
+/// segments.
+///
+/// A transparent picture comes over its matte ([`Ground`]), and [`Known::matte`] says which color that is; of an opaque one it
+/// is none.
+///
+/// # Errors
+/// [`FitError`] if a pixel is not finite or a scene on the way could not be drawn.
+///
+/// # Examples
+/// ```
+/// use dvp_core::{Image, ImageSize};
+/// use dvp_fit::picture::{Known, PictureScratch, fit_picture};
+/// use dvp_fit::{FitOptions, Fitter};
+/// // A dark square on white.
+/// let size = ImageSize::new(32, 32)?;
+/// let dark = |i: usize| (8..24).contains(&(i % 32)) && (8..24).contains(&(i / 32));
+/// let pixels: Vec<f32> = (0..size.pixels()).flat_map(|i| [if dark(i) { 0.1 } else { 1.0 }; 3]).collect();
+/// let image = Image::from_interleaved(size, &pixels)?;
+/// let fitter = Fitter::new(FitOptions::default())?;
+/// let fit = fit_picture(&fitter, image.view(), &Known::default(), &mut PictureScratch::default())?;
+/// assert_eq!(fit.scene.objects.len(), 1);
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
+pub fn fit_picture(
+    fitter: &Fitter<f32>,
+    image: ImageView<'_, f32>,
+    known: &Known,
+    scratch: &mut PictureScratch,
+) -> Result<Fit<f32>, FitError> {
+    let fit = drawing_or_segments(fitter, image, known, scratch)?;
+    match known.matte {
+        Some(matte) => cut_openings(fit, image, matte, &mut scratch.canvas),
+        None => Ok(fit),
+    }
+}
+
+/// The nearer of the two fits, openings and all.
+fn drawing_or_segments(
+    fitter: &Fitter<f32>,
+    image: ImageView<'_, f32>,
+    known: &Known,
+    scratch: &mut PictureScratch,
+) -> Result<Fit<f32>, FitError> {
+    let options = fitter.options();
+    let is_known = options.bank.is_some() || options.compositing.is_some();
+    let traced = if is_known { None } else { dvp_trace::trace(&image, known).ok() };
+    let Some(traced) = traced else { return fitter.fit(image, &mut scratch.fit) };
+    let (painted, drawing) = scratch.canvas.paint(&traced.scene, image.size())?;
+    let loss = PixelLoss::Mae.value(ImagePair::new(painted.view(), image)?, &mut ())?;
+    let fit = Fit::of_painted(traced.scene, &drawing, &image, painted.data());
+    let (covariance, ambiguity) = doubt_of_poses(&traced.deviations);
+    let drawn = Fit { loss, bits: traced.bits, stop: StopReason::Converged, covariance, ambiguity, ..fit };
+    // Stains of either sign: blur and profiles of their own leave too much of the other side beyond edges, filters that sharpen too little.
+    let is_doubtful = traced.stained.abs() > tuning::DOUBTFUL_STAINED;
+    if !is_doubtful {
+        return Ok(drawn);
+    }
+    let segments = fitter.fit(image, &mut scratch.fit)?;
+    Ok(if segments.loss < CLEARLY_WORSE * drawn.loss { segments } else { drawn })
+}
+
+/// What is known of poses as a fit says it: covariances of (x, y, log scale, rotation), NaN where nothing is known, and which objects
+/// look alike at every angle.
+fn doubt_of_poses(deviations: &[Option<PoseDeviation>]) -> (Vec<[f32; 16]>, Vec<Ambiguity>) {
+    if deviations.iter().all(Option::is_none) {
+        return (Vec::new(), Vec::new());
+    }
+    let mut ambiguity = Vec::new();
+    let covariance = deviations.iter().enumerate().map(|(object, deviation)| {
+        let Some(PoseDeviation { translation: [x, y], log_scale, rotation }) = *deviation else {
+            return [f32::NAN; 16];
+        };
+        if rotation.is_none() {
+            ambiguity.push(Ambiguity::Symmetry { object, order: 0 });
+        }
+        let mut covariance = [0.0_f32; 16];
+        for (at, deviation) in [x, y, log_scale, rotation.unwrap_or(0.0)].into_iter().enumerate() {
+            covariance[5 * at] = f32::of(deviation * deviation);
+        }
+        covariance
+    });
+    let covariance = covariance.collect();
+    (covariance, ambiguity)
+}

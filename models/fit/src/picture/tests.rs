@@ -1,0 +1,95 @@
+//! The decision between the two fits, and openings: on pictures whose scenes are known.
+
+#![expect(clippy::float_cmp, reason = "colors exact by construction")]
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use dvp_core::render::Compositing;
+use dvp_core::{Efd, Image, ImageSize, Object, Pose, Scene};
+
+use super::*;
+use crate::FitOptions;
+
+const SIDE: usize = 48;
+
+/// A picture of 48 x 48 pixels whose color at (column, row) is said.
+fn picture(color: impl Fn(usize, usize) -> [f32; 3]) -> Image<f32> {
+    let size = ImageSize::new(SIDE, SIDE).unwrap();
+    let pixels: Vec<f32> = (0..size.pixels()).flat_map(|i| color(i % SIDE, i / SIDE)).collect();
+    Image::from_interleaved(size, &pixels).unwrap()
+}
+
+fn fit(image: &Image<f32>, known: &Known, options: FitOptions<f32>) -> Fit<f32> {
+    let fitter = Fitter::new(options).unwrap();
+    fit_picture(&fitter, image.view(), known, &mut PictureScratch::default()).unwrap()
+}
+
+fn in_square(least: usize, most: usize) -> impl Fn(usize, usize) -> bool {
+    move |column, row| [column, row].iter().all(|at| (least..most).contains(at))
+}
+
+#[test]
+fn clear_edges_make_a_drawing_and_what_is_known_beforehand_segments() {
+    let square = in_square(12, 36);
+    let image = picture(|column, row| if square(column, row) { [0.1, 0.2, 0.6] } else { [1.0; 3] });
+    let drawn = fit(&image, &Known::default(), FitOptions::default());
+    // A drawing says what an object is: a rectangle of 24 x 24 pixels, not descriptors.
+    let [object] = &drawn.scene.objects[..] else { panic!("{:?}", drawn.scene) };
+    assert!(object.shape.efd().is_none(), "{object:?}");
+    assert!(drawn.loss < 1e-5, "{}", drawn.loss);
+    let options = FitOptions { compositing: Some(Compositing::Over), ..FitOptions::default() };
+    let known = fit(&image, &Known::default(), options.clone());
+    let segments = Fitter::new(options).unwrap().fit(image.view(), &mut FitScratch::default()).unwrap();
+    assert_eq!(known.scene, segments.scene);
+}
+
+#[test]
+fn soft_edges_make_segments() {
+    // Edges as soft as the reference paints them.
+    let pose = Pose { translation: [0.45, 0.5], scale: 0.3, rotation: 0.2 };
+    let ellipse = Efd::new(vec![[1.0, 0.0, 0.0, -0.6]]);
+    let mut scene = Scene::empty([0.9, 0.9, 0.8]);
+    scene.objects.push(Object::of_efd(pose, [0.1, 0.4, 0.2], 1.0, ellipse, None));
+    let mut canvas = Canvas::default();
+    let image = canvas.paint(&scene, ImageSize::new(SIDE, SIDE).unwrap()).unwrap().0;
+    assert!(dvp_trace::trace(&image.view(), &Known::default()).is_err());
+    let soft = fit(image, &Known::default(), FitOptions::default());
+    let segments = crate::fit_image(image.view(), &FitOptions::default()).unwrap();
+    assert_eq!(soft.scene, segments.scene);
+}
+
+#[test]
+fn what_shows_the_matte_is_an_opening() {
+    // A frame, 8 pixels wide, on nothing; the matte is magenta.
+    let matte = [1.0, 0.0, 1.0];
+    let (outer, inner) = (in_square(8, 40), in_square(16, 32));
+    let image = picture(|column, row| if outer(column, row) && !inner(column, row) { [0.0, 0.4, 0.2] } else { matte });
+    let known = Known { matte: Some(matte), coded: false };
+    let frame = fit(&image, &known, FitOptions::default());
+    assert!(frame.scene.transparent);
+    let is_matte = |object: &Object<f32>| object.color()[0] > 0.5;
+    assert!(!frame.scene.objects.iter().any(is_matte), "{:?}", frame.scene);
+    let rgba = Canvas::default().paint_rgba(&frame.scene, image.size()).unwrap();
+    let alpha = |column: usize, row: usize| rgba.data()[3 * SIDE * SIDE + row * SIDE + column];
+    assert!(alpha(24, 24) < 1e-3 && alpha(12, 24) > 0.999 && alpha(2, 2) < 1e-3);
+    // The same by hand: a square with a square of the matte on it.
+    let scene = {
+        let opaque = fit(&image, &Known::default(), FitOptions::default());
+        cut_openings(opaque, image.view(), matte, &mut Canvas::default()).unwrap().scene
+    };
+    assert!(scene.transparent && !scene.objects.iter().any(is_matte), "{scene:?}");
+}
+
+#[test]
+fn grounds_are_far_from_what_is_seen() {
+    let opaque = [[0.2, 0.3, 0.4, 1.0]; 3];
+    assert_eq!(Ground::of(opaque.into_iter()), Ground::Opaque);
+    assert_eq!(Ground::of([[0.2, 0.3, 0.4, 0.0]; 3].into_iter()), Ground::Invisible);
+    // Black and half-seen white: the corner farthest from both is one of those with one or two channels.
+    let ground = Ground::of([[0.0, 0.0, 0.0, 1.0], [1.0, 1.0, 1.0, 0.5], [0.0; 4]].into_iter());
+    let Ground::Matte(matte) = ground else { panic!("{ground:?}") };
+    let squared = |from: f64| matte.iter().map(|c| (c - from) * (c - from)).sum::<f64>();
+    assert!(squared(0.0) >= 1.0 && squared(1.0) >= 1.0, "{matte:?}");
+    assert_eq!(ground.under([0.5, 0.5, 0.5, 0.5]), matte.map(|c| 0.25 + 0.5 * c));
+}
