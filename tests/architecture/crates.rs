@@ -1,4 +1,4 @@
-//! Between crates: `core -> backends/*`, `core -> models/trace -> models/fit -> models/net -> models/cli -> tests`, a tensor framework in
+//! Between crates: `core -> backends/*`, `core -> models/trace -> models/fit -> models/net, models/formats -> models/cli -> tests`, a tensor framework in
 //! its own adapter only, and none in what a newcomer builds.
 
 use std::process::Command;
@@ -8,7 +8,7 @@ use serde::Deserialize;
 use crate::source::root;
 
 /// Every crate of the workspace, its folder, and the crates of the workspace that it may use.
-const PLAN: [(&str, &str, &[&str]); 9] = [
+const PLAN: [(&str, &str, &[&str]); 10] = [
     ("dvp-core", "core", &[]),
     ("dvp-burn", "backends/burn", &["dvp-core"]),
     ("dvp-candle", "backends/candle", &["dvp-core"]),
@@ -16,8 +16,13 @@ const PLAN: [(&str, &str, &[&str]); 9] = [
     ("dvp-fit", "models/fit", &["dvp-core", "dvp-trace"]),
     ("dvp-double", "models/double", &["dvp-core", "dvp-fit"]),
     ("dvp-net", "models/net", &["dvp-core", "dvp-fit"]),
+    ("dvp-formats", "models/formats", &["dvp-core", "dvp-fit"]),
     // The adapters behind features that the default build leaves out, as another test here shows.
-    ("dvp", "models/cli", &["dvp-core", "dvp-burn", "dvp-candle", "dvp-trace", "dvp-fit", "dvp-double", "dvp-net"]),
+    (
+        "dvp",
+        "models/cli",
+        &["dvp-core", "dvp-burn", "dvp-candle", "dvp-trace", "dvp-fit", "dvp-double", "dvp-net", "dvp-formats"],
+    ),
     (
         "dvp-tests",
         "tests",

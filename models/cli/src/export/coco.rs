@@ -11,10 +11,10 @@ use alloc::collections::BTreeSet;
 use dvp_core::render::{Compositing, HardMask, HardRenderer};
 use dvp_core::shape::Outline;
 use dvp_core::{Drawing, ImageSize};
+use dvp_formats::export::decimals;
 use serde::Serialize;
 
-use super::error::ExportError;
-use super::geojson::decimals;
+use super::ExportError;
 use super::{Found, MeasuredObject, MeasuredPicture, Region};
 
 #[derive(Serialize)]

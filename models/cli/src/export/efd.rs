@@ -13,7 +13,7 @@ use core::fmt::Write as _;
 use dvp_core::Efd;
 use dvp_core::shape::ShapeError;
 
-use super::error::ExportError;
+use super::ExportError;
 use super::{MeasuredObject, MeasuredPicture, Region};
 
 /// The first `harmonics` normalized descriptors of a region.

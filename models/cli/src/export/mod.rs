@@ -1,6 +1,7 @@
 //! What people measure, and what other programs read.
 //!
-//! In: a scene and what its fit knows of it ([`measure`]). Out: the bytes of a file.
+//! In: a scene and what its fit knows of it ([`measure`]). Out: the bytes of a file. Measures, tables and label maps are those of
+//! `dvp-formats`.
 //!
 //! *Units*: pixels. x runs to the right, y down; (0, 0) is the outer corner of the first pixel, whose center is
 //! (0.5, 0.5). Programs that count from the center of the first pixel, as scikit-image does, have centroids and bounds that are
@@ -11,71 +12,28 @@
 //!
 //! | file | comes in | goes out |
 //! |---|---|---|
-//! | `region.rs` | the rings of an object | simple polygons with holes, [`Region`] |
-//! | `measure.rs` | a scene and the covariance of its fit | [`MeasuredObject`]s |
-//! | `scale.rs` | `0.12mm/px` | [`Scale`] |
-//! | `table/` | objects of many pictures | a table: CSV, Parquet |
 //! | `efd.rs` | objects of many pictures | normalized descriptors: CSV, the `.nef` of SHAPE |
-//! | `label_map.rs` | a scene | which object is seen in each pixel, PNG |
+//! | `label_map.rs` | a label map | PNG |
 //! | `whole.rs` | a scene | the coverage of every object, PNG |
 //! | `roi.rs` | objects | regions of interest of ImageJ, zipped |
 //! | `coco.rs` | objects of many pictures | a COCO data set, JSON |
-//! | `geojson.rs` | objects | a GeoJSON collection of features |
 //!
 //! Proved by `tests/` in this folder, `tests/command/exports.rs`, and by other programs in `tests/interop/check_exports.py`.
 
 mod coco;
 mod efd;
-mod error;
-mod geojson;
 mod label_map;
-mod measure;
-mod region;
 mod roi;
-mod scale;
-mod table;
 #[cfg(test)]
 mod tests;
 mod whole;
 
 pub use coco::coco;
+pub use dvp_formats::export::{
+    ColumnValues, Deviations, ExportError, Found, HAS_PARQUET, MeasuredObject, MeasuredPicture, Polygon, Region, Scale,
+    TableColumn, geojson, label_map, measure, table_columns, table_csv, table_parquet,
+};
 pub use efd::{efd_csv, efd_nef, normal_efd};
-pub use error::ExportError;
-pub use geojson::geojson;
-pub use label_map::{label_map, label_map_png};
-pub use measure::{Deviations, MeasuredObject, measure};
-pub use region::{Polygon, Region};
+pub use label_map::label_map_png;
 pub use roi::roi_zip;
-pub use scale::Scale;
-pub use table::{ColumnValues, HAS_PARQUET, TableColumn, table_columns, table_csv, table_parquet};
 pub use whole::{whole_coverage, whole_png};
-
-use dvp_core::ImageSize;
-
-/// A picture of a run, with what came of it.
-#[derive(Clone, Debug)]
-pub struct MeasuredPicture {
-    /// How the picture was named.
-    pub picture: String,
-    /// How its results are named.
-    pub stem: String,
-    /// What was found, or why nothing was.
-    pub found: Result<Found, String>,
-}
-
-/// The objects of a picture.
-#[derive(Clone, Debug)]
-pub struct Found {
-    /// The size of the picture.
-    pub size: ImageSize,
-    /// The objects, in the order of painting.
-    pub objects: Vec<MeasuredObject>,
-}
-
-impl MeasuredPicture {
-    /// The objects; none if the picture failed.
-    #[must_use]
-    pub fn objects(&self) -> &[MeasuredObject] {
-        self.found.as_ref().map_or(&[], |found| &found.objects)
-    }
-}

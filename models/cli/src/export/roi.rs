@@ -13,7 +13,7 @@ use flate2::Compression;
 use flate2::write::DeflateEncoder;
 use rawzip::{CompressionMethod, ZipArchiveWriter};
 
-use super::error::ExportError;
+use super::ExportError;
 use super::{MeasuredObject, Region};
 
 /// The version of the format that coordinates finer than pixels came with, and names that are told apart from them.

@@ -1,11 +1,12 @@
 //! Every object whole: its coverage, also where others hide it.
 
 use dvp_core::render::ContourRenderer;
+use dvp_core::shape::REFERENCE_VERTICES;
 use dvp_core::{ImageSize, Scene};
+use dvp_fit::paint::drawing_of;
 
-use super::error::ExportError;
+use super::ExportError;
 use crate::format::{encode_gray8, to_byte};
-use crate::paint::Painter;
 
 /// The largest image of all objects, pixels: every thread may take memory for one.
 const MOST_PIXELS: usize = 1 << 28;
@@ -16,7 +17,7 @@ const MOST_PIXELS: usize = 1 << 28;
 /// As [`whole_png`].
 pub fn whole_coverage(scene: &Scene<f32>, size: ImageSize) -> Result<Vec<f32>, ExportError> {
     tiles_of(scene, size)?;
-    let drawing = Painter::default().draw(scene, size)?;
+    let drawing = drawing_of(scene, size, REFERENCE_VERTICES).map_err(ExportError::Draw)?;
     let mut values = vec![0.0_f32; scene.objects.len() * size.pixels()];
     let renderer = ContourRenderer::new(scene.edge, scene.compositing);
     renderer.visit_coverage(&drawing, size, &mut Default::default(), |object, pixel, coverage| {
@@ -48,12 +49,12 @@ fn tiles_of(scene: &Scene<f32>, size: ImageSize) -> Result<usize, ExportError> {
 /// of the picture, side by side in the order of painting. Without an object there is one black tile.
 ///
 /// # Errors
-/// [`ExportError::TooMany`] if that is more than 2^28 pixels, [`ExportError::Paint`], [`ExportError::Render`],
+/// [`ExportError::TooMany`] if that is more than 2^28 pixels, [`ExportError::Draw`], [`ExportError::Render`],
 /// [`ExportError::Png`].
 pub fn whole_png(scene: &Scene<f32>, size: ImageSize) -> Result<Vec<u8>, ExportError> {
     let tiles = tiles_of(scene, size)?;
     let all = ImageSize::new(tiles * size.width(), size.height())?;
-    let drawing = Painter::default().draw(scene, size)?;
+    let drawing = drawing_of(scene, size, REFERENCE_VERTICES).map_err(ExportError::Draw)?;
     let mut pixels = vec![0_u8; all.pixels()];
     let renderer = ContourRenderer::new(scene.edge, scene.compositing);
     renderer.visit_coverage(&drawing, size, &mut Default::default(), |object, pixel, coverage| {

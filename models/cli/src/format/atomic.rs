@@ -4,7 +4,7 @@ use std::fs::{self, OpenOptions};
 use std::io::{ErrorKind, Write};
 use std::path::Path;
 
-use super::error::FormatError;
+use super::FormatError;
 
 /// Puts `bytes` into `path`: written to a temporary file in the same folder, then renamed. A reader, or a program that
 /// stops half-way, sees the old file or the new one. Missing parent folders are made.

@@ -7,10 +7,8 @@ use std::path::{Path, PathBuf};
 use dvp_core::Real;
 use dvp_fit::Bank;
 
-use super::bank::{mdshr_bank, read_bank};
-use super::error::{FormatError, Place};
 use super::labels::{is_label_map, labels_beside};
-use super::scene_json::{MAX_TEXT, SceneJson};
+use super::{FormatError, MAX_TEXT, Place, SceneJson, mdshr_bank, read_bank};
 
 /// The file of a data set that holds its scenes, one per line.
 pub const SCENES_FILE: &str = "scenes.jsonl";

@@ -18,7 +18,7 @@ use tiff::ColorType as TiffColor;
 use tiff::TiffError;
 use tiff::decoder::{Decoder, DecodingResult, Limits};
 
-use super::error::FormatError;
+use super::FormatError;
 use super::picture::{Decoded, decode};
 
 /// What the names of label maps end with.
@@ -60,7 +60,7 @@ pub fn read_labels(path: &Path, max_pixels: usize) -> Result<(ImageSize, Vec<u32
             };
             colors.pixels().map(|pixel| number(pixel.0)).collect()
         }
-        other => return Err(FormatError::Labels { path: path.to_path_buf(), found: other.color() }),
+        other => return Err(FormatError::Labels { path: path.to_path_buf(), found: format!("{:?}", other.color()) }),
     };
     Ok((size, labels))
 }
@@ -70,7 +70,7 @@ fn read_gray_tiff(path: &Path, max_pixels: usize) -> Result<Option<(ImageSize, V
     let unreadable = |source| FormatError::Read { path: path.to_path_buf(), source };
     let undecodable = |source: TiffError| {
         let source = image::error::DecodingError::new(image::ImageFormat::Tiff.into(), source);
-        FormatError::Decode { path: path.to_path_buf(), source: image::ImageError::Decoding(source) }
+        FormatError::Decode { path: path.to_path_buf(), source: image::ImageError::Decoding(source).into() }
     };
     let mut file = BufReader::new(File::open(path).map_err(unreadable)?);
     let mut magic = [0; 4];

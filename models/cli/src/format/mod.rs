@@ -1,10 +1,7 @@
-//! Files in and out: scenes, data sets, banks, pictures.
+//! Files in and out: scenes, data sets, banks, pictures. Texts and pictures in memory are those of `dvp-formats`.
 //!
 //! | file | comes in | goes out |
 //! |---|---|---|
-//! | `error.rs` | | the one error of this module, with file, line, field and remedy |
-//! | `scene_json/` | scene JSON | [`SceneJson`], the text's structure, and a [`Scene`](dvp_core::Scene) with every number checked; and the way back |
-//! | `bank.rs` | bank JSON, or the name `mdshr` | a [`Bank`](dvp_fit::Bank) |
 //! | `data_set.rs` | a folder | its images and, where known, their scenes |
 //! | `labels.rs` | STEM.labels.png | which object each pixel belongs to |
 //! | `npy.rs` | NumPy arrays of float pixels | images |
@@ -15,30 +12,24 @@
 //! `tests/command/bad_input.rs` proves the errors, `tests/command/interrupted.rs` that nothing is left half-written.
 
 mod atomic;
-mod bank;
 mod data_set;
-mod error;
 mod labels;
 mod npy;
 mod picture;
 mod png;
-mod scene_json;
 
 pub use atomic::write_atomic;
-pub use bank::{bank_to_json, mdshr_bank, parse_bank, read_bank};
 pub use data_set::{DataSet, SCENES_FILE, Sample, bank_near, pictures_of, read_scene_lines};
-pub use error::{FormatError, Place};
+pub use dvp_formats::format::{
+    BitDepth, CapJson, CompletionJson, CompositingJson, DeviationsJson, DoubtJson, EdgeJson, EdgeLawJson, FillJson,
+    FormatError, INVISIBLE, JoinJson, ObjectJson, ObjectKnownJson, Picture, Place, RingJson, SceneJson, SceneKnownJson,
+    SegmentJson, ShapeJson, StopJson, bank_to_json, edge_cut, mdshr_bank, parse_bank, read_bank, read_scene,
+};
+pub(crate) use dvp_formats::format::{MAX_TEXT, read_text, to_byte, to_step};
 pub use labels::{labels_beside, read_labels};
 pub use npy::read_npy;
-pub use picture::{DEFAULT_MAX_PIXELS, Picture, decode_picture, decode_picture_rgba, read_picture, read_picture_rgba};
-pub(crate) use png::to_byte;
-pub use png::{BitDepth, encode_gray8, encode_gray16, encode_png, encode_png_rgba, from_rgb8, to_rgb8};
-pub(crate) use scene_json::read_text;
-pub use scene_json::{
-    CapJson, CompletionJson, CompositingJson, DeviationsJson, DoubtJson, EdgeJson, EdgeLawJson, FillJson, INVISIBLE,
-    JoinJson, ObjectJson, ObjectKnownJson, RingJson, SceneJson, SceneKnownJson, SegmentJson, ShapeJson, StopJson,
-    edge_cut, read_scene,
-};
+pub use picture::{DEFAULT_MAX_PIXELS, decode_picture, decode_picture_rgba, read_picture, read_picture_rgba};
+pub use png::{encode_gray8, encode_gray16, encode_png, encode_png_rgba, from_rgb8, to_rgb8};
 
 #[cfg(test)]
 mod tests;

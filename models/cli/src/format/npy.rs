@@ -10,7 +10,7 @@ use std::path::Path;
 use dvp_core::image::CHANNELS;
 use dvp_core::{Image, ImageSize, Real};
 
-use super::error::{FormatError, Place};
+use super::{FormatError, Place};
 
 /// Longest header that is read; NumPy's own are below 200 bytes.
 const MAX_HEADER: u32 = 1 << 16;

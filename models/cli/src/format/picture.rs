@@ -1,51 +1,24 @@
 //! Pictures: files of the usual formats to RGB.
 //!
 //! Values are taken as stored (no gamma, no color profile): 8 bits over 255, 16 bits over 65535. Gray becomes three
-//! equal channels, palettes their colors, transparent pixels are put over a color that the picture does not show ([`Ground`]), the
+//! equal channels, palettes their colors, transparent pixels are put over a color that the picture does not show ([`Ground`](dvp_fit::picture::Ground)), the
 //! orientation tag of cameras is obeyed, of an animation the first frame is taken.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader, Cursor, Seek};
 use std::path::Path;
 
-use dvp_core::image::{ImageError, RgbaImage};
-use dvp_core::{Image, ImageSize, ImageView, Real};
-use dvp_fit::picture::Ground;
-use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
+use dvp_core::image::RgbaImage;
+use dvp_core::{ImageSize, Real};
+use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
 
-use super::error::FormatError;
-use super::png::BitDepth;
+use super::{BitDepth, FormatError, Picture};
 
 /// Most pixels of a picture unless the user says otherwise: 2^24, a square of 4096.
 pub const DEFAULT_MAX_PIXELS: usize = 1 << 24;
 
 /// Bytes per pixel that a decoder may ask for: four channels of 32 bits, twice (TIFF and WebP keep a copy).
 const DECODER_BYTES: u64 = 32;
-
-/// A picture as read from a file.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Picture<T> {
-    /// Its colors. Where it is transparent, they are mixed with one color that stands for whatever is behind, far from all that
-    /// the picture shows.
-    pub image: Image<T>,
-    /// Whether some pixel lets through what is behind: the background of its scene is no color of the picture then.
-    pub transparent: bool,
-    /// That one color; white for opaque pictures.
-    pub matte: [T; 3],
-    /// Whether any pixel shows something; if not, the image is white.
-    pub visible: bool,
-    /// Bits of a channel in the file.
-    pub bits: BitDepth,
-    /// Whether a coder of photographs has changed its pixels: it is a JPEG.
-    pub coded: bool,
-}
-
-impl<T: Real> From<Image<T>> for Picture<T> {
-    /// An opaque picture of float pixels.
-    fn from(image: Image<T>) -> Self {
-        Self { image, transparent: false, matte: [T::one(); 3], visible: true, bits: BitDepth::Sixteen, coded: false }
-    }
-}
 
 /// Reads a picture of at most `max_pixels` pixels. The header is checked before memory for pixels is taken.
 ///
@@ -128,7 +101,7 @@ pub(super) fn decode(path: &Path, max_pixels: usize) -> Result<Decoded, FormatEr
 /// The same of what a file holds.
 fn decode_from(file: impl BufRead + Seek, path: &Path, max_pixels: usize) -> Result<Decoded, FormatError> {
     let unreadable = |source| FormatError::Read { path: path.to_path_buf(), source };
-    let undecodable = |source| FormatError::Decode { path: path.to_path_buf(), source };
+    let undecodable = |source: ImageError| FormatError::Decode { path: path.to_path_buf(), source: source.into() };
     let mut reader = ImageReader::new(file);
     // The contents decide; where they say nothing, the ending.
     if let Ok(format) = ImageFormat::from_path(path) {
@@ -152,61 +125,4 @@ fn decode_from(file: impl BufRead + Seek, path: &Path, max_pixels: usize) -> Res
         Ok(size) => Ok(Decoded { size, picture, coded }),
         Err(_) => Err(too_many),
     }
-}
-
-impl<T: Real> Picture<T> {
-    /// A picture of r, g, b, r, g, b, ..., each made a number in [0, 1] by `real`.
-    ///
-    /// # Errors
-    /// [`ImageError`] if there are not three values per pixel or one is not finite.
-    pub fn opaque<V: Copy>(
-        size: ImageSize,
-        values: &[V],
-        real: impl Fn(V) -> f64,
-        bits: BitDepth,
-    ) -> Result<Self, ImageError> {
-        check_length(3 * size.pixels(), values.len())?;
-        let pixels = values.as_chunks().0.iter().map(|&[r, g, b]| [real(r), real(g), real(b)]);
-        Ok(Self { bits, ..planar(size, pixels)?.into() })
-    }
-
-    /// A picture of r, g, b, alpha, r, g, b, alpha, ... with straight colors, put over a color that it does not show.
-    ///
-    /// # Errors
-    /// [`ImageError`] if there are not four values per pixel or one is not finite.
-    pub fn translucent<V: Copy>(
-        size: ImageSize,
-        values: &[V],
-        real: impl Fn(V) -> f64 + Copy,
-        bits: BitDepth,
-    ) -> Result<Self, ImageError> {
-        check_length(4 * size.pixels(), values.len())?;
-        let pixels = values.as_chunks().0.iter().map(|pixel: &[V; 4]| pixel.map(real));
-        let ground = Ground::of(pixels.clone());
-        let image = planar(size, pixels.map(|pixel| ground.under(pixel)))?;
-        let matte = ground.under([0.0; 4]).map(T::of);
-        Ok(Self {
-            image,
-            transparent: ground != Ground::Opaque,
-            matte,
-            visible: ground != Ground::Invisible,
-            bits,
-            coded: false,
-        })
-    }
-}
-
-fn check_length(expected: usize, len: usize) -> Result<(), ImageError> {
-    if len == expected { Ok(()) } else { Err(ImageError::Length { expected, len }) }
-}
-
-fn planar<T: Real>(size: ImageSize, pixels: impl Iterator<Item = [f64; 3]>) -> Result<Image<T>, ImageError> {
-    let mut image = Image::zeros(size);
-    let (red, rest) = image.data_mut().split_at_mut(size.pixels());
-    let (green, blue) = rest.split_at_mut(size.pixels());
-    for (((red, green), blue), [r, g, b]) in red.iter_mut().zip(green).zip(blue).zip(pixels) {
-        (*red, *green, *blue) = (T::of(r), T::of(g), T::of(b));
-    }
-    ImageView::new(size, image.data())?;
-    Ok(image)
 }

@@ -7,17 +7,7 @@ use image::codecs::png::PngEncoder;
 use image::error::{LimitError, LimitErrorKind, ParameterError, ParameterErrorKind};
 use image::{ExtendedColorType, ImageEncoder, ImageError, RgbImage};
 
-use super::error::FormatError;
-
-/// Bits of a channel of a picture file.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum BitDepth {
-    /// 256 steps
-    #[default]
-    Eight,
-    /// 65536 steps, or floating point
-    Sixteen,
-}
+use super::{BitDepth, FormatError, to_byte, to_step};
 
 /// The bytes of an RGB PNG; values are clamped to [0, 1] and rounded to the nearest step.
 ///
@@ -40,7 +30,7 @@ pub fn encode_png_rgba<T: Real>(image: &RgbaImage<T>, bits: BitDepth) -> Result<
     let (bytes, color): (Vec<u8>, _) = match bits {
         BitDepth::Eight => (straight.iter().map(|&value| to_byte(value)).collect(), ExtendedColorType::Rgba8),
         BitDepth::Sixteen => {
-            (straight.iter().flat_map(|&value| native(step(value, 65535.0))).collect(), ExtendedColorType::Rgba16)
+            (straight.iter().flat_map(|&value| native(to_step(value, 65535.0))).collect(), ExtendedColorType::Rgba16)
         }
     };
     png(&bytes, image.size(), color)
@@ -68,24 +58,12 @@ fn png(bytes: &[u8], size: ImageSize, color: ExtendedColorType) -> Result<Vec<u8
     // The encoder panics at any other length.
     if Some(bytes.len()) != size.pixels().checked_mul(usize::from(color.bits_per_pixel() / 8)) {
         let source = ImageError::Parameter(ParameterError::from_kind(ParameterErrorKind::DimensionMismatch));
-        return Err(FormatError::Encode { source });
+        return Err(FormatError::Encode { source: source.into() });
     }
     let mut png = Vec::new();
     let written = PngEncoder::new(&mut png).write_image(bytes, width, height, color);
-    written.map_err(|source| FormatError::Encode { source })?;
+    written.map_err(|source| FormatError::Encode { source: source.into() })?;
     Ok(png)
-}
-
-/// The nearest of the steps of 1/255 of a value, which is clamped to [0, 1].
-pub(crate) fn to_byte<T: Real>(value: T) -> u8 {
-    step(value, 255.0).to_le_bytes()[0]
-}
-
-/// The nearest of the steps 0 to `most` of a value from 0 to 1.
-#[inline(always)]
-#[expect(clippy::cast_possible_truncation, reason = "at most 65535.5, and meant to be cut down")]
-fn step<T: Real>(value: T, most: f64) -> i32 {
-    (value.as_f64().clamp(0.0, 1.0) * most + 0.5) as i32
 }
 
 /// The bytes of a step of 16 bits, in the order of the machine.
@@ -148,7 +126,7 @@ impl<T: Real, F: Fn(i32) -> [u8; N], const N: usize> simd::Kernel for Interleave
         for (((out, red), green), blue) in self.out.chunks_mut(BLOCK).zip(red).zip(green).zip(blue) {
             for (steps, values) in steps.iter_mut().zip([red, green, blue]) {
                 for (own, &value) in steps.iter_mut().zip(values) {
-                    *own = step(value, self.most);
+                    *own = to_step(value, self.most);
                 }
             }
             let [red, green, blue] = &steps;
@@ -165,5 +143,6 @@ fn sides(size: ImageSize) -> Result<[u32; 2], FormatError> {
 }
 
 fn too_large() -> FormatError {
-    FormatError::Encode { source: ImageError::Limits(LimitError::from_kind(LimitErrorKind::DimensionError)) }
+    let source = ImageError::Limits(LimitError::from_kind(LimitErrorKind::DimensionError));
+    FormatError::Encode { source: source.into() }
 }

@@ -11,7 +11,6 @@ use super::curves::smooth;
 use super::number::short;
 use super::path_data::PathData;
 use super::{to_svg, to_svg_numbered};
-use crate::svg::from_svg;
 
 mod overlaps;
 
@@ -146,17 +145,6 @@ fn negative_lengths_are_drawn_as_positive_ones() {
 }
 
 #[test]
-fn corners_of_half_a_side_stay_round() {
-    // Half of 6.999 px is 3.4995 px: a radius of 3.5 would be another one along x than along y.
-    for width in [0.06999, 0.07, 0.070_014] {
-        let rectangle = element(Rectangle { size: [width, 0.1], corner_radius: 0.5 * width }, 0.0);
-        let text = format!("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"100\" height=\"100\">{rectangle}</svg>");
-        let AnyShape::Rectangle(again) = from_svg(&text).unwrap().scene.objects[0].shape else { panic!("{text}") };
-        assert!((again.corner_radius - 0.5 * width).abs() < 1.1e-5, "{text}");
-    }
-}
-
-#[test]
 fn a_pen_that_fattens_follows_the_side_that_closes_a_path() {
     let ring = PathRing::polyline(vec![[0.2, 0.2], [0.8, 0.2], [0.8, 0.8]]);
     let shape = AnyShape::from(Path { rings: vec![ring.clone()], fill: FillRule::EvenOdd });
@@ -199,25 +187,6 @@ fn paths_have_true_arcs_and_strokes_are_strokes() {
         ),
         "{stroke}"
     );
-}
-
-#[test]
-fn radii_next_to_half_a_chord_keep_the_height_of_the_arc() {
-    // Over a chord of 19.99 a radius of 10 that is rounded by 0.0005 is off by 0.016 in height.
-    for bulge in [0.2, 0.9, 0.969, 0.999, 1.0, 1.001, 1.3, 30.0] {
-        let (from, to) = (Vec2::new(1.2345, 2.0), Vec2::new(21.2251, 2.3));
-        let mut data = PathData::new(3);
-        data.ring(&[Piece::Arc { from, to, bulge }], false);
-        let text = format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"100\" height=\"100\"><path d=\"{}\"/></svg>",
-            data.into_text()
-        );
-        let read = from_svg(&text).unwrap().scene.objects.remove(0);
-        let AnyShape::Path(path) = read.shape else { panic!("{text}") };
-        let Segment::Arc { bulge: again } = path.rings[0].segments[0] else { panic!("{text}") };
-        // Half the chord is 10 px: heights agree to 0.002 px, and where the arc is most of a circle its radius does.
-        assert!((again - bulge).abs() * 10.0 < 2e-3 * bulge.max(1.0), "{text}: {again} for {bulge}");
-    }
 }
 
 #[test]
@@ -264,5 +233,4 @@ fn prototypes_are_titled_with_their_names() {
     let text = to_svg(&scene, ImageSize::new(64, 64).unwrap(), Some(&bank)).unwrap();
     assert!(text.contains("<title>a &amp; b #000000</title>"), "{text}");
     assert!(text.contains("<title>prototype #000000</title>"), "{text}");
-    assert!(from_svg(&text).is_ok(), "control characters are no XML");
 }

@@ -11,7 +11,7 @@
 //! | `check`, `check_shape`, `check_known` | from the structure to a scene with every number checked |
 //! | `write` | from a scene to the structure |
 //!
-//! `schema/scene-3.schema.json` says the same as these structures; `tests/property/scene_json.rs` holds the two together.
+//! `models/cli/schema/scene-3.schema.json` says the same as these structures; `tests/property/scene_json.rs` holds the two together.
 
 mod check;
 mod check_known;
@@ -43,7 +43,7 @@ pub use object::ObjectJson;
 pub use shape::{CapJson, FillJson, JoinJson, RingJson, SegmentJson, ShapeJson};
 
 /// Longest scene file or line that is read, bytes.
-pub(super) const MAX_TEXT: u64 = 64 << 20;
+pub const MAX_TEXT: u64 = 64 << 20;
 /// The version that is written.
 const VERSION: u64 = 3;
 
@@ -138,8 +138,11 @@ pub fn read_scene(path: &Path) -> Result<SceneJson, FormatError> {
     SceneJson::parse(&text, &Place::file(path))
 }
 
-/// A whole file of at most [`MAX_TEXT`] bytes.
-pub(crate) fn read_text(path: &Path) -> Result<Vec<u8>, FormatError> {
+/// A whole file of at most 64 MiB.
+///
+/// # Errors
+/// [`FormatError::Read`], [`FormatError::TooLong`].
+pub fn read_text(path: &Path) -> Result<Vec<u8>, FormatError> {
     let refused = |source| FormatError::Read { path: path.to_path_buf(), source };
     let mut text = Vec::new();
     File::open(path).map_err(refused)?.take(MAX_TEXT + 1).read_to_end(&mut text).map_err(refused)?;

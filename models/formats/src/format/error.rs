@@ -1,5 +1,7 @@
 //! What can be wrong with a file.
 
+use alloc::boxed::Box;
+use core::error::Error;
 use core::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -102,7 +104,7 @@ pub enum FormatError {
         /// The file.
         path: PathBuf,
         /// The decoder's reason.
-        source: image::ImageError,
+        source: Box<dyn Error + Send + Sync>,
     },
     /// A header that announces more pixels than allowed, or none.
     #[error("{path}: {width} x {height} pixels, must be 1 to {limit}; scale it down or raise --max-pixels", path = path.display())]
@@ -125,12 +127,12 @@ pub enum FormatError {
         source: dvp_core::image::ImageError,
     },
     /// A label map whose pixels are no labels.
-    #[error("{path}: pixels of kind {found:?} are no labels; write gray of 8 or 16 bits (as TIFF also of 32), or a palette", path = path.display())]
+    #[error("{path}: pixels of kind {found} are no labels; write gray of 8 or 16 bits (as TIFF also of 32), or a palette", path = path.display())]
     Labels {
         /// The file.
         path: PathBuf,
         /// How its pixels are stored.
-        found: image::ColorType,
+        found: String,
     },
     /// A pixel of a label map that is no label.
     #[error("{path}: a pixel is {value}; labels are whole numbers from 0 to 4294967295", path = path.display())]
@@ -144,7 +146,7 @@ pub enum FormatError {
     #[error("the image cannot be encoded as PNG: {source}")]
     Encode {
         /// The encoder's reason.
-        source: image::ImageError,
+        source: Box<dyn Error + Send + Sync>,
     },
     /// A folder without anything to read.
     #[error("{path}: no {what} in this folder", path = path.display())]

@@ -17,7 +17,8 @@ use super::{MeasuredPicture, Polygon, Scale};
 const DECIMALS: f64 = 1e4;
 
 /// A number with as many decimals as texts have.
-pub(super) fn decimals(value: f64) -> f64 {
+#[must_use]
+pub fn decimals(value: f64) -> f64 {
     (value * DECIMALS).round() / DECIMALS
 }
 

@@ -6,7 +6,6 @@ use dvp_core::render::RenderError;
 use dvp_core::shape::ShapeError;
 
 use crate::format::FormatError;
-use crate::paint::PaintError;
 
 /// Why something was not exported.
 #[derive(Debug, thiserror::Error)]
@@ -21,8 +20,8 @@ pub enum ExportError {
         source: ShapeError,
     },
     /// The outlines could not be drawn.
-    #[error(transparent)]
-    Paint(#[from] PaintError),
+    #[error("the outlines cannot be drawn: {0}")]
+    Draw(ShapeError),
     /// The renderer refused.
     #[error(transparent)]
     Render(#[from] RenderError),

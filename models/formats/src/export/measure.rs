@@ -7,11 +7,11 @@ use dvp_core::shape::{
 };
 use dvp_core::{Drawing, Efd, ImageSize, Object, Pose, Scene};
 use dvp_fit::Bank;
+use dvp_fit::paint::drawing_of;
 
 use super::error::ExportError;
 use super::region::Region;
 use crate::format::to_byte;
-use crate::paint::Painter;
 
 /// How far polygons may stray from the curves that they stand for, px.
 const TOLERANCE_PX: f64 = 1e-3;
@@ -90,7 +90,7 @@ impl MeasuredObject {
 /// prototypes; `numbers` are what the objects are called, one per object.
 ///
 /// # Errors
-/// [`ExportError::Shape`] if the numbers of an object describe no shape, [`ExportError::Paint`] and
+/// [`ExportError::Shape`] if the numbers of an object describe no shape, [`ExportError::Draw`] and
 /// [`ExportError::Render`] if it cannot be drawn.
 pub fn measure(
     scene: &Scene<f32>,
@@ -192,7 +192,7 @@ fn has_direction(region: &Region) -> bool {
 
 /// The area (px^2) that is in the picture and not hidden, per object. Under `blend` objects show through one another.
 fn seen_areas(scene: &Scene<f32>, size: ImageSize) -> Result<Vec<f64>, ExportError> {
-    let drawing = Painter::default().draw(scene, size)?;
+    let drawing = drawing_of(scene, size, REFERENCE_VERTICES).map_err(ExportError::Draw)?;
     // From the last object, which nothing hides, to the first.
     let mut reversed = Drawing::default();
     for k in (0..drawing.object_count()).rev() {
