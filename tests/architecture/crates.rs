@@ -1,6 +1,10 @@
-//! Between crates: `core -> backends/*`, `core -> models/trace -> models/fit -> models/net, models/formats -> models/cli -> tests`, a tensor framework in
+//! Between crates: `core -> backends/*`, `core -> models/trace -> models/fit -> models/net, models/formats -> models/cli -> models/lab
+//! -> models/dvp -> tests`, a tensor framework in
 //! its own adapter only, and none in what a newcomer builds.
 
+use alloc::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
 use std::process::Command;
 
 use serde::Deserialize;
@@ -8,7 +12,7 @@ use serde::Deserialize;
 use crate::source::root;
 
 /// Every crate of the workspace, its folder, and the crates of the workspace that it may use.
-const PLAN: [(&str, &str, &[&str]); 10] = [
+const PLAN: [(&str, &str, &[&str]); 12] = [
     ("dvp-core", "core", &[]),
     ("dvp-burn", "backends/burn", &["dvp-core"]),
     ("dvp-candle", "backends/candle", &["dvp-core"]),
@@ -19,14 +23,16 @@ const PLAN: [(&str, &str, &[&str]); 10] = [
     ("dvp-formats", "models/formats", &["dvp-core", "dvp-fit"]),
     // The adapters behind features that the default build leaves out, as another test here shows.
     (
-        "dvp",
+        "dvp-cli",
         "models/cli",
         &["dvp-core", "dvp-burn", "dvp-candle", "dvp-trace", "dvp-fit", "dvp-double", "dvp-net", "dvp-formats"],
     ),
+    ("dvp-lab", "models/lab", &["dvp-core", "dvp-burn", "dvp-candle", "dvp-fit", "dvp-net", "dvp-cli"]),
+    ("dvp", "models/dvp", &["dvp-cli", "dvp-lab"]),
     (
         "dvp-tests",
         "tests",
-        &["dvp-core", "dvp-burn", "dvp-candle", "dvp-trace", "dvp-fit", "dvp-double", "dvp-net", "dvp"],
+        &["dvp-core", "dvp-burn", "dvp-candle", "dvp-trace", "dvp-fit", "dvp-double", "dvp-net", "dvp-lab", "dvp"],
     ),
 ];
 
@@ -44,6 +50,17 @@ struct Package {
     name: String,
     manifest_path: String,
     dependencies: Vec<Dependency>,
+    /// None: it goes to any registry; an empty list: it goes to none.
+    #[serde(default)]
+    publish: Option<Vec<String>>,
+    #[serde(default)]
+    description: Option<String>,
+    #[serde(default)]
+    keywords: Vec<String>,
+    #[serde(default)]
+    categories: Vec<String>,
+    #[serde(default)]
+    features: BTreeMap<String, Vec<String>>,
 }
 
 #[derive(Deserialize)]
@@ -104,6 +121,55 @@ fn crates_use_only_earlier_ones_and_frameworks_only_their_adapters() {
     assert!(found.is_empty(), "{}", found.join("\n"));
 }
 
+/// What is missing in a crate that is published: what its page shows, its licenses, and the docs of its features. `read` is the
+/// text of a file in its folder, nothing if there is none.
+fn gaps(package: &Package, read: impl Fn(&str) -> Option<String>) -> Vec<String> {
+    let mut found = Vec::new();
+    let mut ask = |is_there: bool, what: &str| {
+        if !is_there {
+            found.push(format!("{} has no {what}", package.name));
+        }
+    };
+    ask(package.description.is_some(), "description");
+    ask((1..=5).contains(&package.keywords.len()), "keywords, or more than five");
+    ask(!package.categories.is_empty(), "categories");
+    for license in ["LICENSE-MIT", "LICENSE-APACHE"] {
+        ask(read(license).is_some_and(|text| text.lines().count() > 10), license);
+    }
+    let docs = ["README.md", "src/lib.rs"].map(|file| read(file).unwrap_or_default());
+    for feature in package.features.keys().filter(|feature| *feature != "default") {
+        let named = format!("`{feature}`");
+        ask(
+            docs.iter().all(|text| text.contains(&named)),
+            &format!("docs of the feature {feature} in README.md and src/lib.rs"),
+        );
+    }
+    found
+}
+
+#[test]
+fn published_crates_are_complete() {
+    let metadata: Metadata =
+        serde_json::from_str(&cargo(&["metadata", "--format-version", "1", "--no-deps", "--locked"])).unwrap();
+    let published: Vec<&Package> = metadata.packages.iter().filter(|package| package.publish.is_none()).collect();
+    assert_eq!(published.len(), PLAN.len() - 1, "all but the tests are published");
+    let of = |package: &&Package| {
+        let folder = Path::new(&package.manifest_path).parent().unwrap().to_owned();
+        gaps(package, |file| fs::read_to_string(folder.join(file)).ok())
+    };
+    let found: Vec<String> = published.iter().flat_map(of).collect();
+    assert!(found.is_empty(), "{}", found.join("\n"));
+}
+
+#[test]
+fn a_made_up_crate_is_found_incomplete() {
+    let json = r#"{"name":"x","manifest_path":"/x/Cargo.toml","dependencies":[],"features":{"default":[],"fast":[]}}"#;
+    let package: Package = serde_json::from_str(json).unwrap();
+    assert_eq!(gaps(&package, |_| None).len(), 6, "three fields, two licenses, one feature");
+    let text = "`fast`\n".repeat(20);
+    assert_eq!(gaps(&package, |_| Some(text.clone())).len(), 3, "the fields alone");
+}
+
 /// The first framework in the output of `cargo tree --prefix none`.
 fn framework_in(tree: &str) -> Option<&str> {
     tree.lines().filter_map(|line| line.split_whitespace().next()).find(|name| is_framework(name))
@@ -134,7 +200,7 @@ fn made_up_manifests_are_judged() {
     };
     assert_eq!(count("dvp-fit", "models/fit", "dvp-core"), 0);
     assert_eq!(count("dvp-core", "core", "dvp-fit"), 1, "an arrow back");
-    assert_eq!(count("dvp", "models/cli", "dvp-tests"), 1, "an arrow back");
+    assert_eq!(count("dvp", "models/dvp", "dvp-tests"), 1, "an arrow back");
     assert_eq!(count("dvp-core", "core", "candle-core"), 1, "a framework");
     assert_eq!(count("dvp-burn", "backends/burn", "burn"), 0, "the adapter of a framework");
     assert_eq!(count("dvp-burn", "backends/burn", "candle-core"), 1, "the adapter of another framework");

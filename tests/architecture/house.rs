@@ -92,7 +92,20 @@ fn nothing_is_unsafe_but_the_allocator_of_the_no_std_proof() {
 fn every_crate_takes_the_lints_of_the_workspace() {
     let workspace = sources("").into_iter().find(|source| source.path == "Cargo.toml").unwrap();
     assert!(workspace.text.lines().any(|line| line == "unsafe_code = \"forbid\""), "unsafe code is forbidden");
-    for folder in ["core", "models/fit", "models/double", "models/net", "models/formats", "models/cli", "tests"] {
+    for folder in [
+        "core",
+        "models/trace",
+        "models/fit",
+        "models/double",
+        "models/net",
+        "models/formats",
+        "models/cli",
+        "models/lab",
+        "models/dvp",
+        "backends/burn",
+        "backends/candle",
+        "tests",
+    ] {
         let manifest = format!("{folder}/Cargo.toml");
         let source = sources(folder).into_iter().find(|source| source.path == manifest).unwrap();
         assert!(shares_lints(&source.text), "{manifest}: needs [lints] workspace = true");

@@ -9,11 +9,11 @@ use std::io::Write as _;
 
 use cpu_time::ThreadTime;
 use dvp::format::mdshr_bank;
-use dvp::generate::{cropped, twins};
 use dvp_core::Image;
 use dvp_core::loss::ImagePair;
 use dvp_core::metric::Tally;
 use dvp_fit::{FitOptions, FitScratch, Fitter};
+use dvp_lab::hard::{cropped, twins};
 use dvp_tests::hard_geometry::{all_found, ownership, paint, rounded};
 
 fn main() -> Result<(), Box<dyn Error>> {

@@ -1,11 +1,11 @@
 //! Hard geometry: twins of one color are told apart, objects that leave the image are found.
 
 use dvp::format::mdshr_bank;
-use dvp::generate::{cropped, twins};
 use dvp_core::Scene;
 use dvp_core::loss::ImagePair;
 use dvp_core::metric::Tally;
 use dvp_fit::{FitOptions, FitScratch, Fitter};
+use dvp_lab::hard::{cropped, twins};
 use dvp_tests::hard_geometry::{all_found, ownership, paint, rounded};
 
 const PICTURES: u64 = 24;

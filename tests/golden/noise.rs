@@ -1,12 +1,12 @@
 //! Pictures that are not clean: noise and compression on MDS-HR with default options, and pictures that are not flat.
 
 use dvp::format::mdshr_bank;
-use dvp::generate::spoil::{add_noise, jpeg};
 use dvp::generate::{SceneSettings, sample_scene};
 use dvp::paint::Painter;
 use dvp_core::metric::visible_object_count;
 use dvp_core::{Image, ImageSize, Real};
 use dvp_fit::{Fit, FitOptions, FitScratch, Fitter, StopReason, fit_image};
+use dvp_lab::spoil::{add_noise, jpeg};
 use image::RgbImage;
 
 const SIDE: u32 = 128;

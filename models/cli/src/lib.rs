@@ -1,29 +1,37 @@
-//! The library behind the command `dvp`: formats, data sets, sub-commands.
+//! What the command `dvp` is made of: formats, data sets, methods by name, sub-commands.
+//!
+//! The program itself is the crate `dvp`, which adds the laboratory (`dvp-lab`) if it is asked for.
 //!
 //! | module | does |
 //! |---|---|
 //! | [`mod@format`] | files in and out |
 //! | [`export`] | what people measure, and what other programs read |
-//! | [`chart`] | line charts |
+//! | [`chart`] | charts of lines |
 //! | [`svg`] | scenes as vector graphics |
 //! | [`paint`] | scenes to images with a renderer chosen by name |
 //! | [`generate`] | random scenes |
 //! | [`method`] | the methods that find scenes, by name |
 //! | [`solve`] | pictures to scenes: what `dvp fit` does with each |
 //! | [`score`] | scenes against what was drawn: what `dvp evaluate` does with each |
-//! | [`agreement`] | whether a scene found is the true one |
+//! | [`statistics`] | means and quantiles |
 //! | [`command`] | the sub-commands: arguments, threads, tables |
 //!
 //! Everything but [`command`], [`method`] and [`chart`] has its own error enum; those three use anyhow.
+//!
+//! # Features
+//!
+//! | feature | brings |
+//! |---|---|
+//! | `burn`, `candle` | training on these frameworks |
+//! | `double` | methods in 64 bits too ([`method::Precision`]) |
+//! | `parquet` | tables as Apache Parquet |
 
 extern crate alloc;
 
 // Its compiled code is what is used.
-#[cfg(feature = "lab")]
+#[cfg(feature = "double")]
 use dvp_double as _;
 
-#[cfg(feature = "lab")]
-pub mod agreement;
 pub mod chart;
 pub mod command;
 pub mod export;
@@ -33,5 +41,5 @@ pub mod method;
 pub mod paint;
 pub mod score;
 pub mod solve;
-mod statistics;
+pub mod statistics;
 pub mod svg;

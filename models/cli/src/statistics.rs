@@ -1,40 +1,43 @@
 //! Means and quantiles of the figures of many images.
 
-#[cfg(feature = "lab")]
 use serde::Serialize;
 
 /// The mean; none of no values.
-pub(crate) fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
+#[must_use]
+pub fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
     let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
     (count > 0.0).then(|| sum / count)
 }
 
 /// The smallest value that at least `percent` percent of the sorted values do not exceed; 0 if there are none.
-pub(crate) fn quantile(sorted: &[f64], percent: usize) -> f64 {
+#[must_use]
+pub fn quantile(sorted: &[f64], percent: usize) -> f64 {
     let rank = (sorted.len() * percent).div_ceil(100);
     sorted.get(rank.saturating_sub(1)).copied().unwrap_or(0.0)
 }
 
-#[cfg(feature = "lab")]
 /// The median and the quartiles beside it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub(crate) struct Quartiles {
-    pub(crate) low: f64,
-    pub(crate) median: f64,
-    pub(crate) high: f64,
+pub struct Quartiles {
+    /// A quarter of the values is not above it.
+    pub low: f64,
+    /// Half of the values are not above it.
+    pub median: f64,
+    /// Three quarters of the values are not above it.
+    pub high: f64,
 }
 
-#[cfg(feature = "lab")]
 impl Quartiles {
     /// Those of values in any order; zeros if there are none.
-    pub(crate) fn of(mut values: Vec<f64>) -> Self {
+    #[must_use]
+    pub fn of(mut values: Vec<f64>) -> Self {
         values.sort_by(f64::total_cmp);
         let [low, median, high] = [25, 50, 75].map(|percent| quantile(&values, percent));
         Self { low, median, high }
     }
 }
 
-#[cfg(all(test, feature = "lab"))]
+#[cfg(test)]
 mod tests {
     use super::*;
 

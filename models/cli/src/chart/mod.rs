@@ -1,28 +1,11 @@
-//! Charts, as SVG and PNG.
+//! Charts of lines, as SVG.
 //!
 //! | file | holds |
 //! |---|---|
 //! | `mod` | colors and names |
 //! | `lines` | [`Chart`]: lines over one axis |
-//! | `scatter` | [`Scatter`]: marks on two logarithmic axes, with labels |
-//! | `marks` | the shapes of marks |
-//! | `labels` | where labels find room |
-//! | `pixels` | a drawing as PNG |
-//! | `text` | text in pixels, by a font of ours |
 
-#[cfg(feature = "lab")]
-mod labels;
 mod lines;
-#[cfg(feature = "lab")]
-mod marks;
-#[cfg(feature = "lab")]
-mod pixels;
-#[cfg(feature = "lab")]
-mod scatter;
-#[cfg(all(test, feature = "lab"))]
-mod tests;
-#[cfg(feature = "lab")]
-mod text;
 
 use std::path::Path;
 
@@ -30,16 +13,12 @@ use anyhow::{Result, bail};
 use plotters::style::RGBColor;
 
 pub use lines::{Chart, Line};
-#[cfg(feature = "lab")]
-pub use marks::Shape;
-#[cfg(feature = "lab")]
-pub use scatter::{Mark, Scatter, Series, Strip};
 
 /// The font of all charts: viewers of SVG take their own of this kind.
-const FONT: &str = "sans-serif";
+pub const FONT: &str = "sans-serif";
 
 /// Colors of lines, in order; the first six are told apart also without colors of red and green.
-const COLORS: [RGBColor; 12] = [
+pub const COLORS: [RGBColor; 12] = [
     RGBColor(0, 90, 181),
     RGBColor(220, 50, 32),
     RGBColor(80, 80, 80),

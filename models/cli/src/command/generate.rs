@@ -23,7 +23,7 @@ use crate::paint::Painter;
 #[derive(Debug, Args)]
 #[command(before_help = "Example: dvp generate --count 100 --out data\n         \
                          dvp generate --preset multi-dsprites --count 100 --out data")]
-pub(super) struct Arguments {
+pub struct Arguments {
     /// Folder to write to
     #[arg(long, short, value_name = "DIR")]
     out: PathBuf,

@@ -10,7 +10,10 @@ use crate::format::{DataSet, Place, Sample, SceneJson, mdshr_bank};
 use crate::generate::{SceneSettings, sample_scene};
 
 /// `count` scenes of MDS-HR as a data set without pictures.
-pub(super) fn mds_hr(count: u64, seed: u64) -> Result<DataSet<f32>> {
+///
+/// # Errors
+/// If `count` is 0.
+pub fn mds_hr(count: u64, seed: u64) -> Result<DataSet<f32>> {
     if count == 0 {
         bail!("--generated must be at least 1");
     }
@@ -18,7 +21,10 @@ pub(super) fn mds_hr(count: u64, seed: u64) -> Result<DataSet<f32>> {
 }
 
 /// `count` scenes of the shapes of MDS-HR as a data set without pictures.
-pub(super) fn scenes(settings: &SceneSettings, count: u64, seed: u64) -> Result<DataSet<f32>> {
+///
+/// # Errors
+/// If a scene cannot be written down, which the settings of this crate do not bring about.
+pub fn scenes(settings: &SceneSettings, count: u64, seed: u64) -> Result<DataSet<f32>> {
     let (bank, size) = (mdshr_bank(), square(TRAINED_SIDE)?);
     let place = Place::file(&PathBuf::from("generated"));
     let sample = |index| {

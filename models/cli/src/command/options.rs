@@ -32,22 +32,25 @@ impl PaintArguments {
 
 /// How commands that work through many pictures do so.
 #[derive(Clone, Copy, Debug, Args)]
-pub(super) struct BatchArguments {
+pub struct BatchArguments {
     /// Largest picture that is read
     #[arg(long, default_value_t = DEFAULT_MAX_PIXELS, value_name = "N")]
-    pub(super) max_pixels: usize,
+    pub max_pixels: usize,
     /// Threads; 0 means one per core
     #[arg(long, default_value_t = 0, value_name = "N")]
     threads: usize,
     /// Print the figures as JSON
     #[arg(long)]
-    pub(super) json: bool,
+    pub json: bool,
 }
 
 impl BatchArguments {
     /// What `work` makes of each item and its index, in their order; on all threads, each with memory of its own. Progress shows
     /// the `name` of the item begun last.
-    pub(super) fn each<S: Default, I: Sync, R: Send>(
+    ///
+    /// # Errors
+    /// If the system has no more threads.
+    pub fn each<S: Default, I: Sync, R: Send>(
         &self,
         items: &[I],
         name: impl Fn(&I) -> String + Sync,
@@ -118,7 +121,10 @@ pub(super) fn has_ending(path: &Path, ending: &str) -> bool {
 }
 
 /// Runs `work` on `threads` threads; 0 means one per core.
-pub(super) fn with_threads<R: Send>(threads: usize, work: impl FnOnce() -> R + Send) -> Result<R> {
+///
+/// # Errors
+/// If the system has no more threads.
+pub fn with_threads<R: Send>(threads: usize, work: impl FnOnce() -> R + Send) -> Result<R> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().context("threads cannot be started")?;
     Ok(pool.install(work))
 }
@@ -133,8 +139,11 @@ pub(super) fn size_or(width: Option<usize>, height: Option<usize>, otherwise: Im
     size.context("--width and --height")
 }
 
-/// A square image of `side` pixels.
-pub(super) fn square(side: usize) -> Result<ImageSize> {
+/// The size of a square image of `side` pixels.
+///
+/// # Errors
+/// If `side` is 0 or so large that the pixels cannot be counted.
+pub fn square(side: usize) -> Result<ImageSize> {
     ImageSize::new(side, side).context("image size")
 }
 

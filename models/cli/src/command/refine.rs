@@ -23,7 +23,7 @@ use crate::paint::Painter;
 /// any size in the drawing's ratio. A transparent drawing is compared with the alpha of the picture, if it has one.
 #[derive(Debug, Args)]
 #[command(before_help = "Example: dvp refine drawing.svg picture.png -o better.svg")]
-pub(super) struct Arguments {
+pub struct Arguments {
     /// The drawing: an SVG or a scene (JSON)
     drawing: PathBuf,
     /// What it should look like

@@ -19,7 +19,7 @@ use crate::format::DEFAULT_MAX_PIXELS;
 #[command(before_help = "Example: dvp render out/picture.json -o again.png --width 512\n         \
                          dvp render icon.svg -o icon.json\n         \
                          dvp render data/scenes.jsonl --index 3 -o third.svg")]
-pub(super) struct Arguments {
+pub struct Arguments {
     /// A scene (JSON), the scenes of a data set (JSONL, with --index), or an SVG
     scene: PathBuf,
     /// What to write: .png, .svg or .json

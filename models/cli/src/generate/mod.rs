@@ -1,4 +1,4 @@
-//! Random scenes: MDS-HR, data like Multi-dSprites, and hard ones; and what happens to pictures on their way.
+//! Random scenes: MDS-HR and data like Multi-dSprites.
 //!
 //! In: [`SceneSettings`], a bank, a seed and the number of the image. Out: a scene that depends on nothing else, so that
 //! neither the order nor the number of threads changes a data set.
@@ -7,22 +7,14 @@
 //! |---|---|
 //! | `settings` | [`SceneSettings`]: what scenes are drawn from |
 //! | `sample` | one such scene, [`sample_scene`] |
-//! | `hard` | [`twins`] of one color, objects that the picture's border has [`cropped`] |
-//! | `spoil` | noise, blur and JPEG |
 //!
 //! *Source*: MDS-HR as described in the paper and read off its implementation: 1 to 4 visible objects out of 4 slots;
 //! positions are the best of 8 draws by the smallest distance between two of them; the rotation is the direction of a
 //! point in a square, which is not quite uniform in the angle. The random numbers are our own, not the benchmark's.
 
-#[cfg(feature = "lab")]
-mod hard;
 mod sample;
 mod settings;
-#[cfg(feature = "lab")]
-pub mod spoil;
 
-#[cfg(feature = "lab")]
-pub use hard::{contrasting, cropped, twins};
 pub use sample::sample_scene;
 pub use settings::{Range, SceneSettings};
 

@@ -18,7 +18,7 @@ mod perturb;
 mod precision;
 mod refine;
 mod runner;
-#[cfg(all(test, feature = "lab"))]
+#[cfg(all(test, feature = "double"))]
 mod tests;
 
 use clap::ValueEnum;

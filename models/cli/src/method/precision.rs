@@ -3,7 +3,7 @@
 use clap::ValueEnum;
 use dvp_core::Real;
 use dvp_fit::Bank;
-#[cfg(feature = "lab")]
+#[cfg(feature = "double")]
 use dvp_fit::Fit;
 
 /// Numbers to compute with.
@@ -13,7 +13,7 @@ pub enum Precision {
     #[default]
     F32,
     /// 64 bits
-    #[cfg(feature = "lab")]
+    #[cfg(feature = "double")]
     F64,
 }
 
@@ -26,7 +26,7 @@ pub(super) fn bank<A: Real, B: Real>(bank: &Bank<A>) -> Bank<B> {
     Bank { prototypes: bank.prototypes.iter().map(|(name, shape)| (name.clone(), shape.cast())).collect() }
 }
 
-#[cfg(feature = "lab")]
+#[cfg(feature = "double")]
 pub(super) fn fit<A: Real, B: Real>(fit: &Fit<A>) -> Fit<B> {
     Fit {
         scene: fit.scene.cast(),

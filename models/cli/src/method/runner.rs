@@ -58,7 +58,7 @@ pub struct Found {
 #[derive(Debug, Default)]
 pub struct Memory {
     single: Scratch<f32>,
-    #[cfg(feature = "lab")]
+    #[cfg(feature = "double")]
     double: Scratch<f64>,
 }
 
@@ -75,7 +75,7 @@ pub struct Runner {
     setting: Setting,
     tools: Tools,
     single: Option<Fitter<f32>>,
-    #[cfg(feature = "lab")]
+    #[cfg(feature = "double")]
     double: Option<Fitter<f64>>,
 }
 
@@ -100,13 +100,13 @@ impl Runner {
             setting,
             tools: tools.clone(),
             single: None,
-            #[cfg(feature = "lab")]
+            #[cfg(feature = "double")]
             double: None,
         };
         if matches!(method, Method::SegmentBank | Method::SegmentFree) {
             match setting.precision {
                 Precision::F32 => runner.single = Some(runner.fitter()?),
-                #[cfg(feature = "lab")]
+                #[cfg(feature = "double")]
                 Precision::F64 => runner.double = Some(runner.fitter()?),
             }
         }
@@ -143,7 +143,7 @@ impl Runner {
         let (fit, cpu) = match (&self.tools.network, self.setting.precision) {
             (Some(network), _) if self.method.needs_network() => self.see(network, task, &mut memory.single)?,
             (_, Precision::F32) => self.fit(self.single.as_ref(), task, &mut memory.single)?,
-            #[cfg(feature = "lab")]
+            #[cfg(feature = "double")]
             (_, Precision::F64) => {
                 let (fit, cpu) = self.fit(self.double.as_ref(), task, &mut memory.double)?;
                 (precision::fit(&fit), cpu)

@@ -32,7 +32,7 @@ use crate::score::{Row, Score, Scratch, Totals, Truth, score};
                          dvp evaluate out data --against float --json\n         \
                          dvp evaluate data --model run/best.safetensors --then refine\n         \
                          dvp evaluate --generated 500 --model run/best.safetensors --then opt-z")]
-pub(super) struct Arguments {
+pub struct Arguments {
     /// Folder of predictions; left away where a network predicts
     #[arg(required_unless_present_any = NETWORK)]
     predictions: Option<PathBuf>,

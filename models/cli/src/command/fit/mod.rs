@@ -37,7 +37,7 @@ use crate::svg::to_svg_numbered;
                          dvp fit noisy.png --start net --model run/best.safetensors --out out\n         \
                          dvp fit cells/ --out out --table cells.csv --scale 0.65mm/px --labels\n         \
                          dvp fit --masks labels.tif picture.png --out out --geojson")]
-pub(super) struct Arguments {
+pub struct Arguments {
     /// Pictures, folders of pictures, patterns, NumPy files (.npy) of float pixels
     #[arg(required_unless_present = "masks", value_name = "PICTURES")]
     pictures: Vec<PathBuf>,

@@ -18,7 +18,8 @@ const TICK: Duration = Duration::from_millis(200);
 
 /// Progress through `count` things, of which `done` are done, with room for a message; on standard error if that is a
 /// terminal, and invisible otherwise.
-pub(super) fn bar(count: u64, done: u64) -> ProgressBar {
+#[must_use]
+pub fn bar(count: u64, done: u64) -> ProgressBar {
     let bar = hidden(count);
     if std::io::stderr().is_terminal() {
         show_after(DELAY, &bar, ProgressDrawTarget::stderr);

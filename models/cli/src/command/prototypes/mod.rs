@@ -24,7 +24,7 @@ use crate::format::{bank_to_json, pictures_of, read_picture, write_atomic};
 #[derive(Debug, Args)]
 #[command(before_help = "Example: dvp prototypes pictures/ -o bank.json\n         \
                          dvp prototypes pictures/ -o bank.json --chart silhouettes.svg")]
-pub(super) struct Arguments {
+pub struct Arguments {
     /// Folders of pictures
     #[arg(required = true, value_name = "FOLDERS")]
     folders: Vec<PathBuf>,

@@ -37,7 +37,7 @@ use crate::format::write_atomic;
 #[command(before_help = "Example: dvp train --out run\n         \
                          dvp train --out run --mode ti+ --start gp/best.safetensors\n         \
                          dvp train --out run --resume")]
-pub(super) struct Arguments {
+pub struct Arguments {
     /// Folder to write to
     #[arg(long, short, value_name = "DIR")]
     out: PathBuf,
