@@ -38,11 +38,25 @@
 //!
 //! Every differentiable step `x` has an `x_vjp` beside it: the gradient of a scalar pulled back through the step,
 //! **added** to what the caller's gradient already holds.
+//!
+//! # Features
+//!
+//! | feature | brings |
+//! |---|---|
+//! | `std` (default) | the platform's maths, AVX2 and AVX-512 kernels picked at run time |
+//! | `triangles` | [`render::TriangleRenderer`], coverage by triangles as in the paper; needs std |
+//! | `parallel` | batches of differentiable steps on all cores; needs std |
+//! | `safetensors` | weights as the bytes of a safetensors file |
 #![no_std]
 
 extern crate alloc;
 #[cfg(feature = "std")]
 extern crate std;
+
+/// The example of the README, compiled and run.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+mod readme {}
 
 pub mod contour;
 pub mod diff_op;

@@ -37,7 +37,7 @@
 //!
 //! # Speed
 //!
-#![doc = include_str!("../../speed.md")]
+#![doc = include_str!("../speed.md")]
 //!
 //! # Limits
 //!

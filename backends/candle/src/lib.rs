@@ -49,7 +49,7 @@
 //!
 //! # Speed
 //!
-#![doc = include_str!("../../speed.md")]
+#![doc = include_str!("../speed.md")]
 //!
 //! # Devices
 //!

@@ -18,9 +18,18 @@
 //! | [`refine`] | an image, a start | a [`Fit`] by Levenberg-Marquardt |
 //! | [`scene_refine`] | an image, a drawing near it | the drawing with every number refined |
 //! | [`opt_p`], [`opt_iter`], [`rand_opt_p`] | an image, for OptP and Rand-OptP a start | a [`Fit`] by the paper's Adam |
+//!
+//! # Features
+//!
+//! `std` (default) brings the platform's maths and the faster kernels of `dvp-core`; without it everything works with `alloc`.
 #![no_std]
 
 extern crate alloc;
+
+/// The example of the README, compiled and run.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+mod readme {}
 
 pub mod adam;
 pub mod masks;

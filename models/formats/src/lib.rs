@@ -8,6 +8,10 @@
 //!
 //! The command `dvp` uses all of it and adds what reads and writes files of pictures; the browser uses it as it is, so it compiles for
 //! `wasm32-unknown-unknown`. What takes paths reads files; everything else works on memory.
+//!
+//! # Features
+//!
+//! `parquet` brings tables as Apache Parquet.
 
 extern crate alloc;
 

@@ -18,6 +18,10 @@
 //! Lengths are in pixels (the center of the pixel (row r, column c) is at (c + 0.5, r + 0.5), y down) and prices in bits,
 //! unless a name says otherwise. Everything is computed in f64; images come in f32. The arithmetic of f64 is inherent with std and
 //! that of `num_traits` without.
+//!
+//! # Features
+//!
+//! `std` (default) brings the platform's maths and the faster kernels of `dvp-core`; without it everything works with `alloc`.
 #![no_std]
 #![allow(
     clippy::cast_possible_truncation,

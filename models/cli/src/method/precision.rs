@@ -17,7 +17,7 @@ pub enum Precision {
     F64,
 }
 
-#[cfg(feature = "lab")]
+#[cfg(feature = "double")]
 fn number<A: Real, B: Real>(value: A) -> B {
     B::of(value.as_f64())
 }
