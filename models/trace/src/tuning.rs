@@ -67,6 +67,10 @@ pub const CODED_REACH: usize = 4;
 pub const MOST_COLORS: usize = 96;
 /// Least difference of a channel that makes a color of its own of pixels that nothing else explains.
 pub const LEAST_CONTRAST: f64 = 12.0 / 255.0;
+/// The same in pictures that went through a coder: twice what a mixture may be off.
+pub const CODED_CONTRAST: f64 = 48.0 / 255.0;
+/// The same of [`LEAST_THIN`]: half of what a coder changes alike.
+pub const CODED_THIN: usize = 8;
 /// Fewer pixels than this that nothing explains are left to the nearest mixture.
 pub const LEAST_THIN: usize = 3;
 /// Standard deviation of a channel by rounding to 8 bits.

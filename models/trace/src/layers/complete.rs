@@ -184,6 +184,7 @@ impl Completion<'_> {
         let linked = link::relinked(&samples, is_seen, most).into_iter().map(|samples| self.framed(&samples));
         let linked = linked.filter(|linked| self.check(&linked.outlines, wanted).is_ok());
         let mut linked = linked.min_by(|a, b| a.bits.total_cmp(&b.bits));
+        let mut wrong_ways = Vec::new();
         for round in 0.. {
             let walked = self.fit(&samples);
             match self.check(&walked.outlines, wanted) {
@@ -194,6 +195,7 @@ impl Completion<'_> {
                         let led = led.filter(|led| self.check(&led.outlines, wanted).is_ok());
                         linked = [linked, led].into_iter().flatten().min_by(|a, b| a.bits.total_cmp(&b.bits));
                     }
+                    wrong_ways.push(self.priced(walked, &wrong, wanted));
                     if !walk::pin(&mut walks, &wrong) {
                         break;
                     }
@@ -201,7 +203,30 @@ impl Completion<'_> {
                 }
             }
         }
-        linked.unwrap_or_else(|| Completed::new(walks.iter().map(|walk| self.traced(walk.ring)).collect(), false))
+        linked.unwrap_or_else(|| {
+            wrong_ways.push(Completed::new(walks.iter().map(|walk| self.traced(walk.ring)).collect(), false));
+            wrong_ways.into_iter().min_by(|a, b| a.bits.total_cmp(&b.bits)).unwrap_or_else(Completed::none)
+        })
+    }
+
+    /// Outlines that get pixels wrong, with what these cost: where colors are alike, or a coder has changed them, less than the corners of a
+    /// polygon that gets them right.
+    fn priced(&self, completed: Completed, wrong: &[[usize; 2]], wanted: impl Fn(u32) -> Option<bool>) -> Completed {
+        let misfit = |&at: &[usize; 2]| {
+            let face = self.partition.face_at(at);
+            let shown = match wanted(face) {
+                // What else may be shown there is not known: the worst of what is beside.
+                Some(true) => self.neighbors[face as usize].clone(),
+                _ => (0..self.rank.len() as u32).filter(|&face| wanted(face) == Some(true)).collect(),
+            };
+            let color = self.partition.color(face);
+            let contrast2 = |other: &u32| (0..3).map(|c| (self.partition.color(*other)[c] - color[c]).powi(2)).sum();
+            shown.iter().map(contrast2).fold(0.0, f64::max) / self.partition.sigma.powi(2)
+        };
+        let bits = completed.bits + self.ruler.misfit(wrong.iter().map(misfit).sum());
+        // Without outlines nothing is explained.
+        let bits = if completed.outlines.is_empty() { f64::INFINITY } else { bits };
+        Completed { bits, agrees: false, ..completed }
     }
 
     /// Whether a layer of the faces `group` at place `rank` must show a face, must not hide it, or may (none).

@@ -54,13 +54,22 @@ pub(super) fn check(
                 crossed += 1;
             }
             let i = y * width + x;
-            if partition.shares[i] < tuning::PURE_SHARE || partition.is_hard && is_at_edge(partition, [x, y]) {
+            if partition.shares[i] < tuning::PURE_SHARE {
                 continue;
             }
-            match (wanted[partition.labels[i] as usize], crossed % 2 == 1) {
-                (Some(true), false) => missed += 1,
-                (Some(false), true) => *hidden.entry(partition.labels[i]).or_default() += 1,
+            let is_missed = match (wanted[partition.labels[i] as usize], crossed % 2 == 1) {
+                (Some(true), false) => true,
+                (Some(false), true) => false,
                 _ => continue,
+            };
+            // Where edges are hard, or a coder left some of its own, an outline may take a pixel beside them or leave it.
+            if (partition.is_hard || partition.coded) && is_at_edge(partition, [x, y]) {
+                continue;
+            }
+            if is_missed {
+                missed += 1;
+            } else {
+                *hidden.entry(partition.labels[i]).or_default() += 1;
             }
             wrong.push([x, y]);
         }
@@ -74,7 +83,7 @@ pub(super) fn check(
     if agrees { Ok(()) } else { Err(wrong) }
 }
 
-/// Whether a pixel lies beside another face: where edges are hard an outline may take it or leave it.
+/// Whether a pixel lies beside another face.
 fn is_at_edge(partition: &Partition, [x, y]: [usize; 2]) -> bool {
     let own = partition.face_at([x, y]);
     let beside = [[x + 1, y], [x.wrapping_sub(1), y], [x, y + 1], [x, y.wrapping_sub(1)]];

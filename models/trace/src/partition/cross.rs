@@ -10,7 +10,6 @@ use super::Color;
 use super::flat::NONE;
 use super::mix::coverage;
 use super::palette::distance;
-use crate::tuning;
 
 /// The longest run, pixels: the widest line that is asked for at 45 degrees, and a mixed pixel on both sides.
 const LONGEST: usize = 16;
@@ -36,7 +35,11 @@ pub(super) struct Canvas<'a> {
     pub(super) flat: &'a [u16],
     /// Pixels that no mixture of flat colors nearby explains.
     pub(super) open: &'a [bool],
+    /// Most difference of a channel from the mixture that explains a pixel.
     pub(super) noise: f64,
+    /// Least difference of a channel between a line and what it lies on.
+    pub(super) contrast: f64,
+    pub(super) white: Color,
     /// The widest lines, pixels.
     pub(super) widest: f64,
 }
@@ -102,7 +105,7 @@ impl Canvas<'_> {
         palette: &[Color],
     ) -> Option<[f64; 3]> {
         let sides = cross.sides.map(|side| palette[side as usize]);
-        if sides.iter().any(|&side| distance(side, line_color) < tuning::LEAST_CONTRAST) {
+        if sides.iter().any(|&side| distance(side, line_color) < self.contrast) {
             return None;
         }
         let [from, to] = cross.run;

@@ -17,6 +17,10 @@ pub(super) struct Noise {
     pub(super) mixed: f32,
     /// Standard deviation of a channel in a pixel of an edge.
     pub(super) sigma: f64,
+    /// Least difference of a channel that makes a color of its own of pixels that nothing else explains.
+    pub(super) contrast: f64,
+    /// Fewest pixels that do.
+    pub(super) fewest: usize,
 }
 
 /// Pixels in flat blocks, and the regions that these make.
@@ -43,12 +47,24 @@ impl Noise {
             }
         }
         if coded {
-            return Ok(Self { flat: tuning::CODED_STEP, mixed: tuning::CODED_MIX, sigma: tuning::CODED_SIGMA });
+            return Ok(Self {
+                flat: tuning::CODED_STEP,
+                mixed: tuning::CODED_MIX,
+                sigma: tuning::CODED_SIGMA,
+                contrast: tuning::CODED_CONTRAST,
+                fewest: tuning::CODED_THIN,
+            });
         }
         if little > tuning::NOISY_BLOCKS * much {
             return Err(NoPartition::Noisy);
         }
-        Ok(Self { flat: tuning::CLEAN_STEP, mixed: tuning::CLEAN_MIX, sigma: tuning::ROUNDING })
+        Ok(Self {
+            flat: tuning::CLEAN_STEP,
+            mixed: tuning::CLEAN_MIX,
+            sigma: tuning::ROUNDING,
+            contrast: tuning::LEAST_CONTRAST,
+            fewest: tuning::LEAST_THIN,
+        })
     }
 }
 
@@ -58,6 +74,11 @@ impl Noise {
     pub(super) fn weights(&self) -> [f32; 3] {
         let color = if self.is_coded() { 1.0 / tuning::CODED_COLOR_WEIGHT as f32 } else { 1.0 };
         [1.0, color, color]
+    }
+
+    /// How often colors are looked for around a pixel, further off each time.
+    pub(super) fn reaches(&self) -> usize {
+        if self.is_coded() { 2 } else { 1 }
     }
 
     /// Whether it is that of a coder.

@@ -46,7 +46,7 @@ pub(super) fn colors(canvas: &Canvas<'_>, crosses: &mut [Vec<Vec<Cross>>; 2], pa
         let darkest = farthest(side, own, opens.iter().copied(), canvas.noise);
         // Where lines of one color cross they are darker: what is no darker elsewhere is nowhere full.
         let is_more = coverage(darkest, side, own) > 1.15;
-        let candidates = [if is_more { beyond(side, darkest) } else { own }, [0.0; 3], [1.0; 3]];
+        let candidates = [if is_more { beyond(side, darkest, canvas) } else { own }, [0.0; 3], canvas.white];
         let counts = candidates.map(|color| rest.iter().filter(|&&k| windows[k].fits(canvas, color, palette)).count());
         let margin = counts[0] + tuning::THIN_LEAST_LENGTH.max(counts[0] / 4);
         let best = if counts[1].max(counts[2]) < margin {
@@ -56,7 +56,7 @@ pub(super) fn colors(canvas: &Canvas<'_>, crosses: &mut [Vec<Vec<Cross>>; 2], pa
         } else {
             2
         };
-        if away < tuning::LEAST_CONTRAST || counts[best] < tuning::THIN_LEAST_LENGTH {
+        if away < canvas.contrast || counts[best] < tuning::THIN_LEAST_LENGTH {
             rest.retain(|&k| bin_of(windows[k].extreme) != bin);
             continue;
         }
@@ -120,11 +120,12 @@ fn farthest(side: Color, through: Color, colors: impl Iterator<Item = Color>, no
 }
 
 /// What a line that is nowhere full is likely to be: black on gray, white on gray; else as much as is seen.
-fn beyond(side: Color, seen: Color) -> Color {
-    let is_gray = |color: Color| (0..3).all(|c| (color[c] - color[0]).abs() <= tuning::LEAST_CONTRAST);
+fn beyond(side: Color, seen: Color, canvas: &Canvas<'_>) -> Color {
+    let is_gray =
+        |color: Color| distance(color, canvas.white.map(|value| value * color[0])) <= tuning::LEAST_CONTRAST;
     match is_gray(side) && is_gray(seen) {
         true if seen[0] < side[0] => [0.0; 3],
-        true => [1.0; 3],
+        true => canvas.white,
         false => seen,
     }
 }

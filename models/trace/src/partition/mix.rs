@@ -34,8 +34,9 @@ pub(super) struct Mixture {
     pub(super) misfit: f64,
 }
 
-/// How far (pixels) from a mixed pixel the colors that it is made of are looked for.
-const REACH: usize = 2;
+/// How far (pixels) from a mixed pixel the colors that it is made of are looked for; and again where these do not explain it, since
+/// coders stain further.
+const REACH: [usize; 2] = [2, tuning::CODED_REACH];
 
 pub(super) fn explain(pixels: &[[f32; 3]], size: [usize; 2], flats: &Flats, palette: Palette, noise: &Noise) -> Mixed {
     let of_region: Vec<u16> = palette.of_region.iter().map(|&color| narrow(color)).collect();
@@ -56,14 +57,17 @@ pub(super) fn explain(pixels: &[[f32; 3]], size: [usize; 2], flats: &Flats, pale
     let mut open = Vec::new();
     let mut near = Vec::new();
     for i in (0..pixels.len()).filter(|&i| flats.regions[i] == NONE) {
-        colors_near(&flat_colors, size, i, &mut near);
-        let best = best_mixture(pixels[i].map(f64::from), &near, &mixed.palette);
-        match best.filter(|best| best.misfit <= mixed.noise) {
+        let best = REACH[..noise.reaches()].iter().find_map(|&reach| {
+            colors_near(&flat_colors, size, (i, reach), &mut near);
+            let best = best_mixture(pixels[i].map(f64::from), &near, &mixed.palette);
+            best.filter(|best| best.misfit <= mixed.noise)
+        });
+        match best {
             Some(best) => mixed.give(i, best),
             None => open.push(i),
         }
     }
-    mixed.explain_thin(pixels, size, &flat_colors, &mut open);
+    mixed.explain_thin(pixels, size, &flat_colors, (noise.contrast, noise.fewest), &mut open);
     for &i in &open {
         let all: Vec<u16> = (0..mixed.palette.len()).map(narrow).collect();
         if let Some(best) = best_mixture(pixels[i].map(f64::from), &all, &mixed.palette) {
@@ -81,7 +85,14 @@ impl Mixed {
     }
 
     /// Explains the pixels of `open` as mixtures of a color nearby and any other, new ones included; what is left stays in `open`.
-    fn explain_thin(&mut self, pixels: &[[f32; 3]], size: [usize; 2], flat_colors: &[u16], open: &mut Vec<usize>) {
+    fn explain_thin(
+        &mut self,
+        pixels: &[[f32; 3]],
+        size: [usize; 2],
+        flat_colors: &[u16],
+        (contrast, fewest): (f64, usize),
+        open: &mut Vec<usize>,
+    ) {
         let mut near = Vec::new();
         let mut tried_from = 0;
         let mut given_up = Vec::new();
@@ -91,7 +102,7 @@ impl Mixed {
             let mut extreme: Option<(f64, usize)> = None;
             for &i in open.iter() {
                 let pixel = pixels[i].map(f64::from);
-                colors_near(flat_colors, size, i, &mut near);
+                colors_near(flat_colors, size, (i, REACH[0]), &mut near);
                 if near.is_empty() {
                     near.extend((0..tried_from.max(1).min(count)).map(narrow));
                 }
@@ -120,7 +131,7 @@ impl Mixed {
             let progressed = left.len() < open.len();
             *open = left;
             let Some((away, i)) = extreme else { break };
-            if away <= tuning::LEAST_CONTRAST || (!progressed && tried_from > 0 && open.len() < tuning::LEAST_THIN) {
+            if away <= contrast || (!progressed && tried_from > 0 && open.len() < fewest) {
                 break;
             }
             if self.palette.len() >= tuning::MOST_COLORS {
@@ -131,12 +142,12 @@ impl Mixed {
             // A color that explains its own pixel alone is a mixture of what is not known.
             let added = narrow(tried_from);
             let is_of = |&&j: &&usize| {
-                colors_near(flat_colors, size, j, &mut near);
+                colors_near(flat_colors, size, (j, REACH[0]), &mut near);
                 let pixel = pixels[j].map(f64::from);
                 near.iter().any(|&base| pair(pixel, base, added, &self.palette).misfit <= self.noise)
                     || distance(self.palette[tried_from], pixel) <= self.noise
             };
-            if open.iter().filter(is_of).take(tuning::LEAST_THIN).count() < tuning::LEAST_THIN {
+            if open.iter().filter(is_of).take(fewest).count() < fewest {
                 self.palette.pop();
                 open.retain(|&j| j != i);
                 given_up.push(i);
@@ -222,7 +233,11 @@ pub(super) struct Near(Vec<u16>);
 impl Near {
     /// The colors of flat pixels within reach of pixel `i`.
     pub(super) fn around(&mut self, flat_colors: &[u16], size: [usize; 2], i: usize) -> &[u16] {
-        colors_near(flat_colors, size, i, &mut self.0);
+        self.within(REACH[0], flat_colors, size, i)
+    }
+
+    fn within(&mut self, reach: usize, flat_colors: &[u16], size: [usize; 2], i: usize) -> &[u16] {
+        colors_near(flat_colors, size, (i, reach), &mut self.0);
         &self.0
     }
 }
@@ -233,22 +248,29 @@ pub(super) fn open(
     size: [usize; 2],
     flat_colors: &[u16],
     palette: &[Color],
-    noise: f64,
+    noise: &Noise,
 ) -> Vec<bool> {
     let mut near = Near::default();
     let is_open = |(i, pixel): (usize, &[f32; 3])| {
-        flat_colors[i] == u16::MAX
-            && best_mixture(pixel.map(f64::from), near.around(flat_colors, size, i), palette)
-                .is_none_or(|best| best.misfit > noise)
+        let mut is_left = |&reach: &usize| {
+            best_mixture(pixel.map(f64::from), near.within(reach, flat_colors, size, i), palette)
+                .is_none_or(|best| best.misfit > f64::from(noise.mixed))
+        };
+        flat_colors[i] == u16::MAX && REACH[..noise.reaches()].iter().all(&mut is_left)
     };
     pixels.iter().enumerate().map(is_open).collect()
 }
 
-fn colors_near(flat_colors: &[u16], [width, height]: [usize; 2], i: usize, near: &mut Vec<u16>) {
+fn colors_near(
+    flat_colors: &[u16],
+    [width, height]: [usize; 2],
+    (i, reach): (usize, usize),
+    near: &mut Vec<u16>,
+) {
     let (x, y) = (i % width, i / width);
     near.clear();
-    for row in y.saturating_sub(REACH)..(y + REACH + 1).min(height) {
-        for &color in &flat_colors[row * width + x.saturating_sub(REACH)..row * width + (x + REACH + 1).min(width)] {
+    for row in y.saturating_sub(reach)..(y + reach + 1).min(height) {
+        for &color in &flat_colors[row * width + x.saturating_sub(reach)..row * width + (x + reach + 1).min(width)] {
             if color != u16::MAX && !near.contains(&color) {
                 near.push(color);
             }

@@ -112,7 +112,7 @@ impl Partition {
             if widest > tuning::THIN_WIDTH && colors.colors.len() < 3 {
                 continue;
             }
-            let (taken, is_changed) = take_lines(&mut pixels, size, &flats, &colors, f64::from(noise.mixed), widest);
+            let (taken, is_changed) = take_lines(&mut pixels, size, &flats, &colors, &noise, widest);
             // Wide lines may pass under thin ones.
             lines.splice(0..0, taken);
             if is_changed {
@@ -156,13 +156,15 @@ fn take_lines(
     size: [usize; 2],
     flats: &flat::Flats,
     colors: &palette::Palette,
-    noise: f64,
+    noise: &flat::Noise,
     widest: f64,
 ) -> (Vec<ThinLine>, bool) {
     let flat = cross::thick(&flats.regions, size[0], &colors.of_region, widest as u16 + 1);
+    let (contrast, white) = (noise.contrast, if noise.is_coded() { coded::weighted([1.0; 3]) } else { [1.0; 3] });
     let mut open = mix::open(pixels, size, &flat, &colors.colors, noise);
+    let noise = f64::from(noise.mixed);
     let is_mended = seam::mend(pixels, size, &flat, &mut open, &colors.colors, noise);
-    let canvas = cross::Canvas { pixels, size, flat: &flat, open: &open, noise, widest };
+    let canvas = cross::Canvas { pixels, size, flat: &flat, open: &open, noise, contrast, white: white.map(f64::from), widest };
     let mut lines = thin::find(&canvas, &colors.colors);
     if widest > tuning::THIN_WIDTH {
         lines = thin::crossing_lines(lines, colors.colors[0]);
