@@ -99,6 +99,7 @@ fn every_crate_takes_the_lints_of_the_workspace() {
         "models/double",
         "models/net",
         "models/formats",
+        "models/web",
         "models/cli",
         "models/lab",
         "models/dvp",

@@ -8,7 +8,7 @@ use dvp_core::shape::{
     AnyShape, Circle, Ellipse, Flattening, OutlineBasis, Path, PathRing, Polygon, Rectangle, Segment, Shape as _,
 };
 use dvp_core::{Drawing, ImageSize, Object, Paint, Pose, Scene};
-use dvp_fit::scene_refine::SceneRefine;
+use dvp_fit::scene_refine::{RefineStep, SceneRefine};
 use proptest::prelude::*;
 
 const SIDE: usize = 64;
@@ -190,4 +190,20 @@ fn an_image_with_alpha_needs_a_transparent_scene() {
     let pixels = vec![0.0; 4 * size.pixels()];
     let image = ImageView::premultiplied(size, &pixels).unwrap();
     assert!(SceneRefine::default().fit(image, &Scene::<f64>::empty([0.5; 3])).is_err());
+}
+
+#[test]
+fn who_watches_sees_the_start_and_every_step_to_the_end() {
+    let truth = drawing(EdgeProfile::area());
+    let start = shaken(&truth, &[0.4, -0.6, 0.3]);
+    let pixels = paint::<3>(&truth);
+    let image = ImageView::<_, 3>::new(ImageSize::new(SIDE, SIDE).unwrap(), &pixels).unwrap();
+    let mut seen = Vec::new();
+    let watch = &mut |step: RefineStep<'_, f64>| seen.push((step.step, step.loss, step.scene.clone()));
+    let refined = SceneRefine::default().fit_watched(image, &start, watch).unwrap();
+    assert_eq!((seen[0].1, &seen[0].2), (refined.start_loss, &start));
+    assert!(seen.len() > 5 && seen.iter().enumerate().all(|(k, step)| step.0 == k));
+    assert!(seen.is_sorted_by(|a, b| a.1 >= b.1 * (1.0 - 1e-12)), "the loss never rises");
+    assert_eq!(seen.last().unwrap().2, refined.scene, "the last step is the result");
+    assert_eq!(SceneRefine::default().fit(image, &start).unwrap().scene, refined.scene, "watching changes nothing");
 }

@@ -21,6 +21,9 @@ const PATIENCE: usize = 4;
 pub(super) trait Objective<T> {
     /// The value at `point`; its gradient goes to `gradient`. None where the function is not defined.
     fn evaluate(&mut self, point: &[T], gradient: &mut [T]) -> Option<T>;
+
+    /// Told of every step that is taken: to the point that was evaluated last, with its value.
+    fn stepped(&mut self, value: T);
 }
 
 /// Where a descent ended.
@@ -109,6 +112,7 @@ impl Lbfgs {
             remember(&mut memory, &next, point, &next_gradient, &gradient);
             idle = if value - new > T::of(self.least_gain) * value { 0 } else { idle + 1 };
             value = new;
+            objective.stepped(value);
             core::mem::swap(point, &mut next);
             core::mem::swap(&mut gradient, &mut next_gradient);
             if idle >= PATIENCE {
@@ -175,16 +179,25 @@ fn add<T: Real>(to: &mut [T], factor: T, values: &[T]) {
 mod tests {
     use super::*;
 
-    /// (1 - x)^2 + 100 (y - x^2)^2, Rosenbrock's valley, and every value that was asked for.
-    struct Valley(Vec<f64>);
+    /// (1 - x)^2 + 100 (y - x^2)^2, Rosenbrock's valley: every value that was asked for, and those of steps.
+    #[derive(Default)]
+    struct Valley {
+        asked: Vec<f64>,
+        stepped: Vec<f64>,
+    }
 
     impl Objective<f64> for Valley {
         fn evaluate(&mut self, point: &[f64], gradient: &mut [f64]) -> Option<f64> {
             let [x, y] = [point[0], point[1]];
             gradient.copy_from_slice(&[-2.0 * (1.0 - x) - 400.0 * x * (y - x * x), 200.0 * (y - x * x)]);
             let value = (1.0 - x).powi(2) + 100.0 * (y - x * x).powi(2);
-            self.0.push(value);
+            self.asked.push(value);
             Some(value)
+        }
+
+        fn stepped(&mut self, value: f64) {
+            assert_eq!(self.asked.last(), Some(&value), "the last point asked for is the one that was taken");
+            self.stepped.push(value);
         }
     }
 
@@ -194,10 +207,12 @@ mod tests {
         for (bounds, expected) in [([anything; 2], [1.0, 1.0]), ([[-2.0, 0.5], anything], [0.5, 0.25])] {
             for steps in 0..200 {
                 let mut point = alloc::vec![-1.2, 1.0];
-                let mut valley = Valley(Vec::new());
+                let mut valley = Valley::default();
                 let settings = Lbfgs { max_steps: steps, least_gain: 0.0 };
                 let ended = settings.descend(&mut valley, &bounds, &mut point).unwrap();
-                assert!(ended.value <= valley.0[0]);
+                assert!(ended.value <= valley.asked[0]);
+                assert!(valley.stepped.is_sorted_by(|a, b| a >= b) && valley.stepped.len() <= steps);
+                assert!(valley.stepped.last().is_none_or(|last| last.to_bits() == ended.value.to_bits()));
                 if steps == 199 {
                     let off = point.iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
                     assert!(off < 1e-4, "{point:?} in place of {expected:?}");

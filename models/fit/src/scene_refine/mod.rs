@@ -71,6 +71,18 @@ pub struct RefinedScene<T> {
     pub stop: StopReason,
 }
 
+/// A step of a refinement, as those see it who watch.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub struct RefineStep<'a, T> {
+    /// Its number, from 1; 0 is the start.
+    pub step: usize,
+    /// Mean squared error after it, over pixels and channels.
+    pub loss: T,
+    /// The scene after it.
+    pub scene: &'a Scene<T>,
+}
+
 impl SceneRefine {
     /// The numbers at which the drawing explains `image` best, near those of `start`.
     ///
@@ -85,12 +97,26 @@ impl SceneRefine {
         image: ImageView<'_, T, N>,
         start: &Scene<T>,
     ) -> Result<RefinedScene<T>, FitError> {
+        self.fit_watched(image, start, &mut |_| ())
+    }
+
+    /// As [`Self::fit`], and tells `watch` of the start and of every step as it is taken: the drawing moves, the loss falls.
+    ///
+    /// # Errors
+    /// As [`Self::fit`].
+    pub fn fit_watched<T: Real, const N: usize>(
+        &self,
+        image: ImageView<'_, T, N>,
+        start: &Scene<T>,
+        watch: &mut dyn FnMut(RefineStep<'_, T>),
+    ) -> Result<RefinedScene<T>, FitError> {
         if N == RGBA_CHANNELS && !start.transparent {
             return Err(FitError::Setting { what: "image", must: "RGB for a scene with a background" });
         }
         let basis = OutlineBasis::new(REFERENCE_VERTICES, start.harmonic_count().max(1))?;
         let mut drawn = Drawn::new(image, start, basis);
         let start_loss = drawn.loss_and_grad()?;
+        watch(RefineStep { step: 0, loss: start_loss, scene: start });
         let mut refined = RefinedScene {
             scene: start.clone(),
             start_loss,
@@ -101,7 +127,7 @@ impl SceneRefine {
         };
         while refined.steps < self.max_steps {
             let before = refined.loss;
-            let Some(round) = self.descend(&mut drawn, &mut refined)? else {
+            let Some(round) = self.descend(&mut drawn, &mut refined, watch)? else {
                 refined.stop = StopReason::Converged;
                 break;
             };
@@ -118,6 +144,7 @@ impl SceneRefine {
         &self,
         drawn: &mut Drawn<'_, T, N>,
         refined: &mut RefinedScene<T>,
+        watch: &mut dyn FnMut(RefineStep<'_, T>),
     ) -> Result<Option<Descended<T>>, FitError> {
         drawn.scene.clone_from(&refined.scene);
         let mut values = Vec::new();
@@ -134,7 +161,8 @@ impl SceneRefine {
         let mut point: Vec<T> = movable.iter().map(|&i| values[i] / scales[i]).collect();
         // Half the sum of squares has the Gauss-Newton matrix as its Hessian: ones on the diagonal, so scaled.
         let weight = T::of(0.5) * T::of_usize(drawn.image.data().len());
-        let mut scaled = Scaled { drawn, values, scales: &scales, movable: &movable, weight, grad: Vec::new() };
+        let (steps, grad) = (refined.steps, Vec::new());
+        let mut scaled = Scaled { drawn, values, scales: &scales, movable: &movable, weight, grad, steps, watch };
         let descent = Lbfgs { max_steps: self.max_steps - refined.steps, least_gain: self.least_gain };
         let ended = descent.descend(&mut scaled, &bounds, &mut point);
         scaled.place(&point);
@@ -253,6 +281,9 @@ struct Scaled<'b, 'a, T: Real, const N: usize> {
     movable: &'b [usize],
     weight: T,
     grad: Vec<T>,
+    /// Steps taken so far, in all descents.
+    steps: usize,
+    watch: &'b mut dyn FnMut(RefineStep<'_, T>),
 }
 
 impl<T: Real, const N: usize> Scaled<'_, '_, T, N> {
@@ -274,5 +305,10 @@ impl<T: Real, const N: usize> Objective<T> for Scaled<'_, '_, T, N> {
             *gradient = self.grad[i] * self.scales[i] * self.weight;
         }
         loss.is_finite().then(|| loss * self.weight)
+    }
+
+    fn stepped(&mut self, value: T) {
+        self.steps += 1;
+        (self.watch)(RefineStep { step: self.steps, loss: value / self.weight, scene: &self.drawn.scene });
     }
 }

@@ -8,6 +8,9 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
+
 use super::Color;
 use super::flat::{Flats, NONE};
 use super::palette::distance;
@@ -43,7 +46,8 @@ pub(super) fn dissolve(pixels: &[[f32; 3]], [width, height]: [usize; 2], flats: 
             list.push(i);
         }
     }
-    let mut small: Vec<usize> = (0..of_region.len()).filter(|&k| flats.means[k].1 <= tuning::CODED_MOST_STAIN).collect();
+    let mut small: Vec<usize> =
+        (0..of_region.len()).filter(|&k| flats.means[k].1 <= tuning::CODED_MOST_STAIN).collect();
     small.sort_by_key(|&region| core::cmp::Reverse(flats.means[region].1));
     let mut is_kept: Vec<bool> = flats.means.iter().map(|&(_, count)| count > tuning::CODED_MOST_STAIN).collect();
     let mut near: Vec<u32> = Vec::new();

@@ -107,11 +107,7 @@ impl Flats {
 }
 
 /// Upper left corner (pixel index) of every block of two by two pixels, and the most that a channel, times its weight, differs inside.
-fn ranges(
-    pixels: &[[f32; 3]],
-    [width, height]: [usize; 2],
-    weights: [f32; 3],
-) -> impl Iterator<Item = (usize, f32)> {
+fn ranges(pixels: &[[f32; 3]], [width, height]: [usize; 2], weights: [f32; 3]) -> impl Iterator<Item = (usize, f32)> {
     let blocks = (0..height.saturating_sub(1)).flat_map(move |y| (0..width - 1).map(move |x| y * width + x));
     blocks.map(move |i| {
         let four = [pixels[i], pixels[i + 1], pixels[i + width], pixels[i + width + 1]];

@@ -25,7 +25,8 @@ impl Palette {
         for region in order {
             let (mean, count) = flats.means[region];
             let weighted = |color: Color| core::array::from_fn(|c| color[c] * f64::from(noise.weights()[c]));
-            let is_known = |(color, _): &(Color, f64)| distance(weighted(*color), weighted(mean)) <= f64::from(noise.flat);
+            let is_known =
+                |(color, _): &(Color, f64)| distance(weighted(*color), weighted(mean)) <= f64::from(noise.flat);
             let known = colors.iter().position(is_known);
             of_region[region] = known.unwrap_or(colors.len());
             match known {
