@@ -7,6 +7,8 @@ use core::cell::RefCell;
 
 use dvp_core::Vec2;
 use dvp_core::shape::{PathRing, Segment};
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
 
 use super::memo::Memo;
 use super::order::Order;
