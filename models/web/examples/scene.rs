@@ -4,7 +4,7 @@
 //! the milliseconds of the fit to the standard error.
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "a program")]
 
-use std::error::Error;
+use core::error::Error;
 use std::time::Instant;
 
 use dvp_wasm::Picture;

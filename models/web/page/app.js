@@ -118,8 +118,10 @@ function showInspector() {
 }
 
 function showFigures(scene, mae) {
-  const count = scene.objects.length;
-  byId('figures').textContent = `${count} ${count === 1 ? 'object' : 'objects'} · mean error ${(255 * mae).toFixed(2)} of 255 · found in ${page.fit.ms.toFixed(0)} ms`;
+  const parts = [`Mean error ${(255 * mae).toFixed(2)} of 255`];
+  if (scene === page.fit.scene) parts.push(`found in ${page.fit.ms.toFixed(0)} ms`);
+  else parts.push(`edited: ${scene.objects.length} of ${page.fit.scene.objects.length} objects`);
+  byId('figures').textContent = parts.join(' · ');
 }
 
 function showVerdict(scene) {

@@ -23,7 +23,8 @@ const made = (tag, properties = {}, ...children) => {
 /** A length in pixels with as many digits as it deserves, and its standard deviation if that is known. */
 const length = (value, deviation) => {
   if (value === undefined) return '–';
-  const text = value.toFixed(Math.abs(value) < 100 ? 2 : 1);
+  // No minus before what rounds to nothing.
+  const text = (Math.abs(value) < 0.005 ? 0 : value).toFixed(Math.abs(value) < 100 ? 2 : 1);
   return deviation === undefined ? text : `${text} ± ${deviation < 0.01 ? deviation.toFixed(4) : deviation.toFixed(2)}`;
 };
 
@@ -119,8 +120,8 @@ export class Inspector {
     color.addEventListener('change', () => this.#actions.recolor(k, color.value));
     const { reorder, remove, turn, scale } = this.#actions;
     const buttons = [
-      ['Forward', 'Paint it later ( ] )', () => reorder(k, k + 1)],
-      ['Backward', 'Paint it earlier ( [ )', () => reorder(k, k - 1)],
+      ['↑', 'Paint it later ( ] )', () => reorder(k, k + 1)],
+      ['↓', 'Paint it earlier ( [ )', () => reorder(k, k - 1)],
       ['↺', 'Turn by 5° to the left ( , )', () => turn(-5)],
       ['↻', 'Turn by 5° to the right ( . )', () => turn(5)],
       ['−', 'Smaller', () => scale(1 / 1.05)],

@@ -23,6 +23,7 @@ export class LossCurve {
     this.#losses.push(loss);
     this.#figure.hidden = false;
     this.#draw();
+    if (this.#losses.length === 1) this.#figure.scrollIntoView({ block: 'nearest' });
   }
 
   #draw() {

@@ -12,6 +12,7 @@ fn main() -> Result<()> {
     let [module, folder] = &arguments[..] else { bail!("usage: dvp-bind MODULE.wasm FOLDER") };
     let mut bindgen = Bindgen::new();
     bindgen.input_path(module).out_name("dvp_wasm").typescript(true).remove_name_section(true).remove_producers_section(true);
+    bindgen.omit_default_module_path(false);
     bindgen.web(true).context("a module for browsers")?;
     bindgen.generate(folder).with_context(|| format!("{} is not bound", module.display()))
 }
