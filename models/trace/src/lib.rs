@@ -98,9 +98,12 @@ pub struct Known {
 pub fn trace(image: &ImageView<'_, f32>, known: &Known) -> Result<Traced, NoDrawing> {
     let partition = Partition::of(image, known.coded).map_err(NoDrawing::Partition)?;
     let rings = boundary::rings(&partition);
-    // Coders of photographs stain what is beside an edge, whatever its profile is.
-    let stained =
-        if partition.coded { 0.0 } else { boundary::stained(&partition, &rings).unwrap_or(tuning::UNKNOWN_STAINED) };
+    let stained = match partition.coded {
+        // Coders stain what is beside an edge, whatever its profile is: in large pictures one of their own is seen as blur, small ones leave a doubt.
+        true if image.size().width().min(image.size().height()) < tuning::CODED_SMALL => tuning::UNKNOWN_STAINED,
+        true => 0.0,
+        false => boundary::stained(&partition, &rings).unwrap_or(tuning::UNKNOWN_STAINED),
+    };
     if !partition.coded && !partition.is_hard && is_soft(stained, boundary::wobble(&rings).unwrap_or(0.0)) {
         return Err(NoDrawing::Soft { stained });
     }

@@ -59,6 +59,9 @@ pub const CODED_COLOR_WEIGHT: f64 = 0.35;
 pub const CODED_SIGMA: f64 = 4.5 / 255.0;
 /// So many pixels of a coded picture are off by the same.
 pub const CODED_ALIKE: f64 = 16.0;
+/// Shorter side (pixels) from which on the profile of the paper's renderer is wider than that of area coverage, and would be seen as
+/// blur in a coded picture too: 8 / 5 of the 128 of its data, where it is 0.65 pixels wide.
+pub const CODED_SMALL: usize = 200;
 /// Regions of coded pictures of up to so many pixels may be stains beside edges.
 pub const CODED_MOST_STAIN: usize = 600;
 /// How far from edges (pixels) coders stain: a block of 8.

@@ -199,8 +199,11 @@ impl<T: Real> Fitter<T> {
         scratch: &mut FitScratch<T>,
     ) -> Result<Fit<T>, FitError> {
         let edge = kind.profile(T::of_usize(image.size().unit_px()));
-        // An order decided under another edge kind is decided anew.
-        if scratch.segmentation.compositing() != compositing || compositing == Compositing::Over {
+        // An order decided under another edge kind is decided anew, and what regions were just made segments was not read before.
+        if scratch.segmentation.compositing() != compositing
+            || compositing == Compositing::Over
+            || care == Care::Segments
+        {
             scratch.segmentation.interpret(compositing);
         }
         let mut run = Run { fitter: self, image, kind, edge, compositing, care, scratch };
