@@ -2,9 +2,6 @@
 //! -> models/dvp -> tests`, a tensor framework in
 //! its own adapter only, and none in what a newcomer builds.
 
-use alloc::collections::BTreeMap;
-use std::fs;
-use std::path::Path;
 use std::process::Command;
 
 use serde::Deserialize;
@@ -51,17 +48,6 @@ struct Package {
     name: String,
     manifest_path: String,
     dependencies: Vec<Dependency>,
-    /// None: it goes to any registry; an empty list: it goes to none.
-    #[serde(default)]
-    publish: Option<Vec<String>>,
-    #[serde(default)]
-    description: Option<String>,
-    #[serde(default)]
-    keywords: Vec<String>,
-    #[serde(default)]
-    categories: Vec<String>,
-    #[serde(default)]
-    features: BTreeMap<String, Vec<String>>,
 }
 
 #[derive(Deserialize)]
@@ -69,7 +55,7 @@ struct Dependency {
     name: String,
 }
 
-fn cargo(arguments: &[&str]) -> String {
+pub(crate) fn cargo(arguments: &[&str]) -> String {
     let run = Command::new(env!("CARGO")).args(arguments).current_dir(root()).output().unwrap();
     assert!(run.status.success(), "cargo {arguments:?}: {}", String::from_utf8_lossy(&run.stderr));
     String::from_utf8(run.stdout).unwrap()
@@ -120,55 +106,6 @@ fn crates_use_only_earlier_ones_and_frameworks_only_their_adapters() {
     assert_eq!(metadata.packages.len(), PLAN.len(), "every crate of the plan is there");
     let found = violations(&metadata);
     assert!(found.is_empty(), "{}", found.join("\n"));
-}
-
-/// What is missing in a crate that is published: what its page shows, its licenses, and the docs of its features. `read` is the
-/// text of a file in its folder, nothing if there is none.
-fn gaps(package: &Package, read: impl Fn(&str) -> Option<String>) -> Vec<String> {
-    let mut found = Vec::new();
-    let mut ask = |is_there: bool, what: &str| {
-        if !is_there {
-            found.push(format!("{} has no {what}", package.name));
-        }
-    };
-    ask(package.description.is_some(), "description");
-    ask((1..=5).contains(&package.keywords.len()), "keywords, or more than five");
-    ask(!package.categories.is_empty(), "categories");
-    for license in ["LICENSE-MIT", "LICENSE-APACHE"] {
-        ask(read(license).is_some_and(|text| text.lines().count() > 10), license);
-    }
-    let docs = ["README.md", "src/lib.rs"].map(|file| read(file).unwrap_or_default());
-    for feature in package.features.keys().filter(|feature| *feature != "default") {
-        let named = format!("`{feature}`");
-        ask(
-            docs.iter().all(|text| text.contains(&named)),
-            &format!("docs of the feature {feature} in README.md and src/lib.rs"),
-        );
-    }
-    found
-}
-
-#[test]
-fn published_crates_are_complete() {
-    let metadata: Metadata =
-        serde_json::from_str(&cargo(&["metadata", "--format-version", "1", "--no-deps", "--locked"])).unwrap();
-    let published: Vec<&Package> = metadata.packages.iter().filter(|package| package.publish.is_none()).collect();
-    assert_eq!(published.len(), PLAN.len() - 2, "all but the tests and the browser's module, which npm publishes");
-    let of = |package: &&Package| {
-        let folder = Path::new(&package.manifest_path).parent().unwrap().to_owned();
-        gaps(package, |file| fs::read_to_string(folder.join(file)).ok())
-    };
-    let found: Vec<String> = published.iter().flat_map(of).collect();
-    assert!(found.is_empty(), "{}", found.join("\n"));
-}
-
-#[test]
-fn a_made_up_crate_is_found_incomplete() {
-    let json = r#"{"name":"x","manifest_path":"/x/Cargo.toml","dependencies":[],"features":{"default":[],"fast":[]}}"#;
-    let package: Package = serde_json::from_str(json).unwrap();
-    assert_eq!(gaps(&package, |_| None).len(), 6, "three fields, two licenses, one feature");
-    let text = "`fast`\n".repeat(20);
-    assert_eq!(gaps(&package, |_| Some(text.clone())).len(), 3, "the fields alone");
 }
 
 /// The first framework in the output of `cargo tree --prefix none`.

@@ -6,4 +6,5 @@ extern crate alloc;
 mod crates;
 mod house;
 mod modules;
+mod publish;
 mod source;
