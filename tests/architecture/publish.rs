@@ -108,7 +108,11 @@ fn tree(name: &str, features: &str) -> Vec<String> {
 /// What in a tree asks for a newer Rust than its root promises.
 fn too_new(tree: &[String], packages: &[Package]) -> Vec<String> {
     let known = |line: &String| {
-        packages.iter().find(|package| *line == format!("{} v{}", package.name, package.version))?.rust_version.as_deref()
+        packages
+            .iter()
+            .find(|package| *line == format!("{} v{}", package.name, package.version))?
+            .rust_version
+            .as_deref()
     };
     let promised = minor(known(&tree[0]).unwrap());
     let ask = |line: &&String| known(line).is_some_and(|version| minor(version) > promised);
@@ -130,7 +134,8 @@ fn no_dependency_asks_for_a_newer_rust_than_we_promise() {
 #[test]
 fn made_up_trees_are_judged() {
     let package = |name: &str, rust: &str| {
-        let json = format!(r#"{{"name":"{name}","version":"1.0.0","manifest_path":"/x/Cargo.toml","rust_version":"{rust}"}}"#);
+        let json =
+            format!(r#"{{"name":"{name}","version":"1.0.0","manifest_path":"/x/Cargo.toml","rust_version":"{rust}"}}"#);
         serde_json::from_str::<Package>(&json).unwrap()
     };
     let packages = [package("own", "1.89"), package("old", "1.9.1"), package("new", "1.90"), package("even", "1.89.2")];

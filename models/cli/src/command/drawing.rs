@@ -90,6 +90,13 @@ impl OutputFormat {
     }
 }
 
+impl Drawn<f64> {
+    /// The drawing in the precision in which pictures are fitted. Without a bank: an SVG has none.
+    pub(super) fn cast(self) -> Drawn<f32> {
+        Drawn { scene: self.scene.cast(), size: self.size, bank: None, told: self.told }
+    }
+}
+
 impl<T: Real> Drawn<T> {
     /// Writes the drawing in a size, in the format of the ending.
     pub(super) fn write(&self, output: &Path, size: ImageSize, painter: Painter) -> Result<()> {
@@ -97,10 +104,15 @@ impl<T: Real> Drawn<T> {
         let bytes = match OutputFormat::of(output)? {
             OutputFormat::Svg => to_svg(scene, size, bank.as_ref())?.into_bytes(),
             OutputFormat::Json => (self.to_json(size)?.to_line(&Place::file(output))? + "\n").into_bytes(),
-            OutputFormat::Png if scene.transparent => {
-                encode_png_rgba(&painter.paint_rgba(scene, size)?, BitDepth::Eight)?
+            // In the precision of the fit, whatever the numbers come in: painting in another one is code of its own.
+            OutputFormat::Png => {
+                let scene = scene.cast::<f32>();
+                if scene.transparent {
+                    encode_png_rgba(&painter.paint_rgba(&scene, size)?, BitDepth::Eight)?
+                } else {
+                    encode_png(painter.paint(&scene, size)?.view(), BitDepth::Eight)?
+                }
             }
-            OutputFormat::Png => encode_png(painter.paint(scene, size)?.view(), BitDepth::Eight)?,
         };
         Ok(write_atomic(output, &bytes)?)
     }

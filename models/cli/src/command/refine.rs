@@ -64,9 +64,9 @@ struct Summary {
 pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Outcome> {
     let format = OutputFormat::of(&arguments.output)?;
     let drawn = if is_svg(&arguments.drawing) {
-        read_svg(&arguments.drawing, console)?
+        read_svg(&arguments.drawing, console)?.cast()
     } else {
-        read_json::<f64>(&arguments.drawing, None, arguments.bank.as_ref())?
+        read_json::<f32>(&arguments.drawing, None, arguments.bank.as_ref())?
     };
     if is_same(&arguments.output, &arguments.picture) {
         bail!("{} would be replaced by the drawing of it; choose another -o", arguments.picture.display());
@@ -79,8 +79,8 @@ pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Ou
     let summary = Summary {
         drawing: arguments.drawing.display().to_string(),
         picture: arguments.picture.display().to_string(),
-        rms_before: refined.start_loss.sqrt(),
-        rms_after: refined.loss.sqrt(),
+        rms_before: f64::from(refined.start_loss).sqrt(),
+        rms_after: f64::from(refined.loss).sqrt(),
         objects: refined.scene.objects.len(),
         numbers: refined.number_count,
         steps: refined.steps,
@@ -108,7 +108,7 @@ pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Ou
 
 /// A transparent drawing is held against the picture's alpha; where the picture has none, as any other drawing, against the
 /// picture, and what is behind it is found too.
-fn refine(max_steps: usize, scene: &Scene<f64>, picture: &RgbaImage<f64>) -> Result<RefinedScene<f64>> {
+fn refine(max_steps: usize, scene: &Scene<f32>, picture: &RgbaImage<f32>) -> Result<RefinedScene<f32>> {
     let settings = SceneRefine { max_steps, ..SceneRefine::default() };
     let is_opaque = picture.view().channel(CHANNELS).iter().all(|&alpha| alpha >= 1.0);
     if scene.transparent && !is_opaque {
