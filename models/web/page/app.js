@@ -330,7 +330,7 @@ const clicks = {
   shake: () => current() && !page.work && change(edit.shaken(current(), Math.random)),
 };
 for (const [id, run] of Object.entries(clicks)) byId(id).addEventListener('click', () => run());
-byId('wipe').addEventListener('input', ({ target }) => (stage.wipe = target.value / 100));
+byId('wipe').addEventListener('input', ({ target }) => (stage.wipe = target.value / 1000));
 byId('most').addEventListener('input', ({ target }) => (byId('most-value').textContent = MOST_OBJECTS[target.value]));
 for (const id of ['most', 'bank']) byId(id).addEventListener('change', () => page.picture && (page.work?.cancel(), fit()));
 byId('file').addEventListener('change', ({ target }) => {

@@ -138,7 +138,7 @@ export class Inspector {
       ['Area', `${length(measure.area_px2, measure.area_sd_px2)} px²`],
       ['Outline', `${length(measure.perimeter_px, measure.perimeter_sd_px)} px`],
       ['Axes', `${length(measure.major_axis_px, measure.major_axis_sd_px)} × ${length(measure.minor_axis_px, measure.minor_axis_sd_px)} px`],
-      ['Angle', measure.angle_deg === undefined ? 'none: turning it by a third or less changes nothing' : `${length(measure.angle_deg, measure.angle_sd_deg)}°`],
+      ['Angle', measure.angle_deg === undefined ? 'none: it has no direction' : `${length(measure.angle_deg, measure.angle_sd_deg)}°`],
       ['Seen', `${(100 * (measure.visible ?? 0)).toFixed(0)} %`],
     ];
     if ((measure.confidence ?? 1) < 1) rows.push(['Opacity', `${(100 * measure.confidence).toFixed(0)} %`]);

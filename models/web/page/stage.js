@@ -6,6 +6,9 @@ import { Handles } from './handles.js';
 
 const SVG = 'http://www.w3.org/2000/svg';
 
+/** Width of the thumb of the wipe, CSS pixels, as in the style sheet. */
+const THUMB = 28;
+
 /** What is seen in each mode: one list of layers per pane. */
 const MODES = {
   beside: [['picture'], ['result']],
@@ -28,6 +31,7 @@ export class Stage {
   #pointers = new Map();
   #drag = null;
   #handles = new Handles();
+  #wipe = 0.5;
 
   constructor(root) {
     this.#root = root;
@@ -97,9 +101,10 @@ export class Stage {
     this.#place();
   }
 
-  /** Where the wipe stands, 0 to 1. */
+  /** Where the wipe stands, as a share of the way that the thumb of its slider has across the pane. */
   set wipe(share) {
-    this.#root.style.setProperty('--wipe', `${100 * share}%`);
+    this.#wipe = share;
+    this.#place();
   }
 
   #pane(layers) {
@@ -164,6 +169,9 @@ export class Stage {
 
   #place() {
     const { x, y, zoom } = this.view;
+    const width = this.#panes[0].root.clientWidth;
+    const [edge] = this.view.toPicture([THUMB / 2 + this.#wipe * (width - THUMB), 0]);
+    this.#root.style.setProperty('--wipe', `${Math.max(0, Math.min(this.#picture?.width ?? 0, edge))}px`);
     for (const pane of this.#panes) {
       pane.sheet.style.transform = `translate(${x}px, ${y}px) scale(${zoom})`;
       pane.sheet.style.setProperty('--pixel', `${1 / zoom}px`);
