@@ -263,6 +263,18 @@ check('what is not flat is said to be so', async () => {
   assert.equal(await page.getAttribute('#verdict', 'data-level'), 'warning');
 });
 
+check('a large picture says that it takes long, and is canceled', async () => {
+  await drop(page, Buffer.from(await crowd(), 'base64'), 'crowd.png', 'image/png');
+  await page.waitForSelector('#progress:not([hidden])', { timeout: 60_000 });
+  assert.match(await page.textContent('#progress-text'), /million pixels.* s$/);
+  await shot('progress');
+  await page.click('#cancel');
+  assert.match(await message(), /Canceled/);
+  await page.click('#message-close');
+  await drop(page, read('icon.png'), 'icon.png', 'image/png');
+  await found(page);
+});
+
 check('a photo of 20 MB, a corrupt file, an empty file, a picture of no size', async () => {
   const bytes = Buffer.from(await photo(), 'base64');
   assert.ok(bytes.length > 20e6, `${bytes.length} bytes`);
@@ -270,10 +282,8 @@ check('a photo of 20 MB, a corrupt file, an empty file, a picture of no size', a
   assert.match(await message(60_000), /pixels.*most/s);
   await shot('message');
   await page.click('#message-action');
-  await page.waitForSelector('#progress:not([hidden])');
-  await page.click('#cancel');
-  assert.match(await message(), /Canceled/);
-  await page.click('#message-close');
+  await found(page, 120_000);
+  assert.equal(await page.getAttribute('#verdict', 'data-level'), 'warning', 'a smaller copy of the photo is fitted, and said to be no drawing');
   const icon = read('icon.png');
   for (const [bytes, name, expected] of [
     [icon.subarray(0, 200), 'half.png', /damaged/],
@@ -317,6 +327,27 @@ const photo = () =>
     }
     const blob = await canvas.convertToBlob({ type: 'image/jpeg', quality: 0.97 });
     const reader = new FileReader();
+    return new Promise((resolve) => {
+      reader.onload = () => resolve(reader.result.split(',')[1]);
+      reader.readAsDataURL(blob);
+    });
+  });
+
+/** A picture of 2600 x 2600 pixels with 2500 disks, which takes a while. */
+const crowd = () =>
+  page.evaluate(async () => {
+    const canvas = new OffscreenCanvas(2600, 2600);
+    const context = canvas.getContext('2d');
+    context.fillStyle = '#fff';
+    context.fillRect(0, 0, 2600, 2600);
+    for (let k = 0; k < 2500; k++) {
+      context.fillStyle = ['#c33', '#38a', '#5a3', '#a5c'][k % 4];
+      context.beginPath();
+      context.arc(26 + 52 * (k % 50), 26 + 52 * Math.floor(k / 50), 12 + (k % 11), 0, 2 * Math.PI);
+      context.fill();
+    }
+    const reader = new FileReader();
+    const blob = await canvas.convertToBlob({ type: 'image/png' });
     return new Promise((resolve) => {
       reader.onload = () => resolve(reader.result.split(',')[1]);
       reader.readAsDataURL(blob);

@@ -8,12 +8,14 @@
 //! |---|---|
 //! | `mod` | [`fit_picture`]: the decision between the two fits |
 //! | `ground` | [`Ground`]: the color that transparent pictures are put over |
+//! | `most` | fewer objects than a drawing has |
 //! | `openings` | [`cut_openings`]: what shows nothing in a transparent picture |
 //!
 //! *Units*: scene units, the shorter side of the picture is 1. Works in f32, as images come. Proved by the tests beside it, and by
 //! those of the command, which calls it.
 
 mod ground;
+mod most;
 mod openings;
 #[cfg(test)]
 mod tests;
@@ -26,11 +28,13 @@ use dvp_core::{ImageView, Real as _};
 use dvp_trace::{PoseDeviation, tuning};
 
 use crate::paint::Canvas;
-use crate::{Ambiguity, Fit, FitError, FitScratch, Fitter, StopReason};
+use crate::{Ambiguity, Fit, FitError, FitOptions, FitScratch, Fitter, StopReason};
 
 pub use dvp_trace::Known;
 pub use ground::Ground;
 pub use openings::cut_openings;
+
+use most::at_most;
 
 /// Where edges leave a doubt, segments are taken, whose edges are fitted, unless they miss the picture by so many times as much:
 /// ringing is read as faces, which come nearer to it but are none.
@@ -58,6 +62,8 @@ pub struct PictureScratch {
 /// A transparent picture comes over its matte ([`Ground`]), and [`Known::matte`] says which color that is; of an opaque one it
 /// is none.
 ///
+/// Drawings keep all their objects, however many, unless fewer than the default of [`FitOptions::max_objects`] are asked for.
+///
 /// # Errors
 /// [`FitError`] if a pixel is not finite or a scene on the way could not be drawn.
 ///
@@ -83,10 +89,15 @@ pub fn fit_picture(
     scratch: &mut PictureScratch,
 ) -> Result<Fit<f32>, FitError> {
     let fit = drawing_or_segments(fitter, image, known, scratch)?;
-    match known.matte {
-        Some(matte) => cut_openings(fit, image, matte, &mut scratch.canvas),
-        None => Ok(fit),
+    let fit = match known.matte {
+        Some(matte) => cut_openings(fit, image, matte, &mut scratch.canvas)?,
+        None => fit,
+    };
+    let most = fitter.options().max_objects;
+    if most < FitOptions::<f32>::default().max_objects {
+        return at_most(fit, most, image, &mut scratch.canvas);
     }
+    Ok(fit)
 }
 
 /// The nearer of the two fits, openings and all.

@@ -93,3 +93,21 @@ fn grounds_are_far_from_what_is_seen() {
     assert!(squared(0.0) >= 1.0 && squared(1.0) >= 1.0, "{matte:?}");
     assert_eq!(ground.under([0.5, 0.5, 0.5, 0.5]), matte.map(|c| 0.25 + 0.5 * c));
 }
+
+#[test]
+fn the_largest_of_a_drawing_stay_if_fewer_are_asked_for() {
+    // Three squares of 20, 12 and 6 pixels, the second painted last of all in the scene's order or not: size decides.
+    let squares = [(2, 22, [0.8, 0.1, 0.1]), (26, 38, [0.1, 0.6, 0.1]), (40, 46, [0.1, 0.1, 0.8])];
+    let image = picture(|column, row| {
+        let own = squares.iter().find(|&&(least, most, _)| in_square(least, most)(column, row));
+        own.map_or([1.0; 3], |&(.., color)| color)
+    });
+    let with = |max_objects| fit(&image, &Known::default(), FitOptions { max_objects, ..FitOptions::default() });
+    let colors = |fit: &Fit<f32>| fit.scene.objects.iter().map(|object| object.color()[0] > 0.5).collect::<Vec<_>>();
+    let (all, two, one) = (with(256), with(2), with(1));
+    assert_eq!([&all, &two, &one].map(|fit| fit.scene.objects.len()), [3, 2, 1]);
+    assert_eq!(colors(&one), [true], "the red one is the largest");
+    assert!(all.loss < two.loss && two.loss < one.loss, "{} {} {}", all.loss, two.loss, one.loss);
+    assert_eq!(one.marginal_gain.len(), 1);
+    assert!(one.doubts().unexplained && !all.doubts().unexplained);
+}
