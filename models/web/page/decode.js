@@ -24,6 +24,7 @@ export async function decode(file) {
   const name = file.name || 'pasted picture';
   if (file.size === 0) throw new DecodeError(`${name} is empty: it has 0 bytes.`);
   const head = new Uint8Array(await file.slice(0, 16).arrayBuffer());
+  if (await isCutShort(file, head)) throw new DecodeError(`${name} is damaged: it ends before the picture does.`);
   const coded = head[0] === 0xff && head[1] === 0xd8 && head[2] === 0xff;
   const bitmap = isDrawing(file, head) ? await drawn(file, name) : await raster(file, name);
   const { width, height } = bitmap;
@@ -46,6 +47,31 @@ export async function reduced({ bitmap, name }) {
   const smaller = await createImageBitmap(bitmap, { resizeWidth: width, resizeHeight: height, resizeQuality: 'high' });
   // Averages of many pixels: what the coder did to each is gone.
   return { ...fromCanvas(smaller), coded: false, name, bitmap: smaller };
+}
+
+// Browsers fill what is missing of a picture with nothing; a fit would find objects in it.
+async function isCutShort(file, head) {
+  const starts = (...bytes) => bytes.every((byte, at) => head[at] === byte);
+  if (starts(0x89, 0x50, 0x4e, 0x47)) {
+    // The last chunk is IEND; programs may leave bytes after it.
+    const view = new DataView(await file.arrayBuffer());
+    let at = 8;
+    while (at + 12 <= view.byteLength) {
+      const [length, kind] = [view.getUint32(at), view.getUint32(at + 4)];
+      if (kind === 0x49454e44) return false;
+      at += 12 + length;
+    }
+    return true;
+  }
+  if (starts(0xff, 0xd8, 0xff)) {
+    const end = new Uint8Array(await file.slice(-65_536).arrayBuffer());
+    return !end.some((byte, at) => byte === 0xff && end[at + 1] === 0xd9);
+  }
+  if (starts(0x52, 0x49, 0x46, 0x46)) {
+    const announced = new DataView(head.buffer).getUint32(4, true);
+    return file.size < announced + 8;
+  }
+  return false;
 }
 
 function isDrawing(file, head) {
@@ -71,7 +97,8 @@ async function drawn(file, name) {
     const image = new Image();
     image.src = address;
     await image.decode();
-    const [width, height] = [image.naturalWidth || DRAWN_SIDE, image.naturalHeight || DRAWN_SIDE];
+    const { naturalWidth: width, naturalHeight: height } = image;
+    if (!width || !height) throw new Error('no size');
     const factor = Math.min(1, DRAWN_SIDE / Math.max(width, height));
     const canvas = new OffscreenCanvas(Math.max(1, Math.round(width * factor)), Math.max(1, Math.round(height * factor)));
     canvas.getContext('2d').drawImage(image, 0, 0, canvas.width, canvas.height);

@@ -198,8 +198,10 @@ export class Stage {
     }
   }
 
+  // A pointer that is held belongs to the pane where it came down, wherever it goes.
   #at(event) {
-    const pane = event.target.closest?.('.pane') ?? this.#panes[0].root;
+    const held = this.#pointers.get(event.pointerId)?.pane;
+    const pane = held ?? event.target.closest?.('.pane') ?? this.#panes[0].root;
     const box = pane.getBoundingClientRect();
     return [event.clientX - box.left, event.clientY - box.top];
   }
@@ -218,7 +220,7 @@ export class Stage {
   #down(event) {
     if (event.button > 1 || !this.#picture) return;
     const from = this.#at(event);
-    this.#pointers.set(event.pointerId, from);
+    this.#pointers.set(event.pointerId, { pane: event.target.closest?.('.pane') ?? this.#panes[0].root, at: from });
     if (this.#pointers.size === 2) {
       this.#drag = { kind: 'pinch', ...pinch([...this.#pointers.values()]) };
       return;
@@ -248,7 +250,7 @@ export class Stage {
       return;
     }
     const now = this.#at(event);
-    this.#pointers.set(event.pointerId, now);
+    this.#pointers.get(event.pointerId).at = now;
     const drag = this.#drag;
     if (drag?.kind === 'pan') {
       this.view.panBy(now[0] - drag.last[0], now[1] - drag.last[1]);
@@ -290,7 +292,7 @@ function named(root, isWhole) {
   return copy;
 }
 
-function pinch([[ax, ay], [bx, by]]) {
+function pinch([{ at: [ax, ay] }, { at: [bx, by] }]) {
   return { middle: [(ax + bx) / 2, (ay + by) / 2], apart: Math.max(1, Math.hypot(ax - bx, ay - by)) };
 }
 
