@@ -58,7 +58,11 @@ function drawnByResvg(stem) {
   return readFileSync(join(exported, `${stem}.rgba`));
 }
 
-/** How far two images over white are apart, in steps of 1/255: on average, at most, and the share of pixels off by more than a tenth. */
+/** resvg places edges to a quarter of a pixel, the page by the area that is covered: an edge may differ by an eighth of full contrast and more
+ * where two edges cross a pixel. */
+const EDGE = 48;
+
+/** How far two images over white are apart, in steps of 1/255: on average, at most, and the share of pixels off by more than an edge. */
 function difference(a, b) {
   assert.equal(a.length, b.length);
   const over = (pixels, at, channel) => 255 + (pixels[at + channel] - 255) * (pixels[at + 3] / 255);
@@ -68,7 +72,7 @@ function difference(a, b) {
     sum += apart[0] + apart[1] + apart[2];
     const own = Math.max(...apart);
     most = Math.max(most, own);
-    if (own > 25.5) far += 1;
+    if (own > EDGE) far += 1;
   }
   return { mean: sum / ((3 * a.length) / 4), most: Math.round(most), share: far / (a.length / 4) };
 }
@@ -89,7 +93,7 @@ check('ten pictures of several kinds: dropped, found, exported', async () => {
     const painted = PNG.sync.read(png);
     assert.deepEqual([painted.width, painted.height], [own.width, own.height], name);
     const drawn = difference(painted.data, drawnByResvg(stem));
-    assert.ok(drawn.mean < 0.25 && drawn.share < 0.002, `${name}: resvg draws another picture: ${JSON.stringify(drawn)}`);
+    assert.ok(drawn.mean < 0.5 && drawn.share < 0.001, `${name}: resvg draws another picture: ${JSON.stringify(drawn)}`);
     assert.equal(csv.trim().split('\n').length, Math.max(1, own.objects.length + 1), 'a row per object');
     const theirs = native(name);
     // Decoders of JPEG differ by a step or two, and so do what is read off them; else numbers differ as instructions do.
