@@ -14,9 +14,11 @@
 //! | `mend` | polygons where all that is far off |
 //! | `path` | from samples to a path |
 //! | `as_ring` | outlines of any kind as rings of lines, arcs and cubics |
+//! | `behind` | regular polygons and stars that show one side, or one tip |
 //! | `figure`, `conic`, `whole` | circles, ellipses, rectangles, regular polygons and stars, fitted to all samples |
 
 mod as_ring;
+mod behind;
 mod chain;
 mod conic;
 mod cubic;

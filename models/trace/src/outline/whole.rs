@@ -8,6 +8,7 @@ use dvp_core::shape::{PathRing, Segment};
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
+use super::behind;
 use super::conic;
 use super::figure::{Figure, MOST_NUMBERS, as_f64};
 use super::solve::spoiled_chi2;
@@ -60,7 +61,7 @@ pub(super) fn fit(track: &Track, path: &PathRing<f64>, most: f64, ruler: &Ruler)
 }
 
 /// A figure, its numbers to start from, and how many of them, of the first, are free.
-type Start = (Figure, [f64; MOST_NUMBERS], [bool; MOST_NUMBERS]);
+pub(super) type Start = (Figure, [f64; MOST_NUMBERS], [bool; MOST_NUMBERS]);
 
 fn starts(track: &Track, ring: &PathRing<f64>) -> Vec<Start> {
     let mut starts = Vec::new();
@@ -69,6 +70,9 @@ fn starts(track: &Track, ring: &PathRing<f64>) -> Vec<Start> {
     }
     rectangles(track, ring, &mut starts);
     polygons(ring, &mut starts);
+    if track.hidden.contains(&true) {
+        behind::starts(ring, &mut starts);
+    }
     starts
 }
 
