@@ -114,7 +114,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let target = Image::from_planar(size, painted.to_f64()?.into_iter().map(f32::of).collect())?;
 
     let mut parameters = Parameters::<Host>::new();
-    parameters.insert("numbers", &Tensor::new(vec![0.2, 0.25, 1.0], &[1, 3], &HostDevice)?)?;
+    parameters.insert("numbers", &Tensor::new(vec![0.2_f32, 0.25, 1.0], &[1, 3], &HostDevice)?)?;
     let mut adam = Adam::new(AdamSettings::default());
     for step in 0..=STEPS {
         let op = RenderLossOp::new(renderer(), PixelLoss::Mse, vec![target.clone()], 1, VERTICES)?;
