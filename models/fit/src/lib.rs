@@ -157,8 +157,9 @@ pub enum Completion {
     Straight,
 }
 
-/// The result of a fit, with its doubt.
+/// The result of a fit, with its doubt. One of a scene of another origin is made by [`Fit::of_painted`]; its fields can be set then.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Fit<T> {
     /// The scene found.
     pub scene: Scene<T>,
@@ -203,6 +204,26 @@ impl<T: Real> Fit<T> {
             noise,
             bits: f64::NAN,
             scene,
+        }
+    }
+}
+
+impl<T: Real> Fit<T> {
+    /// The fit in another precision.
+    #[must_use]
+    pub fn cast<U: Real>(&self) -> Fit<U> {
+        let number = |value: T| U::of(value.as_f64());
+        Fit {
+            scene: self.scene.cast(),
+            loss: number(self.loss),
+            steps: self.steps,
+            stop: self.stop,
+            covariance: self.covariance.iter().map(|block| block.map(number)).collect(),
+            ambiguity: self.ambiguity.clone(),
+            unexplained: self.unexplained,
+            marginal_gain: self.marginal_gain.clone(),
+            noise: number(self.noise),
+            bits: self.bits,
         }
     }
 }

@@ -134,6 +134,7 @@ impl<T: Real> Residual<T> {
 
 /// What a rendering of any origin leaves of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Unexplained<T> {
     /// Share of the picture's variance that neither the rendering nor noise explains, [0, 1].
     pub share: f64,

@@ -26,6 +26,7 @@ const FAINT: f64 = 5.0 / 255.0;
 
 /// What a fit says against itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub struct Doubts {
     /// A position or a size is uncertain: either alone may bring the object below an IoU of 0.9.
     pub pose: bool,

@@ -137,7 +137,7 @@ impl Fitter {
 impl Fitter {
     fn solve(&self, source: &Source, stem: &str, coded: bool, scratch: &mut Scratch) -> Result<Scene, FitterError> {
         let picture = source.picture(self.max_pixels, coded)?;
-        let Solved { fit, time } = self.solver.solve(&picture, stem, scratch)?;
+        let Solved { fit, time, .. } = self.solver.solve(&picture, stem, scratch)?;
         Ok(Scene::of_fit(&fit, &picture, Origin { bank: self.bank.clone(), labels: None, time: Some(time) })?)
     }
 

@@ -44,6 +44,7 @@ pub struct Task<'a> {
 
 /// What a method found.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Found {
     /// The scene that is painted (of latents with every slot, opaque as it is confident), how it was reached, and what the
     /// method itself doubts. What a method does not know is empty or NaN; a network alone takes no step.
@@ -146,7 +147,7 @@ impl Runner {
             #[cfg(feature = "double")]
             (_, Precision::F64) => {
                 let (fit, cpu) = self.fit(self.double.as_ref(), task, &mut memory.double)?;
-                (precision::fit(&fit), cpu)
+                (fit.cast(), cpu)
             }
         };
         let mut there = fit.scene.clone();
@@ -267,10 +268,8 @@ pub fn timed<R>(work: impl FnOnce() -> Result<R>) -> Result<(R, Duration)> {
 fn fit_of(image: ImageView<'_, f32>, (found, cpu): (Optimum<f32>, Duration)) -> Result<(Fit<f32>, Duration)> {
     let painter = Painter::default();
     let (drawing, painted) = (painter.draw(&found.scene, image.size())?, painter.paint(&found.scene, image.size())?);
-    let fit = Fit {
-        loss: f32::of(found.loss),
-        steps: found.losses.len().saturating_sub(1),
-        ..Fit::of_painted(found.scene, &drawing, &image, painted.data())
-    };
+    let mut fit = Fit::of_painted(found.scene, &drawing, &image, painted.data());
+    fit.loss = f32::of(found.loss);
+    fit.steps = found.losses.len().saturating_sub(1);
     Ok((fit, cpu))
 }

@@ -70,8 +70,9 @@ pub fn fit_masks(
     let (drawing, painted) = (Painter::default().draw(&scene, size)?, Painter::default().paint(&scene, size)?);
     let image = &picture.image;
     let mae = PixelLoss::Mae.value(ImagePair::new(painted.view(), image.view())?, &mut ())?;
-    let fit = Fit::of_painted(scene, &drawing, &image.view(), painted.data());
-    Ok(MaskFit { fit: Fit { loss: mae, stop: StopReason::Converged, ..fit }, picture, labels: known[1..].to_vec() })
+    let mut fit = Fit::of_painted(scene, &drawing, &image.view(), painted.data());
+    (fit.loss, fit.stop) = (mae, StopReason::Converged);
+    Ok(MaskFit { fit, picture, labels: known[1..].to_vec() })
 }
 
 /// The mean color of the pixels of each owner, by their alpha; white for none. The background of a transparent picture is the color

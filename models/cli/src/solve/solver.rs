@@ -45,6 +45,7 @@ pub enum Start {
 
 /// What was found in a picture.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Solved {
     /// The scene, and what is known of its numbers.
     pub fit: Fit<f32>,
