@@ -39,7 +39,7 @@ pub(crate) fn rust_sources(folder: &str) -> Vec<Source> {
 }
 
 fn walk(folder: &Path, visit: &mut impl FnMut(&Path)) {
-    const IGNORED: [&str; 6] = [".git", "target", "out", "corpus", "artifacts", "coverage"];
+    const IGNORED: [&str; 8] = [".git", "target", "out", "corpus", "artifacts", "coverage", "dist", "node_modules"];
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         let name = path.file_name().unwrap().to_string_lossy();
