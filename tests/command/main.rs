@@ -5,6 +5,7 @@ extern crate alloc;
 
 mod bad_input;
 mod chart;
+mod coded;
 mod edges;
 mod evaluate;
 mod exports;

@@ -308,14 +308,31 @@ proptest! {
     }
 
     #[test]
-    fn no_picture_breaks_it(width in 1_usize..24, height in 1_usize..24, levels in prop::collection::vec(0_u8..4, 24 * 24 * 3)) {
-        let size = ImageSize::new(width, height).unwrap();
-        let pixels = levels[..3 * width * height].iter().map(|&level| f32::from(level) / 3.0).collect();
-        let picture: Image<f32> = Image::from_planar(size, pixels).unwrap();
-        if let Ok(traced) = trace(&picture.view(), &Known::default()) {
+    fn no_picture_breaks_it(
+        width in 1_usize..40,
+        height in 1_usize..40,
+        sheets in prop::collection::vec((0_usize..40, 0_usize..40, 1_usize..40, 1_usize..40, 0_u8..64), 0..9),
+        strays in prop::collection::vec((0_usize..1600, 0_u8..64), 0..12),
+        (coded, is_transparent) in any::<(bool, bool)>(),
+    ) {
+        // Sheets one over the other, down to slivers of a pixel, and pixels of any color: flat enough to be read.
+        let color = |code: u8| [code % 4, code / 4 % 4, code / 16].map(|level| f32::from(level) / 3.0);
+        let mut pixels = vec![color(63); width * height];
+        for (left, top, across, down, code) in sheets {
+            for (y, x) in (top..(top + down).min(height)).flat_map(|y| (left..(left + across).min(width)).map(move |x| (y, x))) {
+                pixels[y * width + x] = color(code);
+            }
+        }
+        for (place, code) in strays {
+            pixels[place % (width * height)] = color(code);
+        }
+        let picture = Image::from_interleaved(ImageSize::new(width, height).unwrap(), pixels.as_flattened()).unwrap();
+        let known = Known { matte: is_transparent.then_some(color(63)), coded };
+        if let Ok(traced) = trace(&picture.view(), &known) {
             let mut drawing = Drawing::default();
             traced.scene.draw(&OutlineBasis::new(64, 1).unwrap(), &mut drawing).unwrap();
             prop_assert!(drawing.vertices.as_flattened().iter().all(|value| value.is_finite()));
+            prop_assert!(traced.scene.objects.iter().flat_map(Object::color).all(|value| (0.0..=1.0).contains(&value)));
         }
     }
 }
