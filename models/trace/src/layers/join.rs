@@ -203,9 +203,8 @@ fn candidates(completion: &Completion<'_>) -> Vec<Vec<u32>> {
 /// Whether a way leads from one of some faces to one of others behind what is *shown* to lie in front of both, or was found to. That it is
 /// painted later is not enough for things that are whole by themselves: the fields of a chess board are painted in some order, too.
 fn is_shown_behind(completion: &Completion<'_>, faces: &[u32], others: &[u32]) -> bool {
-    let is_between = |&(a, b): &(u32, u32)| {
-        faces.contains(&a) && others.contains(&b) || faces.contains(&b) && others.contains(&a)
-    };
+    let is_between =
+        |&(a, b): &(u32, u32)| faces.contains(&a) && others.contains(&b) || faces.contains(&b) && others.contains(&a);
     if completion.united.iter().any(is_between) {
         return true;
     }

@@ -121,8 +121,7 @@ fn farthest(side: Color, through: Color, colors: impl Iterator<Item = Color>, no
 
 /// What a line that is nowhere full is likely to be: black on gray, white on gray; else as much as is seen.
 fn beyond(side: Color, seen: Color, canvas: &Canvas<'_>) -> Color {
-    let is_gray =
-        |color: Color| distance(color, canvas.white.map(|value| value * color[0])) <= tuning::LEAST_CONTRAST;
+    let is_gray = |color: Color| distance(color, canvas.white.map(|value| value * color[0])) <= tuning::LEAST_CONTRAST;
     match is_gray(side) && is_gray(seen) {
         true if seen[0] < side[0] => [0.0; 3],
         true => canvas.white,

@@ -261,12 +261,7 @@ pub(super) fn open(
     pixels.iter().enumerate().map(is_open).collect()
 }
 
-fn colors_near(
-    flat_colors: &[u16],
-    [width, height]: [usize; 2],
-    (i, reach): (usize, usize),
-    near: &mut Vec<u16>,
-) {
+fn colors_near(flat_colors: &[u16], [width, height]: [usize; 2], (i, reach): (usize, usize), near: &mut Vec<u16>) {
     let (x, y) = (i % width, i / width);
     near.clear();
     for row in y.saturating_sub(reach)..(y + reach + 1).min(height) {

@@ -164,7 +164,8 @@ fn take_lines(
     let mut open = mix::open(pixels, size, &flat, &colors.colors, noise);
     let noise = f64::from(noise.mixed);
     let is_mended = seam::mend(pixels, size, &flat, &mut open, &colors.colors, noise);
-    let canvas = cross::Canvas { pixels, size, flat: &flat, open: &open, noise, contrast, white: white.map(f64::from), widest };
+    let canvas =
+        cross::Canvas { pixels, size, flat: &flat, open: &open, noise, contrast, white: white.map(f64::from), widest };
     let mut lines = thin::find(&canvas, &colors.colors);
     if widest > tuning::THIN_WIDTH {
         lines = thin::crossing_lines(lines, colors.colors[0]);
