@@ -202,8 +202,6 @@ pub const MOST_PAIRED: usize = 5;
 pub const UNKNOWN_STAINED: f64 = 0.1;
 /// Times that the order of all faces that meet is asked again.
 pub const MOST_ROUNDS: usize = 3;
-/// Bits of a thing beside its color and outlines: which kind it is, one of ten, and its place in the order of painting, one of some tens.
-pub const OBJECT_BITS: f64 = 8.0;
 /// Bits that another order, or one thing in place of two, must save.
 pub const LEAST_SAVED: f64 = 1.0;
 /// Most bits for faces lying to one another as others of their colors do: less than a junction that was read, more than [`ENCLOSED_VOTE`].

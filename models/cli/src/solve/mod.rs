@@ -13,8 +13,8 @@
 //!
 //! # Examples
 //! ```
-//! use dvp::format::Picture;
-//! use dvp::solve::{Method, Scratch, Solver, Start};
+//! use dvp_cli::format::Picture;
+//! use dvp_cli::solve::{Method, Scratch, Solver, Start};
 //! use dvp_core::{Image, ImageSize};
 //! use dvp_fit::FitOptions;
 //! // A dark square on white.

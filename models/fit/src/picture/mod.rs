@@ -40,10 +40,6 @@ use most::at_most;
 /// ringing is read as faces, which come nearer to it but are none.
 const CLEARLY_WORSE: f32 = 2.0;
 
-/// The same in small pictures that a coder has changed: noise decides up to so many times as much. Of 48 scenes of the paper's kind (JPEG of
-/// quality 80) segments miss up to 1.14 times as much as the drawing in 19 of 20; of 210 icons more than that in three of four.
-const CODED_WORSE: f32 = 1.1;
-
 /// Memory of [`fit_picture`], one per thread, kept between pictures.
 #[derive(Debug, Default)]
 pub struct PictureScratch {
@@ -122,8 +118,7 @@ fn drawing_or_segments(
         return Ok(drawn);
     }
     let segments = fitter.fit(image, &mut scratch.fit)?;
-    let worse = if known.coded { CODED_WORSE } else { CLEARLY_WORSE };
-    Ok(if segments.loss < worse * drawn.loss { segments } else { drawn })
+    Ok(if segments.loss < CLEARLY_WORSE * drawn.loss { segments } else { drawn })
 }
 
 /// What is known of poses as a fit says it: covariances of (x, y, log scale, rotation), NaN where nothing is known, and which objects

@@ -54,8 +54,7 @@ pub(super) fn total(completion: &mut Completion<'_>) -> f64 {
         *whole += usize::from(group.is_whole(completion));
     }
     let again: usize = of_colors.values().map(|&(all, whole)| all - whole.max(1)).sum();
-    let bits = groups.iter().map(|group| group.completed.bits).sum::<f64>();
-    bits + again as f64 * COLOR_BITS + groups.len() as f64 * tuning::OBJECT_BITS
+    groups.iter().map(|group| group.completed.bits).sum::<f64>() + again as f64 * COLOR_BITS
 }
 
 /// Faces that are painted together.
@@ -110,7 +109,7 @@ impl Group {
         }
         // What no outline through both explains is one thing in two outlines.
         let joined = if has_pen || completed.agrees && completed.bits <= apart.bits { completed } else { apart };
-        let saved = alone + tuning::OBJECT_BITS - joined.bits;
+        let saved = alone - joined.bits;
         (saved > tuning::LEAST_SAVED).then_some((saved, Self { faces, completed: joined }))
     }
 }
@@ -164,8 +163,7 @@ fn together(completion: &mut Completion<'_>, groups: Vec<Group>) -> Vec<Group> {
     let ranks: Vec<usize> = faces.iter().map(|&face| completion.rank(face)).collect();
     completion.sink(&faces);
     let completed = completion.outlines(&faces);
-    let saved = (groups.len() - 1) as f64 * tuning::OBJECT_BITS;
-    if completed.agrees && completed.bits < apart.bits + saved - tuning::LEAST_SAVED {
+    if completed.agrees && completed.bits < apart.bits - tuning::LEAST_SAVED {
         return vec![Group { faces, completed }];
     }
     if !are_whole {
@@ -181,7 +179,7 @@ fn together(completion: &mut Completion<'_>, groups: Vec<Group>) -> Vec<Group> {
 pub(super) const COLOR_BITS: f64 = 24.0;
 
 /// Faces that may be one thing: of one color, where a way leads from one to the other behind what lies in front of both.
-fn candidates(completion: &Completion<'_>) -> Vec<Vec<u32>> {
+pub(super) fn candidates(completion: &Completion<'_>) -> Vec<Vec<u32>> {
     let mut sets = DisjointSets::default();
     sets.reset(completion.partition.faces.len() as u32);
     let painted = completion.painted();
@@ -200,14 +198,9 @@ fn candidates(completion: &Completion<'_>) -> Vec<Vec<u32>> {
     groups.into_values().collect()
 }
 
-/// Whether a way leads from one of some faces to one of others behind what is *shown* to lie in front of both, or was found to. That it is
-/// painted later is not enough for things that are whole by themselves: the fields of a chess board are painted in some order, too.
+/// Whether a way leads from one of some faces to one of others behind what is *shown* to lie in front of both. That it is painted later is
+/// not enough for things that are whole by themselves: the fields of a chess board are painted in some order, too.
 fn is_shown_behind(completion: &Completion<'_>, faces: &[u32], others: &[u32]) -> bool {
-    let is_between =
-        |&(a, b): &(u32, u32)| faces.contains(&a) && others.contains(&b) || faces.contains(&b) && others.contains(&a);
-    if completion.united.iter().any(is_between) {
-        return true;
-    }
     let is_shown = |front: u32, behind: u32| completion.order.in_front.contains(&(front, behind));
     let leads = |from: &[u32], to: &[u32]| {
         from.iter().any(|&face| reached(completion, face, is_shown).iter().any(|other| to.contains(other)))

@@ -81,14 +81,15 @@ impl Search<'_, '_> {
     /// of something, and within its openings, no junction need be clear.
     fn unite(&mut self, order: &mut Vec<u32>, total: &mut Option<f64>) -> bool {
         let mut is_changed = false;
-        let mut groups = self.groups();
         for (a, b, between) in self.parted() {
             if self.completion.is_spent() {
                 break;
             }
             let place = |face: u32| order.iter().position(|&other| other == face);
             let (Some(at_a), Some(at_b), Some(at)) = (place(a), place(b), place(between)) else { continue };
-            let are_one = groups.iter().any(|group| group.contains(&a) && group.contains(&b));
+            // What may be one thing as it is is so without this.
+            let are_one =
+                join::candidates(self.completion).iter().any(|group| group.contains(&a) && group.contains(&b));
             if at > at_a && at > at_b || are_one {
                 continue;
             }
@@ -112,21 +113,12 @@ impl Search<'_, '_> {
                 *order = moved;
                 is_changed = true;
                 *total = Some(after);
-                groups = self.groups();
             } else {
                 self.completion.united.pop();
             }
             self.completion.paint(order);
         }
         is_changed
-    }
-
-    /// Which faces are one thing in the present order.
-    fn groups(&mut self) -> Vec<Vec<u32>> {
-        let rank = self.completion.rank.clone();
-        let groups = join::groups(self.completion).into_iter().map(|(faces, _)| faces).collect();
-        self.completion.rank = rank;
-        groups
     }
 
     /// Puts faces of one color at the border of the picture in front of everything, where they are shorter as one sheet with an opening.
