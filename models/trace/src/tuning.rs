@@ -179,9 +179,6 @@ pub const SEAM_MOST: f64 = 0.27;
 
 /// What a face of a few pixels costs, bits: its color, 24, and three numbers of 10.
 pub const SPECK_BITS: f64 = 54.0;
-/// So many times as many blocks that differ a little as blocks that differ much make a picture a coded one, if nobody says so: 384 pictures of the
-/// paper's renderer have up to 1.1 times as many; JPEGs of icons about as many, photographs more.
-pub const CODED_BLOCKS: usize = 2;
 
 /// Bits that a grid must save over the whole drawing, and a class of equal numbers over what telling its members costs: chance saves so
 /// many in less than one of 200 drawings.

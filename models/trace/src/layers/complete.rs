@@ -197,8 +197,9 @@ impl Completion<'_> {
                         let led = led.filter(|led| self.check(&led.outlines, wanted).is_ok());
                         linked = [linked, led].into_iter().flatten().min_by(|a, b| a.bits.total_cmp(&b.bits));
                     }
-                    wrong_ways.push(self.priced(walked, &wrong, wanted));
-                    if !walk::pin(&mut walks, &wrong) {
+                    let is_pinned = walk::pin(&mut walks, &wrong);
+                    wrong_ways.push((walked, wrong));
+                    if !is_pinned {
                         break;
                     }
                     samples = walks.iter().map(Walk::samples).collect();
@@ -206,26 +207,26 @@ impl Completion<'_> {
             }
         }
         linked.unwrap_or_else(|| {
-            wrong_ways.push(Completed::new(walks.iter().map(|walk| self.traced(walk.ring)).collect(), false));
-            wrong_ways.into_iter().min_by(|a, b| a.bits.total_cmp(&b.bits)).unwrap_or_else(Completed::none)
+            let traced = Completed::new(walks.iter().map(|walk| self.traced(walk.ring)).collect(), false);
+            let priced = wrong_ways.into_iter().map(|(walked, wrong)| self.priced(walked, &wrong, wanted));
+            priced.fold(traced, |best, other| if other.bits < best.bits { other } else { best })
         })
     }
 
     /// Outlines that get pixels wrong, with what these cost: where colors are alike, or a coder has changed them, less than the corners of a
     /// polygon that gets them right.
     fn priced(&self, completed: Completed, wrong: &[[usize; 2]], wanted: impl Fn(u32) -> Option<bool>) -> Completed {
-        let misfit = |&at: &[usize; 2]| {
-            let face = self.partition.face_at(at);
-            let shown = match wanted(face) {
-                // What else may be shown there is not known: the worst of what is beside.
-                Some(true) => self.neighbors[face as usize].clone(),
-                _ => (0..self.rank.len() as u32).filter(|&face| wanted(face) == Some(true)).collect(),
-            };
+        let mut pixels: BTreeMap<u32, usize> = BTreeMap::new();
+        wrong.iter().for_each(|&at| *pixels.entry(self.partition.face_at(at)).or_default() += 1);
+        let own: Vec<u32> = (0..self.rank.len() as u32).filter(|&face| wanted(face) == Some(true)).collect();
+        let chi2 = |(&face, &count): (&u32, &usize)| {
+            // What else may be shown where its own face is missed is not known: the worst of what is beside.
+            let shown = if own.contains(&face) { &self.neighbors[face as usize] } else { &own };
             let color = self.partition.color(face);
             let contrast2 = |other: &u32| (0..3).map(|c| (self.partition.color(*other)[c] - color[c]).powi(2)).sum();
-            shown.iter().map(contrast2).fold(0.0, f64::max) / self.partition.sigma.powi(2)
+            count as f64 * shown.iter().map(contrast2).fold(0.0, f64::max) / self.partition.sigma.powi(2)
         };
-        let bits = completed.bits + self.ruler.misfit(wrong.iter().map(misfit).sum());
+        let bits = completed.bits + self.ruler.misfit(pixels.iter().map(chi2).sum());
         // Without outlines nothing is explained.
         let bits = if completed.outlines.is_empty() { f64::INFINITY } else { bits };
         Completed { bits, agrees: false, ..completed }

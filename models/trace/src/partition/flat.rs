@@ -38,14 +38,6 @@ pub(super) const NONE: u32 = u32::MAX;
 impl Noise {
     /// From the blocks themselves: in a clean picture nearly all that are not equal are edges; noise leaves many that differ a little.
     pub(super) fn of(pixels: &[[f32; 3]], size: [usize; 2], coded: bool) -> Result<Self, NoPartition> {
-        let [mut little, mut much] = [0usize; 2];
-        for range in ranges(pixels, size, [1.0; 3]).map(|(_, range)| range) {
-            if range > tuning::CLEAN_STEP && range <= tuning::CODED_STEP {
-                little += 1;
-            } else if range > tuning::CODED_STEP {
-                much += 1;
-            }
-        }
         if coded {
             return Ok(Self {
                 flat: tuning::CODED_STEP,
@@ -54,6 +46,14 @@ impl Noise {
                 contrast: tuning::CODED_CONTRAST,
                 fewest: tuning::CODED_THIN,
             });
+        }
+        let [mut little, mut much] = [0usize; 2];
+        for range in ranges(pixels, size, [1.0; 3]).map(|(_, range)| range) {
+            if range > tuning::CLEAN_STEP && range <= tuning::CODED_STEP {
+                little += 1;
+            } else if range > tuning::CODED_STEP {
+                much += 1;
+            }
         }
         if little > tuning::NOISY_BLOCKS * much {
             return Err(NoPartition::Noisy);
