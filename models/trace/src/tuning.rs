@@ -64,7 +64,7 @@ pub const CODED_ALIKE: f64 = 16.0;
 pub const CODED_SMALL: usize = 200;
 /// Regions of coded pictures of up to so many pixels may be stains beside edges.
 pub const CODED_MOST_STAIN: usize = 600;
-/// How far from edges (pixels) coders stain: a block of 8.
+/// How far from edges (pixels) colors are looked for, since coders stain there: half a block of 8; beyond, colors are off by 1.5 levels only.
 pub const CODED_REACH: usize = 4;
 /// Most colors of a drawing.
 pub const MOST_COLORS: usize = 96;
