@@ -104,21 +104,29 @@ pub fn trace(image: &ImageView<'_, f32>, known: &Known) -> Result<Traced, NoDraw
         true => 0.0,
         false => boundary::stained(&partition, &rings).unwrap_or(tuning::UNKNOWN_STAINED),
     };
-    if !partition.coded && !partition.is_hard && is_soft(stained, boundary::wobble(&rings).unwrap_or(0.0)) {
+    let wobble = if partition.coded || partition.is_hard { 0.0 } else { boundary::wobble(&rings).unwrap_or(0.0) };
+    if !partition.coded && !partition.is_hard && is_soft(stained, wobble) {
         return Err(NoDrawing::Soft { stained });
     }
-    let mut layers = layers::layers(&partition, &rings, known.matte.map(|matte| matte.map(f64::from)));
+    // Renderers that count few places in each pixel are as steep as those with a profile of their own.
+    let stained = if wobble < -tuning::SURE_WOBBLE { stained.max(tuning::UNKNOWN_STAINED) } else { stained };
+    let matte = known.matte.map(|matte| matte.map(f64::from));
+    let mut layers = layers::layers(&partition, &rings, matte);
+    if let Some(partition) = partition.with_slivers() {
+        let others = layers::layers(&partition, &boundary::rings(&partition), matte);
+        if others.bits_with_colors() < layers.bits_with_colors() {
+            layers = others;
+        }
+    }
     let bits = layers.bits();
     ties::tie(&mut layers, partition.size);
     let (scene, deviations) = scene::scene(&layers, image.size(), known.matte.is_some(), partition.is_hard);
     Ok(Traced { scene, deviations, bits, stained })
 }
 
-/// Whether edges have another profile than area coverage: wider, or steeper with stains beyond, or much steeper.
+/// Whether edges have another profile than area coverage: wider, or steeper with stains beyond.
 fn is_soft(stained: f64, wobble: f64) -> bool {
-    stained > tuning::SOFT_STAINED
-        || wobble < -tuning::STEEP_WOBBLE && stained > tuning::DOUBTFUL_STAINED
-        || wobble < -tuning::SURE_WOBBLE
+    stained > tuning::SOFT_STAINED || wobble < -tuning::STEEP_WOBBLE && stained > tuning::DOUBTFUL_STAINED
 }
 
 impl core::fmt::Display for NoDrawing {

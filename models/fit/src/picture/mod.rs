@@ -23,7 +23,7 @@ mod tests;
 use alloc::vec::Vec;
 
 use dvp_core::loss::{ImagePair, Loss as _};
-use dvp_core::render::PixelLoss;
+use dvp_core::render::{EdgeLaw, PixelLoss};
 use dvp_core::{ImageView, Real as _};
 use dvp_trace::{PoseDeviation, tuning};
 
@@ -36,8 +36,8 @@ pub use openings::cut_openings;
 
 use most::at_most;
 
-/// Where edges leave a doubt, segments are taken, whose edges are fitted, unless they miss the picture by so many times as much:
-/// ringing is read as faces, which come nearer to it but are none.
+/// Where edges leave a doubt, the fit of their kind is taken, unless it misses the picture by so many times as much as the other one: ringing
+/// is read as faces, which come nearer to it but are none, and segments under soft edges come nearer to stains.
 const CLEARLY_WORSE: f32 = 2.0;
 
 /// Memory of [`fit_picture`], one per thread, kept between pictures.
@@ -118,7 +118,10 @@ fn drawing_or_segments(
         return Ok(drawn);
     }
     let segments = fitter.fit(image, &mut scratch.fit)?;
-    Ok(if segments.loss < CLEARLY_WORSE * drawn.loss { segments } else { drawn })
+    // Segments measure the profile of all edges at once: drawings have that of area coverage.
+    let is_area = segments.scene.edge.law == EdgeLaw::Area;
+    let (likely, other) = if is_area { (drawn, segments) } else { (segments, drawn) };
+    Ok(if CLEARLY_WORSE * other.loss < likely.loss { other } else { likely })
 }
 
 /// What is known of poses as a fit says it: covariances of (x, y, log scale, rotation), NaN where nothing is known, and which objects

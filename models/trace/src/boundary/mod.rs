@@ -4,6 +4,7 @@
 
 mod profile;
 mod ring;
+mod uneven;
 mod window;
 
 use alloc::vec::Vec;
@@ -54,6 +55,14 @@ pub fn rings(partition: &Partition) -> Vec<Vec<Ring>> {
     let mut rings = ring::walk_faces(partition);
     for ring in rings.iter_mut().flatten() {
         read(partition, ring);
+    }
+    let uneven = uneven::unevenness(partition, &rings);
+    if uneven > tuning::RENDERER_SIGMA {
+        for sample in
+            rings.iter_mut().flatten().flat_map(|ring| &mut ring.steps).filter_map(|step| step.sample.as_mut())
+        {
+            sample.sigma = sample.sigma.max(uneven);
+        }
     }
     rings
 }

@@ -100,7 +100,7 @@ fn places(five: &[Sample]) -> Option<[f64; 5]> {
     (is_row && is_straight && slope.abs() <= MOST_SLOPE).then_some(at)
 }
 
-fn fourth_difference(at: [f64; 5]) -> f64 {
+pub(super) fn fourth_difference(at: [f64; 5]) -> f64 {
     at[0] - 4.0 * at[1] + 6.0 * at[2] - 4.0 * at[3] + at[4]
 }
 

@@ -49,9 +49,12 @@ pub(super) fn read(partition: &Partition, ring: &mut Ring) {
 }
 
 /// The mean position of the boundary across one crack; none where a third color shows in the window, or the border is met.
-fn sample(partition: &Partition, step: &Step) -> Option<Sample> {
+pub(super) fn sample(partition: &Partition, step: &Step) -> Option<Sample> {
     if step.other == OUTSIDE {
         return None;
+    }
+    if let Some(sample) = partition.sliver_sample(step.crack) {
+        return sample;
     }
     let [inner, outer] = [step.inner, step.other].map(|face| partition.color(face));
     let contrast2: f64 = (0..3).map(|c| (inner[c] - outer[c]).powi(2)).sum();
@@ -139,7 +142,7 @@ fn straighten(partition: &Partition, ring: &mut Ring) {
 }
 
 /// The next crack, ahead or back, with the same heading; none if the boundary leads too far across before.
-fn beside(ring: &Ring, k: usize, ahead: bool) -> Option<usize> {
+pub(super) fn beside(ring: &Ring, k: usize, ahead: bool) -> Option<usize> {
     let n = ring.steps.len();
     let heading = ring.steps[k].crack.heading;
     let step = |k: usize| if ahead { (k + 1) % n } else { (k + n - 1) % n };

@@ -97,7 +97,7 @@ impl Completion<'_> {
         self.rank[face as usize]
     }
 
-    /// Whether a face has no flat pixel: too small to tell how it goes on.
+    /// Whether a face has no flat pixel: it may be a part of anything.
     pub(super) fn is_small(&self, face: u32) -> bool {
         self.partition.faces[face as usize].flat == 0
     }
@@ -166,14 +166,13 @@ impl Completion<'_> {
     /// [`Completion::outlines`] of a group at place `rank` that was not asked for before.
     fn completed(&self, group: &[u32], rank: usize) -> Completed {
         let wanted = |label: u32| self.wanted(label, group, rank);
-        let parts = group.iter().flat_map(|&face| self.rings[face as usize].iter().map(move |ring| (face, ring)));
+        let parts = group.iter().flat_map(|&face| &self.rings[face as usize]);
+        // Too small to tell how it goes on.
+        let are_specks = group.iter().all(|&face| self.is_small(face) && !self.partition.has_sliver(face));
         let mut walks: Vec<Walk<'_>> = parts
-            .map(|(face, ring)| {
-                let hidden = ring
-                    .steps
-                    .iter()
-                    .map(|step| self.hidden(step, rank, self.is_small(face), group.len() > 1))
-                    .collect();
+            .map(|ring| {
+                let hidden =
+                    ring.steps.iter().map(|step| self.hidden(step, rank, are_specks, group.len() > 1)).collect();
                 Walk { ring, hidden }
             })
             // A hole that is filled by what lies in front of it is none.
@@ -277,7 +276,7 @@ impl Completion<'_> {
     }
 
     /// How a step of a layer's boundary is hidden, if it is.
-    fn hidden(&self, step: &Step, rank: usize, is_small: bool, is_part: bool) -> Option<Hidden> {
+    fn hidden(&self, step: &Step, rank: usize, is_speck: bool, is_part: bool) -> Option<Hidden> {
         if step.other != OUTSIDE && self.rank(step.other) <= rank {
             return None;
         }
@@ -285,7 +284,7 @@ impl Completion<'_> {
         match pen {
             // What ends at a line ends under it, and what is seen on both sides of it goes on.
             Some(stroke) if !is_part => Some(Hidden::Under { shift: 0.5 * stroke.width }),
-            _ => (!is_small).then_some(Hidden::Free),
+            _ => (!is_speck).then_some(Hidden::Free),
         }
     }
 

@@ -78,6 +78,12 @@ impl Layers {
     pub fn bits(&self) -> f64 {
         self.layers.iter().map(|layer| layer.bits).sum()
     }
+
+    /// The same with the colors.
+    #[must_use]
+    pub fn bits_with_colors(&self) -> f64 {
+        self.bits() + join::COLOR_BITS * self.layers.len() as f64
+    }
 }
 
 /// The layers of a picture. `matte`: the color of what shows nothing, if the picture has such.
@@ -124,7 +130,8 @@ pub fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<Color>) 
     let lines = partition.lines.iter().filter_map(|line| Some((line.color, fit_thin(&line.chain, &ruler)?)));
     layers.extend(lines.map(|(color, stroke)| {
         let points: usize = stroke.rings.iter().map(|ring| ring.points.len()).sum();
-        let bits = (2 * points + 1) as f64 * ruler.number(tuning::CRACK_SIGMA);
+        // Where it passes and how wide it is can be seen, where it ends less so.
+        let bits = (2 * points - 1) as f64 * ruler.number(tuning::THIN_SIGMA) + 2.0 * ruler.number(tuning::CRACK_SIGMA);
         Layer { color: partition.rgb(color), form: Form::Stroked(stroke), bits }
     }));
     Layers { background: partition.rgb(partition.color(background)), layers }

@@ -26,6 +26,16 @@ pub struct Face {
     pub bounds: [usize; 4],
 }
 
+impl Face {
+    /// Adds pixels, of which some are flat, within columns and rows (the first, and that after the last).
+    pub(super) fn take(&mut self, area: usize, flat: usize, [columns, rows]: [[usize; 2]; 2]) {
+        self.area += area;
+        self.flat += flat;
+        let [left, top, right, bottom] = self.bounds;
+        self.bounds = [left.min(columns[0]), top.min(rows[0]), right.max(columns[1]), bottom.max(rows[1])];
+    }
+}
+
 /// Cuts a picture into faces; specks that a mixture of their neighbors explains nearly as well are given to these.
 pub(super) fn cut(size: [usize; 2], pixels: Vec<[f32; 3]>, mut mixed: Mixed) -> Partition {
     let (mut labels, mut faces) = label(size, &mixed);
@@ -41,7 +51,6 @@ pub(super) fn cut(size: [usize; 2], pixels: Vec<[f32; 3]>, mut mixed: Mixed) -> 
 
 fn partition(size: [usize; 2], pixels: Vec<[f32; 3]>, mixed: Mixed, labels: Vec<u32>, faces: Vec<Face>) -> Partition {
     let Mixed { shares, palette, unexplained, noise, .. } = mixed;
-    let lines = Vec::new();
     let [width, _] = size;
     let is_edge =
         |&i: &usize| i % width > 0 && labels[i - 1] != labels[i] || i >= width && labels[i - width] != labels[i];
@@ -58,7 +67,8 @@ fn partition(size: [usize; 2], pixels: Vec<[f32; 3]>, mixed: Mixed, labels: Vec<
         labels,
         shares,
         faces,
-        lines,
+        lines: Vec::new(),
+        slivers: Vec::new(),
         palette,
         coded: false,
         mix_noise: noise,
@@ -118,11 +128,7 @@ fn label([width, height]: [usize; 2], mixed: &Mixed) -> (Vec<u32>, Vec<Face>) {
             faces.push(Face { color: usize::from(colors[i]), area: 0, flat: 0, bounds: [x, y, x + 1, y + 1] });
         }
         labels[i] = number[root];
-        let face = &mut faces[number[root] as usize];
-        face.area += 1;
-        face.flat += usize::from(mixed.is_flat[i]);
-        let [left, top, right, bottom] = face.bounds;
-        face.bounds = [left.min(x), top.min(y), right.max(x + 1), bottom.max(y + 1)];
+        faces[number[root] as usize].take(1, usize::from(mixed.is_flat[i]), [[x, x + 1], [y, y + 1]]);
     }
     (labels, faces)
 }

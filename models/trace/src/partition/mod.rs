@@ -2,7 +2,7 @@
 //!
 //! Every pixel is pure (of one face) or mixed (of two, rarely three, with shares). `flat` finds what is of one color beyond doubt,
 //! `palette` the colors, `seam` mends what renderers let through between things side by side, `thin` (windows of `cross`, colors of `ink`, joined
-//! by `chain`) finds and `erase` takes out lines without a pixel of their own, `mix` explains every other pixel as a mixture of colors nearby, `faces`
+//! by `chain`) finds and `erase` takes out lines without a pixel of their own (`sliver` puts some back), `mix` explains every other pixel as a mixture of colors nearby, `faces`
 //! joins pixels to faces, but not across the corners of `checker`.
 
 mod chain;
@@ -16,6 +16,7 @@ mod ink;
 mod mix;
 mod palette;
 mod seam;
+mod sliver;
 #[cfg(test)]
 mod tests;
 mod thin;
@@ -51,6 +52,8 @@ pub struct Partition {
     pub faces: Vec<Face>,
     /// Lines that were taken out before the cut.
     pub lines: Vec<ThinLine>,
+    /// Lines that are faces.
+    pub(crate) slivers: Vec<sliver::Sliver>,
     /// The colors; faces name one of them. [`Self::rgb`] makes colors of them.
     pub palette: Vec<Color>,
     /// Whether it looks as if a coder of photographs had changed it.

@@ -1,0 +1,53 @@
+//! How uneven the edges of a picture are: renderers that count a few places in each pixel are off by another amount in every window.
+
+use alloc::vec::Vec;
+
+use super::window::{beside, sample};
+use super::{Ring, profile};
+use crate::partition::Partition;
+
+/// Change of the position over five windows from which on an edge is slanted: upright ones are off by the same everywhere.
+const LEAST_SLANT: f64 = 0.4;
+/// Most change of the position per window.
+const MOST_SLOPE: f64 = 1.5;
+/// Residual (pixels) of five positions in a row from a straight line up to which there is no corner between them.
+const MOST_BENT: f64 = 0.7;
+/// Fewest stretches of five windows that tell.
+const LEAST_COUNT: usize = 6;
+
+/// Standard deviation of the positions along slanted edges, pixels; 0 if too few tell.
+///
+/// *Why*: fourth differences of five positions in a row show neither slopes nor bends, and their median no corners.
+pub(super) fn unevenness(partition: &Partition, rings: &[Vec<Ring>]) -> f64 {
+    let mut off: Vec<f64> = Vec::new();
+    for ring in rings.iter().flatten() {
+        // The rings of both sides of a boundary tell the same.
+        for first in (0..ring.steps.len()).filter(|&k| ring.steps[k].inner < ring.steps[k].other) {
+            off.extend(five(partition, ring, first).map(|at| profile::fourth_difference(at).abs()));
+        }
+    }
+    if off.len() < LEAST_COUNT {
+        return 0.0;
+    }
+    let middle = off.len() / 2;
+    let (_, median, _) = off.select_nth_unstable_by(middle, f64::total_cmp);
+    // The median of a normal distribution's absolute values, and the root of the sum of the squares of 1, -4, 6, -4, 1.
+    *median / 0.6745 / 70.0_f64.sqrt()
+}
+
+/// Positions in five windows side by side from step `first` on, along their axis; none if the boundary is not slanted or not straight there.
+fn five(partition: &Partition, ring: &Ring, first: usize) -> Option<[f64; 5]> {
+    let mut at = [0.0; 5];
+    let mut k = first;
+    for (n, value) in at.iter_mut().enumerate() {
+        if n > 0 {
+            k = beside(ring, k, true)?;
+        }
+        let sample = sample(partition, &ring.steps[k])?;
+        *value = sample.point.dot(sample.axis);
+    }
+    let slope = 0.1 * (at[3] - at[1] + 2.0 * (at[4] - at[0]));
+    let mean = at.iter().sum::<f64>() / 5.0;
+    let is_straight = (0..5).all(|k| (at[k] - mean - slope * (k as f64 - 2.0)).abs() < MOST_BENT);
+    (is_straight && 4.0 * slope.abs() > LEAST_SLANT && slope.abs() < MOST_SLOPE).then_some(at)
+}

@@ -1,0 +1,222 @@
+//! Thin lines between two faces that may be slivers: what is seen of a third thing that both hide but for a pixel or two.
+//!
+//! A pen draws a line of its own color on what lies there. A sliver has the color of something that is seen elsewhere too, and one face on
+//! its one side and another on its other. Which of both it is the shorter description tells.
+
+use alloc::collections::{BTreeMap, BTreeSet};
+use alloc::vec::Vec;
+
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
+
+use dvp_core::Vec2;
+use dvp_core::contour::{Crack, Heading};
+
+use super::palette::distance;
+use super::thin::ThinLine;
+use super::{Face, OUTSIDE, Partition};
+use crate::sample::Sample;
+use crate::stroke::ThinSample;
+
+/// Share of the windows of a line that must lie between two faces.
+const MOSTLY: f64 = 0.8;
+/// Longest gap between windows (pixels) that a line is supposed to go on in.
+const LONGEST_GAP: f64 = 4.0;
+/// How far from a window's reading of an edge (pixels) a crack may be that the reading is of.
+const NEAR: f64 = 1.5;
+
+/// A part of a face that is thinner than two pixels, both sides of whose boundary the same windows tell.
+#[derive(Clone, Debug)]
+pub(crate) struct Sliver {
+    pixels: BTreeSet<usize>,
+    windows: Vec<ThinSample>,
+}
+
+impl Partition {
+    /// The same with lines between two faces as faces, or parts of those that they touch, where they have the color of another face; none if
+    /// no line is such.
+    #[must_use]
+    pub fn with_slivers(&self) -> Option<Self> {
+        let mut cut = self.clone();
+        cut.lines.clear();
+        for line in &self.lines {
+            if !cut.insert(line) {
+                cut.lines.push(line.clone());
+            }
+        }
+        (!cut.slivers.is_empty()).then_some(cut)
+    }
+
+    /// Whether a face is a sliver, at least in part.
+    #[must_use]
+    pub fn has_sliver(&self, face: u32) -> bool {
+        self.slivers.iter().any(|sliver| sliver.pixels.first().is_some_and(|&i| self.labels[i] == face))
+    }
+
+    /// The boundary at a crack beside a sliver, as the windows across it tell, which may be nothing; none if there is no sliver.
+    pub(crate) fn sliver_sample(&self, crack: Crack) -> Option<Option<Sample>> {
+        let sides = crack.sides().map(|[x, y]| y * self.size[0] + x);
+        let sliver = self.slivers.iter().find(|sliver| sides.iter().any(|i| sliver.pixels.contains(i)))?;
+        Some(sliver.sample(crack))
+    }
+
+    /// Makes a face of a line; whether it may be a sliver.
+    fn insert(&mut self, line: &ThinLine) -> bool {
+        let color = (0..self.palette.len()).find(|&k| distance(self.palette[k], line.color) <= self.mix_noise);
+        let Some(color) = color.filter(|&color| self.faces.iter().any(|face| face.color == color && face.flat > 0))
+        else {
+            return false;
+        };
+        let windows = &line.chain.samples;
+        let between = windows.iter().filter(|window| self.is_between(window)).count();
+        if line.chain.is_closed || (between as f64) < MOSTLY * windows.len() as f64 {
+            return false;
+        }
+        let covered = self.covered(line);
+        let mut after = self.clone();
+        let face = after.faces.len() as u32;
+        after.faces.push(Face { color, area: 0, flat: 0, bounds: [usize::MAX, usize::MAX, 0, 0] });
+        for (&i, &share) in &covered {
+            after.faces[after.labels[i] as usize].area -= 1;
+            after.faces[face as usize].take(1, 0, [i % self.size[0], i / self.size[0]].map(|at| [at, at + 1]));
+            (after.labels[i], after.shares[i]) = (face, share);
+        }
+        // A line that cuts a face in two, or is itself in pieces, is none that separates two faces.
+        let mut touched: Vec<u32> = covered.keys().map(|&i| self.labels[i]).chain([face]).collect();
+        touched.sort_unstable();
+        touched.dedup();
+        if !touched.into_iter().all(|face| after.is_in_one_piece(face)) {
+            return false;
+        }
+        after.slivers.push(Sliver { pixels: covered.keys().copied().collect(), windows: windows.clone() });
+        while let Some(other) = after.alike_beside(&covered) {
+            let keep = after.labels[*covered.keys().next().unwrap_or(&0)];
+            after.unite(keep, other);
+        }
+        *self = after;
+        true
+    }
+
+    /// Another face of the same color that touches the side of a pixel.
+    fn alike_beside(&self, pixels: &BTreeMap<usize, f32>) -> Option<u32> {
+        let color = |face: u32| self.faces[face as usize].color;
+        pixels.keys().find_map(|&i| {
+            let (own, [x, y]) = (self.labels[i], [i % self.size[0], i / self.size[0]]);
+            let beside = [[x + 1, y], [x.wrapping_sub(1), y], [x, y + 1], [x, y.wrapping_sub(1)]];
+            beside
+                .into_iter()
+                .map(|at| self.face_at(at))
+                .find(|&face| face != OUTSIDE && face != own && color(face) == color(own))
+        })
+    }
+
+    /// Makes one face of two; the last one takes the number of that which is gone.
+    fn unite(&mut self, keep: u32, gone: u32) {
+        let [low, high] = [keep.min(gone), keep.max(gone)];
+        let last = (self.faces.len() - 1) as u32;
+        let Face { area, flat, bounds: [left, top, right, bottom], .. } = self.faces[high as usize];
+        self.faces[low as usize].take(area, flat, [[left, right], [top, bottom]]);
+        self.faces.swap_remove(high as usize);
+        for label in &mut self.labels {
+            if *label == high {
+                *label = low;
+            } else if *label == last {
+                *label = high;
+            }
+        }
+    }
+
+    /// Whether a window has two faces on its sides.
+    fn is_between(&self, window: &ThinSample) -> bool {
+        let reach = window.axis * (0.5 * window.width + 1.0);
+        let [before, behind] = [window.point - reach, window.point + reach].map(|at| self.face_at(pixel(at)));
+        before != behind
+    }
+
+    /// The pixels that a line covers, those in which most of it lies where it covers no center, with its share.
+    fn covered(&self, line: &ThinLine) -> BTreeMap<usize, f32> {
+        let windows = &line.chain.samples;
+        let mut all = Vec::new();
+        for pair in windows.windows(2) {
+            all.push(pair[0]);
+            let steps = (pair[1].point - pair[0].point).length().round();
+            if pair[0].axis == pair[1].axis && steps > 1.0 && steps <= LONGEST_GAP {
+                let between = |k: usize| pair[0].point.lerp(pair[1].point, k as f64 / steps);
+                all.extend((1..steps as usize).map(|k| ThinSample { point: between(k), ..pair[0] }));
+            }
+        }
+        all.extend(windows.last());
+        // Windows at its ends that it covers in part only.
+        for (k, tip) in [windows.first(), windows.last()].into_iter().enumerate() {
+            let inner = if k == 0 { windows.get(1) } else { windows.get(windows.len().wrapping_sub(2)) };
+            let (Some(tip), Some(inner)) = (tip, inner) else { continue };
+            let out = (tip.point - inner.point).normalized().unwrap_or_default();
+            let count = line.chain.ends[k].ceil() as usize;
+            all.extend((1..=count).map(|n| ThinSample { point: tip.point + out * n as f64, ..*tip }));
+        }
+        let mut pixels = BTreeMap::new();
+        for window in all {
+            let along = window.axis.perp();
+            let middle = window.point.dot(window.axis);
+            let [low, high] = [middle - 0.5 * window.width, middle + 0.5 * window.width];
+            let [first, last] = [(low + 0.5).floor(), (high - 0.5).floor()];
+            let [first, last] = if last < first { [middle.floor(); 2] } else { [first, last] };
+            let mut at = first;
+            while at <= last {
+                let [x, y] = pixel(along * window.point.dot(along) + window.axis * (at + 0.5));
+                if x < self.size[0] && y < self.size[1] {
+                    let share = (high.min(at + 1.0) - low.max(at)).clamp(0.0, 1.0);
+                    pixels.insert(y * self.size[0] + x, share as f32);
+                }
+                at += 1.0;
+            }
+        }
+        pixels
+    }
+
+    /// Whether all pixels of a face touch, be it at corners.
+    fn is_in_one_piece(&self, face: u32) -> bool {
+        let [left, top, right, bottom] = self.faces[face as usize].bounds;
+        let is_own = |[x, y]: [usize; 2]| {
+            (left..right).contains(&x) && (top..bottom).contains(&y) && self.face_at([x, y]) == face
+        };
+        let columns = right.saturating_sub(left);
+        let mut is_seen = alloc::vec![false; columns * bottom.saturating_sub(top)];
+        let mut open: Vec<[usize; 2]> =
+            (top..bottom).flat_map(|y| (left..right).map(move |x| [x, y])).find(|&at| is_own(at)).into_iter().collect();
+        let mut count = 0;
+        while let Some([x, y]) = open.pop() {
+            let k = (y - top) * columns + x - left;
+            if core::mem::replace(&mut is_seen[k], true) {
+                continue;
+            }
+            count += 1;
+            let around = (0..9).map(|k| [(x + k % 3).wrapping_sub(1), (y + k / 3).wrapping_sub(1)]);
+            open.extend(around.filter(|&at| is_own(at)));
+        }
+        count > 0 && count == self.faces[face as usize].area
+    }
+}
+
+impl Sliver {
+    fn sample(&self, crack: Crack) -> Option<Sample> {
+        let axis = match crack.heading {
+            Heading::PlusX | Heading::MinusX => Vec2::new(0.0, 1.0),
+            Heading::PlusY | Heading::MinusY => Vec2::new(1.0, 0.0),
+        };
+        let [from, to] = [crack.start, crack.end()].map(|[x, y]| Vec2::new(x as f64, y as f64));
+        let middle = from.lerp(to, 0.5);
+        let along = axis.perp();
+        let is_here = |window: &&ThinSample| window.axis == axis && (window.point - middle).dot(along).abs() < 0.5;
+        let off = |window: &ThinSample| (window.point - middle).dot(axis);
+        let window = self.windows.iter().filter(is_here).min_by(|a, b| off(a).abs().total_cmp(&off(b).abs()))?;
+        let side = if off(window) > 0.0 { -0.5 } else { 0.5 };
+        let point = window.point + axis * (side * window.width);
+        ((point - middle).dot(axis).abs() < NEAR).then_some(Sample { point, axis, sigma: window.sigma })
+    }
+}
+
+/// The pixel that a place lies in; beyond the picture to the left and above it is no pixel.
+fn pixel(at: Vec2<f64>) -> [usize; 2] {
+    [at.x, at.y].map(|value| if value < 0.0 { usize::MAX } else { value as usize })
+}
