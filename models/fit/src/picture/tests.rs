@@ -111,3 +111,14 @@ fn the_largest_of_a_drawing_stay_if_fewer_are_asked_for() {
     assert_eq!(one.marginal_gain.len(), 1);
     assert!(one.doubts().unexplained && !all.doubts().unexplained);
 }
+
+#[test]
+fn a_doubt_about_edges_is_decided_by_the_profile_of_them_all() {
+    // A coder leaves a doubt in small pictures: whether these edges are area coverage, segments tell.
+    let square = in_square(12, 36);
+    let flat = picture(|column, row| if square(column, row) { [0.1, 0.2, 0.6] } else { [1.0; 3] });
+    let coded = Known { coded: true, ..Known::default() };
+    let drawn = fit(&flat, &coded, FitOptions::default());
+    let [object] = &drawn.scene.objects[..] else { panic!("{:?}", drawn.scene) };
+    assert!(object.shape.efd().is_none(), "{object:?}");
+}

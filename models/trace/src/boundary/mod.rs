@@ -1,6 +1,7 @@
 //! Where two faces meet, to a few hundredths of a pixel or better.
 //!
-//! `profile` tells whether edges are clear, `ring` walks around faces along the cracks between pixels, `window` reads at every crack where the boundary passes.
+//! `profile` tells whether edges are clear, `ring` walks around faces along the cracks between pixels, `window` reads at every crack where the
+//! boundary passes, `uneven` how far that is off.
 
 mod profile;
 mod ring;

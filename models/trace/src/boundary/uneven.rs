@@ -2,6 +2,9 @@
 
 use alloc::vec::Vec;
 
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
+
 use super::window::{beside, sample};
 use super::{Ring, profile};
 use crate::partition::Partition;
