@@ -10,7 +10,7 @@
 | val | the reference's 256 validation images of MDS-HR (../shared/mdshr), 32 of them in float, with and without its shapes | scenes |
 | fresh | `dvp generate`: MDS-HR and the like of Multi-dSprites, seeds of sets.py; clean, noise 0.02 and 0.05, JPEG 80 | scenes |
 | pictures | the suite tests/pictures, drawn by the example `any_picture` | label maps, scenes |
-| holes | ../shared/holes; connected components of equal color beside them | labels, whole shapes |
+| holes | ../shared/holes from number 20 on (the first were looked at); connected components of equal color beside them | labels, whole shapes |
 | circles | ../shared/circles | numbers of the circles |
 | charts | charts.py, 128, 256 and 512 px | marks, SVG |
 | real | ../shared/real at 128, 256, 512 px and as 400 px JPEG, peers at 256 px | SVG |

@@ -188,12 +188,17 @@ def real(place):
             yield f"real {group[0]} {group[1]}" + (f" ({method})" if method != "dvp" else ""), rows
 
 
+# Pictures of ../shared/holes, from the first on, that somebody has looked at.
+HOLES_SEEN = 20
+
+
 def holes(place):
-    """Rings, frames and letters with openings, partly hidden. Beside ours the row of connected components of equal color."""
+    """Squares and triangles with openings, partly hidden. Beside ours the row of connected components of equal color. The first HOLES_SEEN
+    pictures are left out: the fit was mended on them."""
     folder = place.shared / "holes"
     if not folder.is_dir():
         return place.skip("holes", f"{folder} is not there")
-    paths = place.some(p for p in folder.glob("*.png") if "." not in p.stem)
+    paths = place.some(p for p in folder.glob("*.png") if "." not in p.stem and int(p.stem) >= HOLES_SEEN)
     out, fits = place.fit("holes", paths, ("--labels", "--whole"))
     ours, simple = {}, {}
     for path in paths:
