@@ -118,8 +118,8 @@ fn drawing_or_segments(
         return Ok(drawn);
     }
     let segments = fitter.fit(image, &mut scratch.fit)?;
-    // Segments measure the profile of all edges at once: drawings have that of area coverage.
-    let is_area = segments.scene.edge.law == EdgeLaw::Area;
+    // Segments measure the profile of all edges at once: drawings have that of area coverage. Ringing hides it, and coders ring.
+    let is_area = segments.scene.edge.law == EdgeLaw::Area && traced.stained > 0.0 && !known.coded;
     let (likely, other) = if is_area { (drawn, segments) } else { (segments, drawn) };
     Ok(if CLEARLY_WORSE * other.loss < likely.loss { other } else { likely })
 }
