@@ -46,8 +46,8 @@ impl<'a> Arbitrary<'a> for Input {
 
 static FITTERS: LazyLock<[Fitter<f32>; 2]> = LazyLock::new(|| {
     let prototypes = mdshr_bank(8).prototypes().iter().map(|efd| (String::new(), efd.clone())).collect();
-    let banks = [None, Some(Bank { prototypes })];
-    banks.map(|bank| Fitter::new(FitOptions { bank, ..FitOptions::default() }).expect("the built-in bank"))
+    let banks = [None, Some(Bank::new(prototypes))];
+    banks.map(|bank| Fitter::new(FitOptions::default().with_bank(bank)).expect("the built-in bank"))
 });
 
 fuzz_target!(|input: Input| {

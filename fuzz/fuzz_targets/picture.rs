@@ -70,7 +70,7 @@ fuzz_target!(|input: Input| {
     }
     let size = ImageSize::new(width, height).expect("sides of 1 to 64");
     let image = Image::from_interleaved(size, pixels.as_flattened()).expect("finite, 3 values per pixel");
-    let known = Known { matte: input.is_transparent.then(|| color(input.background)), coded: input.coded };
+    let known = Known::default().with_matte(input.is_transparent.then(|| color(input.background))).with_coded(input.coded);
     let fitter = Fitter::new(FitOptions::default()).expect("the defaults");
     let Ok(fit) = fit_picture(&fitter, image.view(), &known, &mut PictureScratch::default()) else { return };
     assert!(fit.loss.is_finite() && !fit.bits.is_nan());

@@ -149,7 +149,7 @@ impl fmt::Debug for Painting {
 pub fn paint<T: Real>(scene: &Scene<T>) {
     let size = ImageSize::new(24, 16).expect("24 x 16 is a size");
     for renderer in [RendererName::Contour, RendererName::Triangles, RendererName::Exact, RendererName::Hard] {
-        let painter = Painter { renderer, ..Painter::default() };
+        let painter = Painter::from(renderer);
         if let Ok(image) = painter.paint_rgba(scene, size) {
             assert!(image.data().iter().all(|v| v.is_finite()), "{renderer:?}");
         }

@@ -39,7 +39,7 @@ fn step<B: Tested>(mode: Mode) -> Result<(f64, Gradients), NetError> {
     let steps = SceneSteps::new(config.objects(), HARMONICS, EdgeProfile::reference())?;
     let judge = Judge { mode, image_loss: PixelLoss::Mae, image_weight: 1.0, steps, bank: bank.clone() };
     let batch = batch(&judge);
-    let schedule = Schedule { learning_rate: 1e-3, warm_up: 0, end: None };
+    let schedule = Schedule::constant(1e-3);
     let trainer = Trainer::<B, f64>::new(config.clone(), bank.clone(), judge.clone(), schedule, 7, B::place())?;
     let parameters = trainer.parameters();
     let model = Model::load(&config, &bank, &Weights::new(parameters))?;

@@ -46,7 +46,7 @@ fn bench(criterion: &mut Criterion, id: &str, options: FitOptions<f32>) {
 }
 
 fn fits(criterion: &mut Criterion) {
-    bench(criterion, "fit/bank", FitOptions { bank: Some(mdshr_bank()), ..FitOptions::default() });
+    bench(criterion, "fit/bank", FitOptions::default().with_bank(Some(mdshr_bank())));
     bench(criterion, "fit/free", FitOptions::default());
 }
 

@@ -128,7 +128,9 @@ fn with_frozen_encoder() -> ModelConfig {
     let EncoderConfig::Vit(mut encoder) = paper.encoder else { panic!("{:?}", paper.encoder) };
     encoder.side = 28;
     (encoder.model.hidden_size, encoder.model.num_hidden_layers, encoder.model.num_attention_heads) = (16, 1, 2);
-    ModelConfig { encoder: EncoderConfig::Vit(encoder), batch_norm: true, ..ModelConfig::tiny() }
+    let mut config = ModelConfig::tiny();
+    (config.encoder, config.batch_norm) = (EncoderConfig::Vit(encoder), true);
+    config
 }
 
 #[test]

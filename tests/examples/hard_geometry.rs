@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let count = arguments.iter().find_map(|word| word.parse().ok()).unwrap_or(40_u64);
     let bank = arguments.iter().any(|word| word == "--bank").then(mdshr_bank);
     let verbose = arguments.iter().any(|word| word == "--verbose");
-    let fitter = Fitter::new(FitOptions { bank, ..FitOptions::default() })?;
+    let fitter = Fitter::new(FitOptions::default().with_bank(bank))?;
     let crop = arguments.iter().any(|word| word == "crop");
     let levels: &[f32] = if crop { &[0.3, 0.5, 0.7, 0.9] } else { &[0.3, 0.2, 0.15, 0.1, 0.075, 0.05] };
     let mut out = std::io::stdout().lock();

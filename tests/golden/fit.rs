@@ -66,7 +66,7 @@ fn score(options: FitOptions<f32>, cases: &[Case]) -> (Scores, usize) {
 }
 
 fn known() -> FitOptions<f32> {
-    FitOptions { bank: Some(mdshr_bank()), ..FitOptions::default() }
+    FitOptions::default().with_bank(Some(mdshr_bank()))
 }
 
 /// Scenes of our own generator, which nothing was tuned on.
@@ -132,7 +132,7 @@ fn an_overlap_is_no_object() {
 fn cropped_objects_are_where_they_are() {
     let (fitter, mut scratch) = (Fitter::new(known()).unwrap(), FitScratch::default());
     let size = ImageSize::new(SIDE, SIDE).unwrap();
-    let painter = Painter { renderer: RendererName::Triangles, ..Painter::default() };
+    let painter = Painter::from(RendererName::Triangles);
     for index in [27, 195, 245] {
         let truth = sample_scene(&SceneSettings::mds_hr(), &mdshr_bank(), size, 77, index);
         let image = rounded(&painter.paint(&truth, size).unwrap());
@@ -155,7 +155,7 @@ fn cropped_objects_are_where_they_are() {
 fn a_sliver_is_no_object() {
     let fitter = Fitter::new(FitOptions::default()).unwrap();
     let size = ImageSize::new(SIDE, SIDE).unwrap();
-    let painter = Painter { renderer: RendererName::Triangles, ..Painter::default() };
+    let painter = Painter::from(RendererName::Triangles);
     for index in [110, 201] {
         let truth = sample_scene(&SceneSettings::mds_hr(), &mdshr_bank(), size, 4321, index);
         let image = painter.paint(&truth, size).unwrap();

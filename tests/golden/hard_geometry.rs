@@ -13,7 +13,7 @@ const PICTURES: u64 = 24;
 const FOUND: f64 = 0.9;
 
 fn known() -> FitOptions<f32> {
-    FitOptions { bank: Some(mdshr_bank()), ..FitOptions::default() }
+    FitOptions::default().with_bank(Some(mdshr_bank()))
 }
 
 /// Pictures whose objects are all found, and the ARI over all.

@@ -236,7 +236,7 @@ fn too_many_objects_are_cut_to_those_of_the_largest_marginal_gain() {
     let image = draw_svg(NESTED).unwrap();
     let mut left = 1.0;
     for max_objects in 1..=4 {
-        let fit = fit_image(image.view(), &FitOptions { max_objects, ..FitOptions::default() }).unwrap();
+        let fit = fit_image(image.view(), &FitOptions::default().with_max_objects(max_objects)).unwrap();
         assert_eq!(fit.scene.objects.len(), max_objects);
         // Each one more leaves less; the light disk, which is no contrast to the background, comes second.
         assert!(fit.unexplained < left, "{} of {left}", fit.unexplained);

@@ -29,7 +29,7 @@ fn to_image(picture: &RgbImage) -> Image<f32> {
 }
 
 fn with_bank() -> FitOptions<f32> {
-    FitOptions { bank: Some(mdshr_bank()), ..FitOptions::default() }
+    FitOptions::default().with_bank(Some(mdshr_bank()))
 }
 
 /// Pictures of which the right number of objects is found after `spoil`, and the noise levels found.
@@ -87,7 +87,7 @@ fn paint(side: usize, color: impl Fn(f64, f64) -> [f64; 3]) -> Image<f32> {
 }
 
 fn fit(image: &Image<f32>, max_objects: usize) -> Fit<f32> {
-    let fit = fit_image(image.view(), &FitOptions { max_objects, ..FitOptions::default() }).unwrap();
+    let fit = fit_image(image.view(), &FitOptions::default().with_max_objects(max_objects)).unwrap();
     eprintln!("{} objects, {} unexplained, {:?}", fit.scene.objects.len(), fit.unexplained, fit.stop);
     fit
 }

@@ -43,7 +43,7 @@ fn distances(truth: &Bank<f32>, learned: &Bank<f32>) -> Vec<f64> {
 }
 
 fn better(pictures: &[Image<f32>], bank: &Bank<f32>) -> Bank<f32> {
-    let fitter = Fitter::new(FitOptions { bank: Some(bank.clone()), ..FitOptions::default() }).unwrap();
+    let fitter = Fitter::new(FitOptions::default().with_bank(Some(bank.clone()))).unwrap();
     let (mut scratch, mut pool) = (FitScratch::default(), Pool::new(bank).unwrap());
     for picture in pictures {
         let fit = fitter.fit(picture.view(), &mut scratch).unwrap();
@@ -104,7 +104,7 @@ fn others() -> Vec<(String, Efd<f32>)> {
 #[test]
 fn other_shapes() {
     for (count, images) in [(1, 40), (2, 52), (5, 88)] {
-        let truth = Bank { prototypes: others().into_iter().take(count).collect() };
+        let truth = Bank::new(others().into_iter().take(count).collect());
         // Each shape needs several whole members.
         let pictures = pictures(&SceneSettings::mds_hr(), &truth, 128, images);
         let learned = learn_from(&pictures);

@@ -17,11 +17,11 @@ pub(super) const ORDERS: [f64; 3] = [1.0, 4.0, 2.0];
 
 pub(super) fn bank<T: Real>() -> Bank<T> {
     let prototypes = mdshr_bank(HARMONICS).prototypes().to_vec();
-    Bank { prototypes: MDSHR_NAMES.iter().map(|name| (*name).to_owned()).zip(prototypes).collect() }
+    Bank::new(MDSHR_NAMES.iter().map(|name| (*name).to_owned()).zip(prototypes).collect())
 }
 
 pub(super) fn known<T: Real>() -> Fitter<T> {
-    Fitter::new(FitOptions { bank: Some(bank()), ..FitOptions::default() }).unwrap()
+    Fitter::new(FitOptions::default().with_bank(Some(bank()))).unwrap()
 }
 
 fn free<T: Real>() -> Fitter<T> {
@@ -244,7 +244,7 @@ proptest! {
     #[test]
     fn no_more_objects_than_allowed(scene in apart(), most in 0_usize..5) {
         for bank in [None, Some(bank())] {
-            let options = FitOptions { bank, max_objects: most, ..FitOptions::default() };
+            let options = FitOptions::default().with_bank(bank).with_max_objects(most);
             let fit = fit_image(paint(&scene, square_size()).view(), &options).unwrap();
             prop_assert_eq!(fit.scene.objects.len(), scene.objects.len().min(most));
             prop_assert_eq!(fit.covariance.len(), fit.scene.objects.len());
@@ -284,7 +284,7 @@ fn fractions_of_a_step_of_color_do_not_speak_against_the_edge() {
     let object = Object::of_efd(pose, color, 1.0, efd, Some(2));
     // The last channel of the background is 0.43 steps above what 8 bits show.
     let scene = Scene { objects: vec![object], ..Scene::empty([0.526_051_16, 0.924_945_3, 0.997_761_13]) };
-    let painter = Painter { renderer: RendererName::Triangles, ..Painter::default() };
+    let painter = Painter::from(RendererName::Triangles);
     let mut image: Image<f32> = painter.paint(&scene, square_size()).unwrap();
     image.data_mut().iter_mut().for_each(|value| *value = (*value * 255.0).round() / 255.0);
     let fit = known().fit(image.view(), &mut FitScratch::default()).unwrap();
@@ -309,16 +309,16 @@ fn bad_input_is_refused() {
     assert_eq!(refused, FitError::NotFinite { index: 300 });
     let edge = |sigma| Some(EdgeProfile { sigma, ..EdgeProfile::reference() });
     for options in [
-        FitOptions::<f32> { max_harmonics: 0, ..FitOptions::default() },
-        FitOptions { max_harmonics: 32, ..FitOptions::default() },
-        FitOptions { bank: Some(Bank::default()), ..FitOptions::default() },
-        FitOptions { edge: edge(0.0), ..FitOptions::default() },
-        FitOptions { edge: edge(f32::NAN), ..FitOptions::default() },
+        FitOptions::<f32>::default().with_max_harmonics(0),
+        FitOptions::default().with_max_harmonics(32),
+        FitOptions::default().with_bank(Some(Bank::default())),
+        FitOptions::default().with_edge(edge(0.0)),
+        FitOptions::default().with_edge(edge(f32::NAN)),
     ] {
         assert!(matches!(Fitter::new(options).unwrap_err(), FitError::Setting { .. }));
     }
     let mut flat = bank::<f32>();
     flat.prototypes[1].1 = dvp_core::Efd::zeros(2);
-    let refused = Fitter::new(FitOptions { bank: Some(flat), ..FitOptions::default() }).unwrap_err();
+    let refused = Fitter::new(FitOptions::default().with_bank(Some(flat))).unwrap_err();
     assert_eq!(refused, FitError::FlatPrototype { index: 1 });
 }

@@ -103,7 +103,7 @@ fn opt_p_recovers_a_small_perturbation() {
     let (truth, renderer) = (two_ellipses(), renderer());
     let image = paint(&truth, 64);
     let mut descent = Descent::new(&renderer, VERTICES, 1).unwrap();
-    let start = OptP { steps: 0, ..OptP::default() }.fit(&mut descent, image.view(), &perturbed()).unwrap();
+    let start = OptP::default().with_steps(0).fit(&mut descent, image.view(), &perturbed()).unwrap();
     let fit = OptP::default().fit(&mut descent, image.view(), &perturbed()).unwrap();
     assert!(start.loss > 0.02, "{}", start.loss);
     assert!(fit.loss < start.loss / 20.0, "{} from {}", fit.loss, start.loss);
@@ -125,8 +125,9 @@ fn opt_iter_finds_both_objects() {
     let (truth, renderer) = (two_ellipses(), renderer());
     let image = paint(&truth, 64);
     let mut descent = Descent::new(&renderer, VERTICES, 4).unwrap();
-    let settings =
-        OptIter { object_count: 2, harmonic_count: 4, shape: (60, 5e-3), finish: (20, 5e-3), ..OptIter::default() };
+    let mut settings = OptIter::default();
+    (settings.object_count, settings.harmonic_count) = (2, 4);
+    (settings.shape, settings.finish) = ((60, 5e-3), (20, 5e-3));
     let fit = settings.fit(&mut descent, image.view()).unwrap();
     assert_eq!((fit.scene.objects.len(), fit.steps), (2, 2 * 160 + 20));
     assert!(fit.loss < 5e-3, "{}", fit.loss);
@@ -145,10 +146,11 @@ fn rand_opt_p_never_ends_above_its_start() {
     let image = paint(&two_ellipses(), 32);
     let shapes = [Efd::new(vec![[1.0, 0.0, 0.0, -0.5], [0.0; 4]])];
     let mut descent = Descent::new(&renderer, VERTICES, 2).unwrap();
-    let settings = RandOptP { pose: (20, 0.01), shape: (20, 1e-3), contour_length: 0.0 };
+    let mut settings = RandOptP::default();
+    (settings.pose, settings.shape, settings.contour_length) = ((20, 0.01), (20, 1e-3), 0.0);
     for seed in 0..4 {
         let start = random_scene(2, &shapes, seed);
-        let before = OptP { steps: 0, ..OptP::default() }.fit(&mut descent, image.view(), &start).unwrap();
+        let before = OptP::default().with_steps(0).fit(&mut descent, image.view(), &start).unwrap();
         let fit = settings.fit(&mut descent, image.view(), &start).unwrap();
         assert!(fit.loss < before.loss, "{} from {}", fit.loss, before.loss);
     }

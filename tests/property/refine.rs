@@ -66,7 +66,7 @@ fn the_truth_stays_and_memory_has_no_effect() {
         let fresh = Refine::default().fit(image.view(), &start, &mut RefineScratch::default()).unwrap();
         assert_eq!((&again.scene, again.loss.to_bits()), (&fresh.scene, fresh.loss.to_bits()));
         // Never worse than the start.
-        let none = Refine { max_steps: 0, ..Refine::default() };
+        let none = Refine::default().with_max_steps(0);
         let before = none.fit(image.view(), &start, &mut used).unwrap();
         assert_eq!(before.scene, start);
         assert!(again.loss <= before.loss);
@@ -101,9 +101,9 @@ fn bad_input_is_refused() {
     start.objects[1].pose.rotation = f32::NAN;
     assert!(matches!(refuse(Refine::default(), &start), FitError::Render(_)));
     for refine in [
-        Refine { factors: &[], ..Refine::default() },
-        Refine { factors: &[1.0, 0.0], ..Refine::default() },
-        Refine { width: f64::NAN, ..Refine::default() },
+        Refine::default().with_factors(&[]),
+        Refine::default().with_factors(&[1.0, 0.0]),
+        Refine::default().with_width(f64::NAN),
     ] {
         assert!(matches!(refuse(refine, &truth), FitError::Setting { .. }));
     }

@@ -33,7 +33,7 @@ fn place() -> Place {
 /// As many prototypes as random scenes refer to.
 fn bank() -> Bank<f64> {
     let disk = Efd::new(vec![[1.0, 0.0, 0.0, -1.0]]);
-    Bank { prototypes: (0..9).map(|index| (index.to_string(), disk.clone())).collect() }
+    Bank::new((0..9).map(|index| (index.to_string(), disk.clone())).collect())
 }
 
 /// What the reader says of a text, all checks included.

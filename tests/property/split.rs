@@ -161,8 +161,8 @@ fn a_shifted_union_comes_apart_alike() {
 
 #[test]
 fn the_order_of_the_bank_is_not_seen() {
-    let reversed = Bank { prototypes: bank().prototypes.into_iter().rev().collect() };
-    let fitter = Fitter::new(FitOptions { bank: Some(reversed), ..FitOptions::default() }).unwrap();
+    let reversed = Bank::new(bank().prototypes.into_iter().rev().collect());
+    let fitter = Fitter::new(FitOptions::default().with_bank(Some(reversed))).unwrap();
     for (image, objects) in parted() {
         let mut fit = fitted(&fitter, &image);
         for object in &mut fit.scene.objects {

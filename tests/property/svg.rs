@@ -87,7 +87,7 @@ fn scene_of(objects: Vec<Object<f64>>, compositing: Compositing, transparent: bo
 
 fn painted(scene: &Scene<f64>) -> RgbaImage<f64> {
     // Exact coverage, as resvg's: distances to outlines say less of spikes and slivers thinner than a pixel.
-    let painter = Painter { renderer: RendererName::Exact, ..Painter::default() };
+    let painter = Painter::from(RendererName::Exact);
     let image = painter.paint_rgba(scene, size()).unwrap();
     if scene.transparent { image } else { opaque(&image.on(scene.background)) }
 }

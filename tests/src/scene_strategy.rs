@@ -4,8 +4,7 @@ use alloc::collections::BTreeMap;
 use core::f64::consts::PI;
 
 use dvp::format::{
-    CompletionJson, DeviationsJson, DoubtJson, INVISIBLE, ObjectJson, ObjectKnownJson, SceneJson, SceneKnownJson,
-    StopJson,
+    CompletionJson, DeviationsJson, DoubtJson, INVISIBLE, ObjectKnownJson, SceneJson, SceneKnownJson, StopJson,
 };
 use dvp_core::render::{Compositing, EdgeLaw, EdgeProfile};
 use dvp_core::scene::Paint;
@@ -115,19 +114,26 @@ fn doubt() -> impl Strategy<Value = DoubtJson> {
 fn object_known(names: Vec<String>) -> impl Strategy<Value = ObjectKnownJson> {
     let size = || 0.0..0.1;
     let numbers = btree_map(select(names), size(), 0..3);
-    let deviations =
-        (
-            option::of(prop::array::uniform2(size())),
-            option::of(size()),
-            option::of(size()),
-            option::of(prop::array::uniform3(size())),
-            numbers,
-        )
-            .prop_map(|(translation, scale, rotation, color, numbers): (_, _, _, _, BTreeMap<_, _>)| {
-                DeviationsJson { translation, scale, rotation, color, numbers }
-            });
-    (option::of(deviations), option::of(-0.5..1.0), vec(doubt(), 0..3))
-        .prop_map(|(deviations, marginal_gain, doubts)| ObjectKnownJson { deviations, marginal_gain, doubts })
+    let deviations = (
+        option::of(prop::array::uniform2(size())),
+        option::of(size()),
+        option::of(size()),
+        option::of(prop::array::uniform3(size())),
+        numbers,
+    )
+        .prop_map(|(translation, scale, rotation, color, numbers): (_, _, _, _, BTreeMap<_, _>)| {
+            let mut deviations = DeviationsJson::default();
+            (deviations.translation, deviations.scale, deviations.rotation) = (translation, scale, rotation);
+            (deviations.color, deviations.numbers) = (color, numbers);
+            deviations
+        });
+    (option::of(deviations), option::of(-0.5..1.0), vec(doubt(), 0..3)).prop_map(
+        |(deviations, marginal_gain, doubts)| {
+            let mut known = ObjectKnownJson::default();
+            (known.deviations, known.marginal_gain, known.doubts) = (deviations, marginal_gain, doubts);
+            known
+        },
+    )
 }
 
 fn scene_known() -> impl Strategy<Value = SceneKnownJson> {
@@ -150,12 +156,10 @@ fn scene_known() -> impl Strategy<Value = SceneKnownJson> {
         option::of(-1e3..1e6),
         subsequence(names, 0..=count),
     )
-        .prop_map(|(stop, unexplained, noise, bits, doubts)| SceneKnownJson {
-            stop,
-            unexplained,
-            noise,
-            bits,
-            doubts,
+        .prop_map(|(stop, unexplained, noise, bits, doubts)| {
+            let mut known = SceneKnownJson::new(stop);
+            (known.unexplained, known.noise, known.bits, known.doubts) = (unexplained, noise, bits, doubts);
+            known
         })
 }
 
@@ -172,9 +176,9 @@ pub fn any_scene_json() -> impl Strategy<Value = SceneJson> {
     });
     parts.prop_map(|(scene, objects_known, known, id, (width, height))| {
         let size = ImageSize::new(width, height).expect("a size");
-        let json = SceneJson::from_scene(&scene, size).expect("every kind is written");
-        let objects = json.objects.into_iter().zip(objects_known);
-        let objects = objects.map(|(object, known)| ObjectJson { known, ..object }).collect();
-        SceneJson { id, objects, known: Some(known), ..json }
+        let mut json = SceneJson::from_scene(&scene, size).expect("every kind is written");
+        json.objects.iter_mut().zip(objects_known).for_each(|(object, known)| object.known = known);
+        (json.id, json.known) = (id, Some(known));
+        json
     })
 }

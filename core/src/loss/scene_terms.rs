@@ -4,6 +4,7 @@ use crate::real::Real;
 
 /// A number per term of L_p: its value, or its weight.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct SceneTerms<T> {
     /// Mean binary cross entropy of the confidences of all slots; 1 is right for the matched ones, 0 for the others.
     pub confidence: T,

@@ -9,6 +9,7 @@ use crate::scene::Object;
 ///
 /// *Source*: the paper's equation for C(p_i, p_j); norms are Euclidean.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct MatchingCost<T> {
     /// Per scene unit.
     pub translation: T,

@@ -7,6 +7,7 @@ use crate::render::PixelLoss;
 
 /// The columns of the paper's table, for one image or as means over images.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Scores {
     /// Mean of the absolute differences, RGB in \[0, 1\].
     pub mae: f64,

@@ -11,8 +11,10 @@ mod plateau;
 
 pub use plateau::{Plateau, PlateauSettings};
 
-/// Settings of Adam, on slices or on tensors ([`crate::tensor::Adam`]); the defaults are PyTorch's.
+/// Settings of Adam, on slices or on tensors ([`crate::tensor::Adam`]); the defaults are PyTorch's. To change some: start
+/// with the default, set fields.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct AdamSettings {
     /// Decay of the mean of the gradient, [0, 1).
     pub beta1: f64,

@@ -2,8 +2,10 @@
 //!
 //! In: the loss after each step. Out: the rate for the next. `tests/golden/optim.rs` holds PyTorch's sequence.
 
-/// Settings of [`Plateau`]; the defaults are the paper's, and PyTorch's for what it does not say.
+/// Settings of [`Plateau`]; the defaults are the paper's, and PyTorch's for what it does not say. To change some: start
+/// with the default, set fields.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct PlateauSettings {
     /// The rate is multiplied by this, (0, 1).
     pub factor: f64,

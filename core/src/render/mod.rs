@@ -43,6 +43,7 @@ pub use crate::scene::{Compositing, EdgeLaw, EdgeProfile};
 
 /// A loss that is a mean over pixels and channels, fused into the backward pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+#[non_exhaustive]
 pub enum PixelLoss {
     /// Mean of |a - b|; its derivative at 0 is taken as 0.
     #[default]

@@ -1,4 +1,4 @@
-//! Scenes in another precision.
+//! Scenes and edge profiles in another precision.
 
 use super::{EdgeProfile, Object, Pose, Scene};
 use crate::real::Real;
@@ -20,13 +20,21 @@ impl<T: Real> Scene<T> {
                 confidence: number(object.confidence),
             }
         };
-        let EdgeProfile { law, offset, sigma, cut } = self.edge;
         Scene {
             background: self.background.map(number),
             transparent: self.transparent,
             objects: self.objects.iter().map(object).collect(),
-            edge: EdgeProfile { law, offset: number(offset), sigma: number(sigma), cut: number(cut) },
+            edge: self.edge.cast(),
             compositing: self.compositing,
         }
+    }
+}
+
+impl<T: Real> EdgeProfile<T> {
+    /// The same profile in another precision, every number rounded to the nearest.
+    #[must_use]
+    pub fn cast<U: Real>(&self) -> EdgeProfile<U> {
+        let Self { law, offset, sigma, cut } = *self;
+        EdgeProfile { law, offset: number(offset), sigma: number(sigma), cut: number(cut) }
     }
 }

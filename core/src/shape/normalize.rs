@@ -8,6 +8,7 @@ use crate::real::Real;
 /// With r the raw and u the normalized outline, r(t) = `scale` R(`rotation`) u(t - `phase` / 2 pi). So an object keeps
 /// its place if its pose takes over rotation and scale (see [`Self::restore`] for the descriptors).
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Normalized<T> {
     /// The normal form: a_1 = 1, b_1 = c_1 = 0, |d_1| <= 1.
     pub efd: Efd<T>,

@@ -16,7 +16,7 @@
 //! | [`statistics`] | means and quantiles |
 //! | [`command`] | the sub-commands: arguments, threads, tables |
 //!
-//! Everything but [`command`], [`method`] and [`chart`] has its own error enum; those three use anyhow.
+//! Everything but [`command`] and [`chart`] has its own error enum; those two use anyhow.
 //!
 //! # Features
 //!

@@ -12,6 +12,7 @@ use dvp_fit::paint::drawing_of;
 
 /// The renderers of the command.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+#[non_exhaustive]
 pub enum RendererName {
     /// Coverage from the distance to the outline, by the scene's edge profile.
     #[default]
@@ -26,6 +27,7 @@ pub enum RendererName {
 
 /// How scenes are painted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Painter {
     /// The renderer.
     pub renderer: RendererName,
@@ -37,6 +39,13 @@ impl Default for Painter {
     /// The contour renderer with the reference's 64 vertices.
     fn default() -> Self {
         Self { renderer: RendererName::default(), vertices: REFERENCE_VERTICES }
+    }
+}
+
+impl From<RendererName> for Painter {
+    /// The renderer, with the reference's 64 vertices.
+    fn from(renderer: RendererName) -> Self {
+        Self { renderer, ..Self::default() }
     }
 }
 

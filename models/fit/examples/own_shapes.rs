@@ -27,7 +27,7 @@ fn bank() -> Result<Bank<f32>, Box<dyn Error>> {
         let (efd, _center) = Efd::from_contour(outline, HARMONICS)?;
         prototypes.push((name.to_owned(), efd.normalize()?.efd));
     }
-    Ok(Bank { prototypes })
+    Ok(Bank::new(prototypes))
 }
 
 fn picture(bank: &Bank<f32>) -> Result<(Scene<f32>, Image<f32>), Box<dyn Error>> {
@@ -50,7 +50,7 @@ fn picture(bank: &Bank<f32>) -> Result<(Scene<f32>, Image<f32>), Box<dyn Error>>
 fn main() -> Result<(), Box<dyn Error>> {
     let bank = bank()?;
     let (truth, image) = picture(&bank)?;
-    let options = FitOptions { bank: Some(bank.clone()), ..FitOptions::default() };
+    let options = FitOptions::default().with_bank(Some(bank.clone()));
     let fit = fit_image(image.view(), &options)?;
     for object in &fit.scene.objects {
         let name = object.prototype().map_or("no shape of the bank", |index| &bank.prototypes[index].0);

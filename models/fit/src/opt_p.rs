@@ -11,6 +11,7 @@ use crate::parameters::Free;
 
 /// Settings of OptP; the defaults are the paper's.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct OptP {
     /// Adam steps.
     pub steps: usize,
@@ -27,6 +28,12 @@ impl Default for OptP {
 }
 
 impl OptP {
+    /// The same with [`Self::steps`].
+    #[must_use]
+    pub fn with_steps(self, steps: usize) -> Self {
+        Self { steps, ..self }
+    }
+
     /// The best scene that Adam meets on its way from `start`: translation, scale, rotation, colors and background move,
     /// shapes and confidences stay.
     ///

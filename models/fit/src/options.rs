@@ -13,13 +13,40 @@ use crate::price::Prices;
 
 /// Shapes that objects are known to have.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Bank<T> {
     /// Name and normalized descriptors per prototype.
     pub prototypes: Vec<(String, Efd<T>)>,
 }
 
-/// Settings of [`Fitter`](crate::Fitter).
+impl<T> Bank<T> {
+    /// A bank of these prototypes: names, and normalized descriptors.
+    #[must_use]
+    pub fn new(prototypes: Vec<(String, Efd<T>)>) -> Self {
+        Self { prototypes }
+    }
+}
+
+impl<T: Real> Bank<T> {
+    /// The bank in another precision, every number rounded to the nearest.
+    #[must_use]
+    pub fn cast<U: Real>(&self) -> Bank<U> {
+        Bank { prototypes: self.prototypes.iter().map(|(name, shape)| (name.clone(), shape.cast())).collect() }
+    }
+}
+
+/// Settings of [`Fitter`](crate::Fitter): the default, and what is changed of it.
+///
+/// # Examples
+/// ```
+/// use dvp_core::render::Compositing;
+/// use dvp_fit::FitOptions;
+/// let options = FitOptions::<f32>::default().with_max_objects(12).with_compositing(Some(Compositing::Over));
+/// assert_eq!(options.max_objects, 12);
+/// assert_eq!(options.bank, None);
+/// ```
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct FitOptions<T> {
     /// The shapes objects have; none: shapes are unknown and fitted freely.
     pub bank: Option<Bank<T>>,
@@ -48,6 +75,64 @@ impl<T: Real> Default for FitOptions<T> {
             edge: None,
             compositing: None,
             prices: Prices::default(),
+        }
+    }
+}
+
+impl<T: Real> FitOptions<T> {
+    /// The same with [`Self::bank`].
+    #[must_use]
+    pub fn with_bank(self, bank: Option<Bank<T>>) -> Self {
+        Self { bank, ..self }
+    }
+
+    /// The same with [`Self::max_objects`].
+    #[must_use]
+    pub fn with_max_objects(self, max_objects: usize) -> Self {
+        Self { max_objects, ..self }
+    }
+
+    /// The same with [`Self::max_harmonics`].
+    #[must_use]
+    pub fn with_max_harmonics(self, max_harmonics: usize) -> Self {
+        Self { max_harmonics, ..self }
+    }
+
+    /// The same with [`Self::max_steps`].
+    #[must_use]
+    pub fn with_max_steps(self, max_steps: usize) -> Self {
+        Self { max_steps, ..self }
+    }
+
+    /// The same with [`Self::edge`].
+    #[must_use]
+    pub fn with_edge(self, edge: Option<EdgeProfile<T>>) -> Self {
+        Self { edge, ..self }
+    }
+
+    /// The same with [`Self::compositing`].
+    #[must_use]
+    pub fn with_compositing(self, compositing: Option<Compositing>) -> Self {
+        Self { compositing, ..self }
+    }
+
+    /// The same with [`Self::prices`].
+    #[must_use]
+    pub fn with_prices(self, prices: Prices) -> Self {
+        Self { prices, ..self }
+    }
+
+    /// The settings in another precision, every number rounded to the nearest.
+    #[must_use]
+    pub fn cast<U: Real>(&self) -> FitOptions<U> {
+        FitOptions {
+            bank: self.bank.as_ref().map(Bank::cast),
+            max_objects: self.max_objects,
+            max_harmonics: self.max_harmonics,
+            max_steps: self.max_steps,
+            edge: self.edge.map(|edge| edge.cast()),
+            compositing: self.compositing,
+            prices: self.prices,
         }
     }
 }

@@ -17,6 +17,7 @@ const OBJECT_BITS: f64 = COLOR_BITS + POSE_BITS;
 /// What parts of a scene cost while it is fitted, in units of the law of [`scene_bits`], which [`Default`] is. Others show what
 /// each price is good for (`dvp parsimony`); [`Fit::bits`](crate::Fit) is counted at them.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Prices {
     /// Of an object but for its shape.
     pub object: f64,

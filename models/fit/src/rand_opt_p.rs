@@ -12,8 +12,9 @@ use crate::opt_p::fit_of;
 use crate::parameters::Free;
 use crate::split_mix::SplitMix;
 
-/// Settings of Rand-OptP; the defaults are those of its published evaluation.
+/// Settings of Rand-OptP; the defaults are those of its published evaluation. To change some: start with the default, set fields.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct RandOptP {
     /// Steps and learning rate with fixed shapes.
     pub pose: (usize, f64),

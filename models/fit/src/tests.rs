@@ -256,7 +256,7 @@ fn segments_of_a_picture_that_is_not_flat_blend_if_told_to() {
     };
     let image = Image::from_interleaved(size, &(0..48 * 40).flat_map(value).collect::<Vec<f32>>()).unwrap();
     for compositing in [Compositing::Blend, Compositing::Over] {
-        let options = FitOptions { compositing: Some(compositing), ..FitOptions::default() };
+        let options = FitOptions::default().with_compositing(Some(compositing));
         let fit = fit_image(image.view(), &options).unwrap();
         assert_eq!(fit.scene.compositing, compositing);
     }

@@ -9,8 +9,8 @@ use std::sync::mpsc;
 use std::sync::{Mutex, PoisonError};
 
 use dvp::format::FormatError;
-use dvp::method::load_network;
-use dvp::solve::{MaskFit, Method, Scratch, SolveError, Solved, Solver, Start, fit_masks};
+use dvp::method::{Memory, load_network};
+use dvp::solve::{MaskFit, MethodChoice, SolveError, Solved, Solver, Start, fit_masks};
 use dvp_core::render::Compositing;
 use dvp_fit::{Bank, FitOptions};
 use pyo3::prelude::*;
@@ -42,7 +42,7 @@ pub(crate) struct Fitter {
     solver: Solver,
     bank: Option<Arc<Bank<f32>>>,
     max_pixels: usize,
-    scratch: Mutex<Vec<Scratch>>,
+    memory: Mutex<Vec<Memory>>,
 }
 
 #[pymethods]
@@ -62,13 +62,9 @@ impl Fitter {
         compositing: Option<&str>,
         max_pixels: usize,
     ) -> PyResult<Self> {
-        let method = match method {
-            "segment" => Method::Segment,
-            "opt-iter" => Method::OptIter,
-            "opt-p" => Method::OptP,
-            "rand-opt-p" => Method::RandOptP,
-            other => return Err(refusal(format!("method {other:?}: must be segment, opt-iter, opt-p or rand-opt-p"))),
-        };
+        let method = MethodChoice::named(method).ok_or_else(|| {
+            refusal(format!("method {method:?}: must be segment, opt-iter, opt-p or rand-opt-p"))
+        })?;
         let compositing = match compositing {
             None => None,
             Some("over") => Some(Compositing::Over),
@@ -82,8 +78,8 @@ impl Fitter {
                 return Err(refusal("start=\"net\" takes the shapes that the network knows: leave bank away"));
             }
             "net" => {
-                let network = load_network(model.as_deref());
-                Start::Network(Box::new(network.map_err(|error| refusal(in_words(error.as_ref())))?))
+                let network = load_network(model.as_deref()).map_err(|error| exception(&error))?;
+                Start::Network(Arc::new(network))
             }
             folder => Start::Folder(folder.into()),
         };
@@ -92,18 +88,18 @@ impl Fitter {
         }
         let defaults = FitOptions::default();
         let max_objects = max_objects.unwrap_or(defaults.max_objects);
-        let options = FitOptions { bank: bank.clone(), max_objects, compositing, ..defaults };
+        let options = defaults.with_bank(bank.clone()).with_max_objects(max_objects).with_compositing(compositing);
         let solver = Solver::new(method, options, start, objects, seed).map_err(|error| exception(&error))?;
-        Ok(Self { solver, bank: bank.map(Arc::new), max_pixels, scratch: Mutex::default() })
+        Ok(Self { solver, bank: bank.map(Arc::new), max_pixels, memory: Mutex::default() })
     }
 
     /// The scene of one picture.
     fn fit(&self, py: Python<'_>, source: PySource<'_>, stem: &str, coded: bool) -> PyResult<Scene> {
         let source = source.to_owned();
         unlocked(py, || {
-            let mut scratch = self.take();
-            let scene = self.solve(&source, stem, coded, &mut scratch);
-            self.give(scratch);
+            let mut memory = self.take();
+            let scene = self.solve(&source, stem, coded, &mut memory);
+            self.give(memory);
             scene
         })
     }
@@ -135,9 +131,9 @@ impl Fitter {
 }
 
 impl Fitter {
-    fn solve(&self, source: &Source, stem: &str, coded: bool, scratch: &mut Scratch) -> Result<Scene, FitterError> {
+    fn solve(&self, source: &Source, stem: &str, coded: bool, memory: &mut Memory) -> Result<Scene, FitterError> {
         let picture = source.picture(self.max_pixels, coded)?;
-        let Solved { fit, time, .. } = self.solver.solve(&picture, stem, scratch)?;
+        let Solved { fit, time, .. } = self.solver.solve(&picture, stem, memory)?;
         Ok(Scene::of_fit(&fit, &picture, Origin { bank: self.bank.clone(), labels: None, time: Some(time) })?)
     }
 
@@ -150,7 +146,7 @@ impl Fitter {
                 fit_masks(size, &labels, Some((source.picture(self.max_pixels, false)?, &alpha)))?
             }
         };
-        let MaskFit { fit, picture, labels } = found;
+        let MaskFit { fit, picture, labels, .. } = found;
         Ok(Scene::of_fit(&fit, &picture, Origin { bank: None, labels: Some(labels), time: None })?)
     }
 
@@ -164,11 +160,11 @@ impl Fitter {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         let pool = pool.map_err(|error| exception(&FitterError::from(error)))?;
         let stop = AtomicBool::new(false);
-        let one = |scratch: &mut Scratch, ((source, stem), coded): &((Source, String), bool)| {
+        let one = |memory: &mut Memory, ((source, stem), coded): &((Source, String), bool)| {
             if stop.load(Ordering::Relaxed) {
                 return Err("interrupted".to_owned());
             }
-            let solve = || self.solve(source, stem, *coded, scratch).map_err(|error| in_words(&error));
+            let solve = || self.solve(source, stem, *coded, memory).map_err(|error| in_words(&error));
             let result = catch_unwind(AssertUnwindSafe(solve)).unwrap_or_else(|panic| Err(defect(&*panic)));
             result.map_err(|text| match source {
                 Source::Path(path) if !text.starts_with(&*path.to_string_lossy()) => {
@@ -181,7 +177,7 @@ impl Fitter {
         let (results, pool, one) = (Mutex::new(results), &pool, &one);
         std::thread::scope(|scope| {
             scope.spawn(move || {
-                let run = || work.par_iter().map_init(Scratch::default, one).collect::<Vec<_>>();
+                let run = || work.par_iter().map_init(Memory::default, one).collect::<Vec<_>>();
                 // Nobody is left to tell if the other side has gone.
                 let _ = done.send(pool.install(run));
             });
@@ -205,11 +201,11 @@ impl Fitter {
     }
 
     /// Memory of an earlier fit, or new.
-    fn take(&self) -> Scratch {
-        self.scratch.lock().unwrap_or_else(PoisonError::into_inner).pop().unwrap_or_default()
+    fn take(&self) -> Memory {
+        self.memory.lock().unwrap_or_else(PoisonError::into_inner).pop().unwrap_or_default()
     }
 
-    fn give(&self, scratch: Scratch) {
-        self.scratch.lock().unwrap_or_else(PoisonError::into_inner).push(scratch);
+    fn give(&self, memory: Memory) {
+        self.memory.lock().unwrap_or_else(PoisonError::into_inner).push(memory);
     }
 }

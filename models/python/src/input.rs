@@ -96,7 +96,7 @@ impl Source {
             }
             Self::Float(extents, values) => of_pixels(*extents, values, f64::from, BitDepth::Sixteen, max_pixels)?,
         };
-        Ok(Picture { coded, ..picture })
+        Ok(picture.with_coded(coded))
     }
 
     /// The picture's own pixels with their alpha.

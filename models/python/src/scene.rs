@@ -86,7 +86,7 @@ impl Scene {
     /// The measures of the objects, as of a picture with these names.
     pub(crate) fn measured(&self, picture: String, stem: String) -> Result<MeasuredPicture, ExportError> {
         let objects = measure(&self.scene, &self.covariance, self.bank.as_deref(), &self.numbers, self.size)?;
-        Ok(MeasuredPicture { picture, stem, found: Ok(Found { size: self.size, objects }) })
+        Ok(MeasuredPicture::new(picture, stem, Ok(Found { size: self.size, objects })))
     }
 }
 

@@ -33,7 +33,7 @@ pub(crate) fn columns<'py>(
     let mut pictures = Vec::with_capacity(outcomes.len());
     for (outcome, (picture, stem)) in outcomes.iter().zip(names) {
         pictures.push(match outcome {
-            Outcome::Error(error) => MeasuredPicture { picture, stem, found: Err(error.clone()) },
+            Outcome::Error(error) => MeasuredPicture::new(picture, stem, Err(error.clone())),
             Outcome::Scene(scene) => {
                 let scene: &Scene = scene;
                 paintable(scene.image_size().width(), scene.image_size().height())?;

@@ -84,11 +84,26 @@ pub enum NoDrawing {
 
 /// What is known of a picture beside its pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Known {
     /// The color that transparent parts are shown on, if it has such.
     pub matte: Option<[f32; 3]>,
     /// Whether a coder of photographs (JPEG) has changed its pixels.
     pub coded: bool,
+}
+
+impl Known {
+    /// The same with a color that transparent parts are shown on, or none.
+    #[must_use]
+    pub fn with_matte(self, matte: Option<[f32; 3]>) -> Self {
+        Self { matte, ..self }
+    }
+
+    /// The same, changed by a coder of photographs or not.
+    #[must_use]
+    pub fn with_coded(self, coded: bool) -> Self {
+        Self { coded, ..self }
+    }
 }
 
 /// The drawing that a picture is.

@@ -163,6 +163,6 @@ impl Drawing {
         }
         let objects = export::measure(&self.scene, blocks, self.bank.as_ref(), &self.numbers(), self.size)?;
         let stem = Path::new(name).file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
-        Ok(MeasuredPicture { picture: name.to_owned(), stem, found: Ok(Found { size: self.size, objects }) })
+        Ok(MeasuredPicture::new(name.to_owned(), stem, Ok(Found { size: self.size, objects })))
     }
 }

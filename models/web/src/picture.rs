@@ -76,7 +76,7 @@ impl Picture {
     pub fn new(rgba: &[u8], width: u32, height: u32, coded: bool) -> Result<Self, WebError> {
         let size = size_of(width, height)?;
         let picture = format::Picture::translucent(size, rgba, |value| f64::from(value) / 255.0, BitDepth::Eight)?;
-        Ok(Self { picture: format::Picture { coded, ..picture } })
+        Ok(Self { picture: picture.with_coded(coded) })
     }
 
     /// Whether a pixel lets through what is behind the picture.
@@ -92,9 +92,9 @@ impl Picture {
     /// # Errors
     /// [`WebError::Fit`] for options out of range, [`WebError::Format`] for a text that is no bank.
     pub fn fit(&self, max_objects: u32, bank: &str) -> Result<String, WebError> {
-        let options = FitOptions { bank: bank_of(bank)?, max_objects: max_objects as usize, ..FitOptions::default() };
+        let options = FitOptions::default().with_bank(bank_of(bank)?).with_max_objects(max_objects as usize);
         let picture = &self.picture;
-        let known = Known { matte: picture.transparent.then_some(picture.matte), coded: picture.coded };
+        let known = Known::default().with_matte(picture.transparent.then_some(picture.matte)).with_coded(picture.coded);
         let fitter = Fitter::new(options)?;
         let fit = fit_picture(&fitter, picture.image.view(), &known, &mut PictureScratch::default())?;
         let number = |value: f32| value.is_finite().then_some(value);
@@ -113,7 +113,7 @@ impl Picture {
     /// [`WebError::Sizes`] for a drawing of another size, [`WebError::Fit`] for one that cannot be drawn.
     pub fn refine(&self, drawing: &Drawing, max_steps: u32, on_step: &Function) -> Result<String, WebError> {
         self.check(drawing)?;
-        let settings = SceneRefine { max_steps: max_steps as usize, ..SceneRefine::default() };
+        let settings = SceneRefine::default().with_max_steps(max_steps as usize);
         let size = drawing.size;
         let mut start = drawing.scene.clone();
         if start.transparent {

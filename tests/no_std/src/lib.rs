@@ -81,7 +81,7 @@ fn proof() -> Result<(), i32> {
 
     // The same picture by the one entry that decides between the two fits; black is nothing, as in a transparent picture.
     let fitter = Fitter::new(FitOptions::default()).map_err(|_| 16)?;
-    let known = Known { matte: Some([0.0; 3]), coded: false };
+    let known = Known::default().with_matte(Some([0.0; 3]));
     let fit = fit_picture(&fitter, view, &known, &mut Default::default()).map_err(|_| 17)?;
     if fit.scene.transparent && fit.scene.objects.len() == 1 { Ok(()) } else { Err(18) }
 }

@@ -176,7 +176,8 @@ impl Case {
         for (seed, index) in (SEED..).zip(0..count) {
             let scene = scene(seed)?;
             let image = paint_mds_hr(&scene)?;
-            let json = SceneJson { id: Some(index as u64), ..SceneJson::from_scene(&scene, image.size())? };
+            let mut json = SceneJson::from_scene(&scene, image.size())?;
+            json.id = Some(index as u64);
             lines.push_str(&(json.to_line(&Place::file(folder))? + "\n"));
             let picture = image::load_from_memory(&encode_png(image.view(), BitDepth::Eight)?)?;
             self.finish.write_picture(folder, &format!("{index:05}"), picture, seed)?;

@@ -76,7 +76,7 @@ pub fn mds_hr(seed: u64, index: u64) -> Scene<f32> {
 /// # Errors
 /// The renderer's.
 pub fn paint_mds_hr(scene: &Scene<f32>) -> Result<Image<f32>, Failure> {
-    let painter = Painter { renderer: RendererName::Triangles, ..Painter::default() };
+    let painter = Painter::from(RendererName::Triangles);
     Ok(painter.paint(scene, ImageSize::new(SIDE, SIDE)?)?)
 }
 
@@ -122,7 +122,7 @@ pub fn cropped(seed: u64) -> Result<Scene<f32>, Failure> {
     let background = rng.random();
     let scale = rng.random_range(0.15..0.3);
     let mut scene = Scene { objects: vec![object(&mut rng, background, scale)], ..Scene::empty(background) };
-    let painter = Painter { renderer: RendererName::Hard, ..Painter::default() };
+    let painter = Painter::from(RendererName::Hard);
     let size = ImageSize::new(SIDE, SIDE)?;
     let visible = |scene: &Scene<f32>| -> Result<usize, Failure> {
         let image = painter.paint(scene, size)?;

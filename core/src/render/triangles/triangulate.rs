@@ -14,6 +14,7 @@ pub type Face = [usize; 3];
 
 /// What a triangulation had to leave out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct TriangulationReport {
     /// Edges that cross an earlier edge, of any ring. Near them the triangles follow the Delaunay edges instead of the
     /// rings; 0 for rings that cross neither themselves nor each other.

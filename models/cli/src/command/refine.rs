@@ -109,7 +109,7 @@ pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Ou
 /// A transparent drawing is held against the picture's alpha; where the picture has none, as any other drawing, against the
 /// picture, and what is behind it is found too.
 fn refine(max_steps: usize, scene: &Scene<f32>, picture: &RgbaImage<f32>) -> Result<RefinedScene<f32>> {
-    let settings = SceneRefine { max_steps, ..SceneRefine::default() };
+    let settings = SceneRefine::default().with_max_steps(max_steps);
     let is_opaque = picture.view().channel(CHANNELS).iter().all(|&alpha| alpha >= 1.0);
     if scene.transparent && !is_opaque {
         return Ok(settings.fit(picture.view(), scene)?);

@@ -76,7 +76,7 @@ impl Decoded {
             (_, true) => Picture::translucent(size, picture.into_rgba32f().as_raw(), f64::from, BitDepth::Sixteen),
         };
         let values = |source| FormatError::Values { path: path.to_path_buf(), source };
-        Ok(Picture { coded, ..result.map_err(values)? })
+        Ok(result.map_err(values)?.with_coded(coded))
     }
 
     fn into_rgba<T: Real>(self, path: &Path) -> Result<RgbaImage<T>, FormatError> {

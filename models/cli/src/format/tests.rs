@@ -134,7 +134,7 @@ fn png_keeps_eight_bits() {
     let image = Image::from_planar(size, values).unwrap();
     write_atomic(&path, &encode_png(image.view(), BitDepth::Eight).unwrap()).unwrap();
     let back: Picture<f32> = read_picture(&path, 256).unwrap();
-    assert_eq!(back, Picture { bits: BitDepth::Eight, ..image.into() });
+    assert_eq!(back, Picture::from(image).with_bits(BitDepth::Eight));
     let error = read_picture::<f32>(&path, 255).unwrap_err().to_string();
     assert!(error.contains("16 x 16") && error.contains("--max-pixels"), "{error}");
 }

@@ -42,6 +42,7 @@ impl fmt::Display for Range {
 
 /// The distribution of random scenes.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct SceneSettings {
     /// Fewest visible objects.
     pub fewest: usize,

@@ -1,47 +1,27 @@
-//! The paper's descents of pixels, and the random scenes that some of them start from.
+//! What the paper's descents of pixels need: a descent, and the random scenes that some of them start from.
 
-use anyhow::Result;
 use dvp_core::render::ContourRenderer;
 use dvp_core::shape::REFERENCE_VERTICES;
-use dvp_core::{Efd, ImageView, Real, Scene};
+use dvp_core::{Efd, Real, Scene};
+use dvp_fit::Bank;
 use dvp_fit::adam::descent::Descent;
 use dvp_fit::opt_iter::OptIter;
-use dvp_fit::opt_p::OptP;
-use dvp_fit::rand_opt_p::{RandOptP, random_scene};
-use dvp_fit::{Bank, Fit};
+use dvp_fit::rand_opt_p::random_scene;
 
-/// The paper's OptP from `start`.
-///
-/// # Errors
-/// As [`OptP::fit`].
-pub fn opt_p(image: ImageView<'_, f32>, start: &Scene<f32>) -> Result<Fit<f32>> {
-    descend(start, |descent| Ok(OptP::default().fit(descent, image, start)?))
-}
-
-/// The paper's Rand-OptP from `start`.
-///
-/// # Errors
-/// As [`RandOptP::fit`].
-pub fn rand_opt_p(image: ImageView<'_, f32>, start: &Scene<f32>) -> Result<Fit<f32>> {
-    descend(start, |descent| Ok(RandOptP::default().fit(descent, image, start)?))
-}
+use super::error::MethodError;
 
 /// Runs `fit` on a descent that is made for the edges and shapes of `scene`.
-///
-/// # Errors
-/// Those of `fit`.
-pub fn descend<T: Real, R>(
+pub(super) fn descend<T: Real, R>(
     scene: &Scene<T>,
-    fit: impl FnOnce(&mut Descent<'_, T, ContourRenderer<T>>) -> Result<R>,
-) -> Result<R> {
+    fit: impl FnOnce(&mut Descent<'_, T, ContourRenderer<T>>) -> Result<R, MethodError>,
+) -> Result<R, MethodError> {
     let renderer = ContourRenderer::new(scene.edge, scene.compositing);
     let harmonics = scene.harmonic_count().max(OptIter::default().harmonic_count);
     fit(&mut Descent::new(&renderer, REFERENCE_VERTICES, harmonics)?)
 }
 
 /// A scene at random, always the same for a seed: shapes of the bank, or disks, of as many harmonics as Opt-Iter has.
-#[must_use]
-pub fn random_start(bank: Option<&Bank<f32>>, objects: usize, seed: u64) -> Scene<f32> {
+pub(super) fn random_start(bank: Option<&Bank<f32>>, objects: usize, seed: u64) -> Scene<f32> {
     let circle = Efd::new(vec![[1.0, 0.0, 0.0, -1.0]]);
     let harmonics = OptIter::default().harmonic_count;
     let shapes: Vec<Efd<f32>> = match bank {

@@ -1,34 +1,43 @@
-//! The methods that find a scene: one place that says what each is called, what it starts from and how it is run.
+//! The methods that find a scene: one place that says what each is called, what it starts from and how it is run, whoever asks:
+//! `dvp fit` ([`crate::solve`]), `dvp evaluate`, the laboratory.
 //!
 //! In: a float image, for some methods a start. Out: [`Found`], with the fit's own doubt and the time it took.
 //!
 //! | file | holds |
 //! |---|---|
 //! | `mod` | [`Method`], by its name, and its [`Setting`] |
-//! | `runner` | [`Runner`]: a method made ready, to be run on many images |
-//! | `adam` | the paper's descents of pixels |
+//! | `runner` | [`Runner`]: a method made ready, to be run on many images; the one place that maps names to code |
+//! | `task` | [`Tools`] and [`Task`], which go in, and [`Found`], which comes out |
+//! | `adam` | descents of pixels, random starts |
 //! | `refine` | Levenberg-Marquardt from what a network sees |
 //! | `network` | networks, read from a file or built in |
 //! | `perturb` | starts near a truth |
-//! | `precision` | banks and fits in another precision |
+//! | `precision` | [`Precision`] |
+//! | `clock` | [`timed`] |
+//! | `error` | [`MethodError`] |
 
 mod adam;
+mod clock;
+mod error;
 mod network;
 mod perturb;
 mod precision;
 mod refine;
 mod runner;
+mod task;
 #[cfg(all(test, feature = "double"))]
 mod tests;
 
 use clap::ValueEnum;
 
-pub use adam::{descend, opt_p, rand_opt_p, random_start, seed_of};
+pub use adam::seed_of;
+pub use clock::timed;
+pub use error::{ClockError, LoadNetworkError, MethodError};
 pub use network::load as load_network;
 pub use perturb::perturbed;
 pub use precision::Precision;
-pub use refine::refine;
-pub use runner::{Found, Memory, Runner, Task, Tools, timed};
+pub use runner::Runner;
+pub use task::{Found, Memory, Task, Tools};
 
 /// A way from an image to a scene; the value of an option is its name in tables and files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, ValueEnum)]

@@ -3,18 +3,19 @@
 use std::fs;
 use std::path::Path;
 
-use anyhow::{Context, Result};
 use dvp_net::propose::{BUILT_IN, Proposer};
+
+use super::error::LoadNetworkError;
 
 /// The network of a file as `dvp train` writes it, or the one that is built in.
 ///
 /// # Errors
-/// If the file cannot be read or is no such network.
-pub fn load(file: Option<&Path>) -> Result<Proposer> {
-    let Some(file) = file else {
-        return Proposer::from_bytes(BUILT_IN).context("the network that is built in");
+/// [`LoadNetworkError`] if the file cannot be read or is no such network.
+pub fn load(file: Option<&Path>) -> Result<Proposer, LoadNetworkError> {
+    let Some(path) = file else {
+        return Proposer::from_bytes(BUILT_IN).map_err(|error| LoadNetworkError::BuiltIn(Box::new(error)));
     };
-    let named = || file.display().to_string();
-    let bytes = fs::read(file).with_context(|| format!("{} cannot be read", file.display()))?;
-    Proposer::from_bytes(&bytes).with_context(named)
+    let bytes = fs::read(path).map_err(|source| LoadNetworkError::Unreadable { path: path.to_path_buf(), source })?;
+    Proposer::from_bytes(&bytes)
+        .map_err(|error| LoadNetworkError::File { path: path.to_path_buf(), source: Box::new(error) })
 }

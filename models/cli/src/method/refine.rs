@@ -1,10 +1,9 @@
 //! Levenberg-Marquardt from what a network sees.
 
-use anyhow::Result;
 use dvp_core::render::{Compositing, EdgeProfile};
 use dvp_core::{ImageView, Scene};
-use dvp_fit::Fit;
 use dvp_fit::refine::{Refine, RefineScratch};
+use dvp_fit::{Fit, FitError};
 
 /// A mean error below this is that of rounding to 8 bits: the edges are right.
 const ROUNDING: f32 = 1.0 / 255.0;
@@ -15,17 +14,14 @@ const ROUNDS: usize = 3;
 /// The scene that Levenberg-Marquardt finds from `start`, with the edges that explain the picture best: those of the
 /// reference or, where those do not meet it, area coverage. Objects without which the picture would be met better go, and of
 /// more than `max_objects` those of the smallest marginal gain.
-///
-/// # Errors
-/// As [`Refine::fit`].
-pub fn refine(
+pub(super) fn refine(
     settings: &Refine,
     image: ImageView<'_, f32>,
     start: &Scene<f32>,
     compositing: Compositing,
     max_objects: usize,
     scratch: &mut RefineScratch<f32>,
-) -> Result<Fit<f32>> {
+) -> Result<Fit<f32>, FitError> {
     let mut fit_with = |start: &Scene<f32>, edge| {
         let start = Scene { edge, compositing, ..start.clone() };
         settings.fit(image, &start, scratch)

@@ -1,73 +1,29 @@
 //! A method made ready, to be run on many images.
 
-use alloc::sync::Arc;
 use core::time::Duration;
 
-use anyhow::{Context, Result, bail};
-use cpu_time::ThreadTime;
-use dvp_core::render::Compositing;
 use dvp_core::{Image, ImageView, Real, Scene};
 use dvp_fit::opt_iter::OptIter;
 use dvp_fit::opt_p::OptP;
+use dvp_fit::picture::{cut_openings, fit_picture};
 use dvp_fit::rand_opt_p::RandOptP;
 use dvp_fit::refine::{Refine, RefineScratch};
-use dvp_fit::{Bank, Fit, FitOptions, FitScratch, Fitter};
+use dvp_fit::{Fit, FitScratch, Fitter};
+use dvp_net::error::NetError;
 use dvp_net::optimize::{OptZ, Optimum};
 use dvp_net::propose::Proposer;
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
 
-use super::{Method, Precision, Setting, adam, perturbed, precision, refine};
+use super::adam::{descend, random_start};
+use super::error::MethodError;
+use super::refine::refine;
+use super::task::{Found, Memory, Task, Tools};
+use super::{Method, Precision, Setting, perturbed, timed};
 use crate::paint::Painter;
 
-/// What methods share.
-#[derive(Clone, Debug, Default)]
-pub struct Tools {
-    /// The shapes that objects may have; random scenes without one are of disks.
-    pub bank: Option<Bank<f32>>,
-    /// For methods that need one.
-    pub network: Option<Arc<Proposer>>,
-}
-
-/// An image, and what else a method may be told.
-#[derive(Clone, Copy, Debug)]
-pub struct Task<'a> {
-    /// What is to be explained.
-    pub image: ImageView<'a, f32>,
-    /// What methods go on from that need a scene near the truth; none: [`Self::truth`], perturbed.
-    pub start: Option<&'a Scene<f32>>,
-    /// The true scene: tells Rand-OptP how many objects there are.
-    pub truth: Option<&'a Scene<f32>>,
-    /// Of what is random.
-    pub seed: u64,
-}
-
-/// What a method found.
-#[derive(Clone, Debug)]
-#[non_exhaustive]
-pub struct Found {
-    /// The scene that is painted (of latents with every slot, opaque as it is confident), how it was reached, and what the
-    /// method itself doubts. What a method does not know is empty or NaN; a network alone takes no step.
-    pub fit: Fit<f32>,
-    /// Its objects of a confidence above 1/2: those that count.
-    pub there: Scene<f32>,
-    /// Processor time on this thread, without what is prepared once.
-    pub cpu: Duration,
-}
-
-/// Memory of one thread, for any runner.
-#[derive(Debug, Default)]
-pub struct Memory {
-    single: Scratch<f32>,
-    #[cfg(feature = "double")]
-    double: Scratch<f64>,
-}
-
-#[derive(Debug, Default)]
-struct Scratch<T: Real> {
-    fit: FitScratch<T>,
-    refine: RefineScratch<T>,
-}
+/// What a method found, and the processor time that it took.
+type Timed<T> = Result<(Fit<T>, Duration), MethodError>;
 
 /// A method with its setting, made ready; threads share it.
 #[derive(Debug)]
@@ -84,18 +40,21 @@ impl Runner {
     /// Prepares `method`.
     ///
     /// # Errors
-    /// If the tools lack what it needs, or it does not know the precision.
-    pub fn new(method: Method, setting: Setting, tools: &Tools) -> Result<Self> {
-        let name = method.name();
+    /// [`MethodError`] if the tools lack what it needs, options are out of range, or it does not know the precision.
+    pub fn new(method: Method, setting: Setting, tools: &Tools) -> Result<Self, MethodError> {
         if !method.knows(setting.precision) {
-            bail!("{name} computes in f32 only");
+            return Err(MethodError::Precision(method));
         }
         if method.needs_network() && tools.network.is_none() {
-            bail!("{name} needs a network");
+            return Err(MethodError::NeedsNetwork(method));
         }
-        if method == Method::SegmentBank && tools.bank.is_none() {
-            bail!("{name} needs a bank");
-        }
+        let own = tools.options.clone();
+        let options = match method {
+            Method::SegmentBank if own.bank.is_none() => return Err(MethodError::NeedsBank(method)),
+            Method::SegmentBank => Some(own.with_max_steps(setting.steps)),
+            Method::SegmentFree => Some(own.with_bank(None).with_max_harmonics(setting.steps)),
+            _ => None,
+        };
         let mut runner = Self {
             method,
             setting,
@@ -104,24 +63,14 @@ impl Runner {
             #[cfg(feature = "double")]
             double: None,
         };
-        if matches!(method, Method::SegmentBank | Method::SegmentFree) {
+        if let Some(options) = options {
             match setting.precision {
-                Precision::F32 => runner.single = Some(runner.fitter()?),
+                Precision::F32 => runner.single = Some(Fitter::new(options)?),
                 #[cfg(feature = "double")]
-                Precision::F64 => runner.double = Some(runner.fitter()?),
+                Precision::F64 => runner.double = Some(Fitter::new(options.cast())?),
             }
         }
         Ok(runner)
-    }
-
-    fn fitter<T: Real>(&self) -> Result<Fitter<T>> {
-        let options = match &self.tools.bank {
-            Some(bank) if self.method == Method::SegmentBank => {
-                FitOptions { bank: Some(precision::bank(bank)), max_steps: self.setting.steps, ..Default::default() }
-            }
-            _ => FitOptions { max_harmonics: self.setting.steps, ..Default::default() },
-        };
-        Ok(Fitter::new(options)?)
     }
 
     /// The method.
@@ -136,18 +85,31 @@ impl Runner {
         self.setting
     }
 
+    /// What it was made ready with.
+    #[must_use]
+    pub fn tools(&self) -> &Tools {
+        &self.tools
+    }
+
     /// The scene of an image.
     ///
     /// # Errors
-    /// If the task lacks what the method starts from, or the method refuses the image or the start.
-    pub fn run(&self, task: &Task<'_>, memory: &mut Memory) -> Result<Found> {
-        let (fit, cpu) = match (&self.tools.network, self.setting.precision) {
-            (Some(network), _) if self.method.needs_network() => self.see(network, task, &mut memory.single)?,
-            (_, Precision::F32) => self.fit(self.single.as_ref(), task, &mut memory.single)?,
-            #[cfg(feature = "double")]
-            (_, Precision::F64) => {
-                let (fit, cpu) = self.fit(self.double.as_ref(), task, &mut memory.double)?;
-                (fit.cast(), cpu)
+    /// [`MethodError`] if the task lacks what the method starts from, or the method refuses the image or the start.
+    pub fn run(&self, task: &Task<'_>, memory: &mut Memory) -> Result<Found, MethodError> {
+        let (fit, cpu) = match (&self.single, &task.known) {
+            (Some(fitter), Some(known)) => {
+                timed(|| Ok::<_, MethodError>(fit_picture(fitter, task.image, known, &mut memory.picture)?))?
+            }
+            (_, known) => {
+                let (fit, cpu) = self.find(task, memory)?;
+                match known.and_then(|known| known.matte) {
+                    None => (fit, cpu),
+                    Some(matte) => {
+                        let cut = || Ok::<_, MethodError>(cut_openings(fit, task.image, matte, memory.canvas())?);
+                        let (fit, more) = timed(cut)?;
+                        (fit, cpu + more)
+                    }
+                }
             }
         };
         let mut there = fit.scene.clone();
@@ -155,117 +117,109 @@ impl Runner {
         Ok(Found { fit, there, cpu })
     }
 
+    fn find(&self, task: &Task<'_>, memory: &mut Memory) -> Timed<f32> {
+        match (&self.tools.network, self.setting.precision) {
+            (Some(network), _) if self.method.needs_network() => self.see(network, task, &mut memory.refine),
+            (_, Precision::F32) => self.fit(self.single.as_ref(), task, &mut memory.picture.fit, &mut memory.refine),
+            #[cfg(feature = "double")]
+            (_, Precision::F64) => {
+                let (fit, refine) = &mut memory.double;
+                let (fit, cpu) = self.fit(self.double.as_ref(), task, fit, refine)?;
+                Ok((fit.cast(), cpu))
+            }
+        }
+    }
+
     /// Without a network.
     fn fit<T: Real>(
         &self,
         fitter: Option<&Fitter<T>>,
         task: &Task<'_>,
-        scratch: &mut Scratch<T>,
-    ) -> Result<(Fit<T>, Duration)> {
+        scratch: &mut FitScratch<T>,
+        refine: &mut RefineScratch<T>,
+    ) -> Timed<T> {
         let values = task.image.data().iter().map(|value| T::of(value.as_f64())).collect();
         let image = Image::from_planar(task.image.size(), values)?;
         let (image, steps) = (image.view(), self.setting.steps);
-        match self.method {
-            Method::OptP => {
-                let start = self.start(task)?;
-                let settings = OptP { steps, ..OptP::default() };
-                adam::descend(&start, |descent| timed(|| Ok(settings.fit(descent, image, &start)?)))
+        match (self.method, fitter) {
+            (Method::SegmentBank | Method::SegmentFree, Some(fitter)) => timed(|| Ok(fitter.fit(image, scratch)?)),
+            (Method::OptP, _) => {
+                let (start, settings) = (self.start(task)?, OptP::default().with_steps(steps));
+                descend(&start, |descent| timed(|| Ok(settings.fit(descent, image, &start)?)))
             }
-            Method::RandOptP => {
-                let start = self.start(task)?;
-                let RandOptP { pose, shape, contour_length } = RandOptP::default();
-                let free = steps / 2;
-                let settings = RandOptP { pose: (steps - free, pose.1), shape: (free, shape.1), contour_length };
-                adam::descend(&start, |descent| timed(|| Ok(settings.fit(descent, image, &start)?)))
+            (Method::RandOptP, _) => {
+                let (start, mut settings) = (self.start(task)?, RandOptP::default());
+                settings.shape.0 = steps / 2;
+                settings.pose.0 = steps - settings.shape.0;
+                descend(&start, |descent| timed(|| Ok(settings.fit(descent, image, &start)?)))
             }
-            Method::OptIter | Method::OptIterPublished => {
-                let own = if self.method == Method::OptIter { OptIter::default() } else { OptIter::published() };
+            (Method::OptIter | Method::OptIterPublished, _) => {
+                let is_ours = self.method == Method::OptIter;
+                let mut settings = if is_ours { OptIter::default() } else { OptIter::published() };
                 let part = steps / 5;
-                let settings = OptIter {
-                    pose: (part, own.pose.1),
-                    shape: (steps - part, own.shape.1),
-                    finish: (part, own.finish.1),
-                    ..own
-                };
-                adam::descend(&Scene::empty([T::zero(); 3]), |descent| timed(|| Ok(settings.fit(descent, image)?)))
+                (settings.pose.0, settings.shape.0, settings.finish.0) = (part, steps - part, part);
+                settings.object_count = task.objects.unwrap_or(settings.object_count);
+                descend(&Scene::empty([T::zero(); 3]), |descent| timed(|| Ok(settings.fit(descent, image)?)))
             }
-            Method::Lm | Method::LmContinuation => {
-                let start = self.start(task)?;
-                let settings = self.refine_settings();
-                timed(|| Ok(settings.fit(image, &start, &mut scratch.refine)?))
+            (Method::Lm | Method::LmContinuation, _) => {
+                let (start, settings) = (self.start(task)?, self.refine_settings());
+                timed(|| Ok(settings.fit(image, &start, refine)?))
             }
-            _ => {
-                let fitter = fitter.context("no fitter was prepared")?;
-                timed(|| Ok(fitter.fit(image, &mut scratch.fit)?))
+            // Refused by `new`.
+            (method @ (Method::SegmentBank | Method::SegmentFree), None) => Err(MethodError::NeedsBank(method)),
+            (method @ (Method::Net | Method::NetLm | Method::NetOptP | Method::OptZ | Method::RandOptZ), _) => {
+                Err(MethodError::NeedsNetwork(method))
             }
         }
     }
 
     fn refine_settings(&self) -> Refine {
-        let own = Refine::default();
-        let factors = if self.method == Method::Lm { &[1.0] } else { own.factors };
-        Refine { factors, max_steps: self.setting.steps, ..own }
+        let settings = Refine::default().with_max_steps(self.setting.steps);
+        if self.method == Method::Lm { settings.with_factors(&[1.0]) } else { settings }
     }
 
     /// What a method goes on from that does not ask a network.
-    fn start<T: Real>(&self, task: &Task<'_>) -> Result<Scene<T>> {
-        let name = self.method.name();
+    fn start<T: Real>(&self, task: &Task<'_>) -> Result<Scene<T>, MethodError> {
         let start = match (task.start, task.truth) {
             (Some(start), _) => start.clone(),
-            (None, Some(truth)) if self.method == Method::RandOptP => {
-                adam::random_start(self.tools.bank.as_ref(), truth.objects.len(), task.seed)
+            (None, truth) if self.method == Method::RandOptP => {
+                let count = task.objects.or_else(|| truth.map(|truth| truth.objects.len()));
+                let count = count.ok_or(MethodError::NeedsCount(self.method))?;
+                random_start(self.tools.options.bank.as_ref(), count, task.seed)
             }
             (None, Some(truth)) => perturbed(truth, &mut ChaCha8Rng::seed_from_u64(task.seed)),
-            (None, None) if self.method == Method::RandOptP => {
-                bail!("{name} must know how many objects there are (scenes.jsonl)")
-            }
-            (None, None) => bail!("{name} needs a start, or the truth to make one from"),
+            (None, None) => return Err(MethodError::NeedsStart(self.method)),
         };
         Ok(start.cast())
     }
 
     /// With a network.
-    fn see(&self, network: &Proposer, task: &Task<'_>, scratch: &mut Scratch<f32>) -> Result<(Fit<f32>, Duration)> {
+    fn see(&self, network: &Proposer, task: &Task<'_>, scratch: &mut RefineScratch<f32>) -> Timed<f32> {
         let (image, steps) = (task.image, self.setting.steps);
-        let opt_z = OptZ { steps, ..OptZ::default() };
+        let opt_z = OptZ::default().with_steps(steps);
         match self.method {
-            Method::RandOptZ => fit_of(image, timed(|| Ok(network.rand_opt_z(image, &opt_z, task.seed)?))?),
-            Method::OptZ => fit_of(image, timed(|| Ok(network.opt_z(image, &opt_z)?))?),
-            Method::NetOptP => {
-                let settings = OptP { steps, ..OptP::default() };
-                timed(|| {
-                    let start = network.objects(image)?;
-                    adam::descend(&start, |descent| Ok(settings.fit(descent, image, &start)?))
-                })
-            }
-            Method::NetLm => {
-                let settings = self.refine_settings();
-                timed(|| {
-                    let start = network.objects(image)?;
-                    refine(&settings, image, &start, Compositing::default(), usize::MAX, &mut scratch.refine)
-                })
-            }
-            _ => {
-                let (scene, cpu) = timed(|| Ok(network.objects(image)?))?;
-                fit_of(image, (Optimum { scene, loss: f64::NAN, losses: vec![f64::NAN] }, cpu))
-            }
+            Method::RandOptZ => fit_of(image, || network.rand_opt_z(image, &opt_z, task.seed)),
+            Method::OptZ => fit_of(image, || network.opt_z(image, &opt_z)),
+            Method::NetOptP => timed(|| {
+                let start = network.objects(image)?;
+                descend(&start, |descent| Ok(OptP::default().with_steps(steps).fit(descent, image, &start)?))
+            }),
+            Method::NetLm => timed(|| {
+                let (start, options) = (network.objects(image)?, &self.tools.options);
+                let compositing = options.compositing.unwrap_or_default();
+                Ok(refine(&self.refine_settings(), image, &start, compositing, options.max_objects, scratch)?)
+            }),
+            _ => fit_of(image, || {
+                let scene = network.objects(image)?;
+                Ok(Optimum { scene, loss: f64::NAN, losses: vec![f64::NAN] })
+            }),
         }
     }
 }
 
-/// What `work` makes, and the processor time that it took on this thread.
-///
-/// # Errors
-/// Those of `work`, or if the system has no thread clock.
-pub fn timed<R>(work: impl FnOnce() -> Result<R>) -> Result<(R, Duration)> {
-    const NO_CLOCK: &str = "the system has no thread clock";
-    let clock = ThreadTime::try_now().context(NO_CLOCK)?;
-    let result = work()?;
-    Ok((result, clock.try_elapsed().context(NO_CLOCK)?))
-}
-
-/// A descent of latents, or a network alone, as a fit that doubts what it leaves unexplained; with the time it took.
-fn fit_of(image: ImageView<'_, f32>, (found, cpu): (Optimum<f32>, Duration)) -> Result<(Fit<f32>, Duration)> {
+/// What a descent of latents, or a network alone, finds, as a fit that doubts what it leaves unexplained; with the time it took.
+fn fit_of(image: ImageView<'_, f32>, find: impl FnOnce() -> Result<Optimum<f32>, NetError>) -> Timed<f32> {
+    let (found, cpu) = timed(|| Ok::<_, MethodError>(find()?))?;
     let painter = Painter::default();
     let (drawing, painted) = (painter.draw(&found.scene, image.size())?, painter.paint(&found.scene, image.size())?);
     let mut fit = Fit::of_painted(found.scene, &drawing, &image, painted.data());

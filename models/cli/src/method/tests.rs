@@ -1,6 +1,7 @@
 use alloc::sync::Arc;
 
 use dvp_core::{ImageSize, Scene};
+use dvp_fit::FitOptions;
 
 use super::*;
 use crate::format::mdshr_bank;
@@ -19,14 +20,17 @@ fn every_method_finds_a_scene_in_every_precision_that_it_knows() {
     let size = ImageSize::new(64, 64).unwrap();
     let truth = truth(size);
     let image = Painter::default().paint(&truth, size).unwrap();
-    let tools = Tools { bank: Some(mdshr_bank()), network: Some(Arc::new(load_network(None).unwrap())) };
+    let tools = Tools {
+        options: FitOptions::default().with_bank(Some(mdshr_bank())),
+        network: Some(Arc::new(load_network(None).unwrap())),
+    };
     let mut memory = Memory::default();
     for &method in Method::all() {
         for precision in [Precision::F32, Precision::F64] {
             let runner = Runner::new(method, Setting { steps: STEPS, precision }, &tools);
             assert_eq!(runner.is_ok(), method.knows(precision), "{}", method.name());
             let Ok(runner) = runner else { continue };
-            let task = Task { image: image.view(), start: None, truth: Some(&truth), seed: 3 };
+            let task = Task { truth: Some(&truth), seed: 3, ..Task::of(image.view()) };
             let found = runner.run(&task, &mut memory).unwrap();
             let again = runner.run(&task, &mut memory).unwrap();
             assert_eq!(found.fit.scene, again.fit.scene, "{}", method.name());
@@ -45,7 +49,7 @@ fn a_start_that_is_given_is_gone_on_from() {
     let size = ImageSize::new(64, 64).unwrap();
     let truth = truth(size);
     let image = Painter::default().paint(&truth, size).unwrap();
-    let task = Task { image: image.view(), start: Some(&truth), truth: None, seed: 0 };
+    let task = Task { start: Some(&truth), ..Task::of(image.view()) };
     for method in [Method::OptP, Method::Lm, Method::LmContinuation, Method::RandOptP] {
         let runner = Runner::new(method, Setting { steps: 0, ..method.default_setting() }, &Tools::default()).unwrap();
         let found = runner.run(&task, &mut Memory::default()).unwrap();
@@ -61,7 +65,7 @@ fn a_start_that_is_given_is_gone_on_from() {
 fn what_is_missing_is_said() {
     let size = ImageSize::new(64, 64).unwrap();
     let image = Painter::default().paint(&truth(size), size).unwrap();
-    let task = Task { image: image.view(), start: None, truth: None, seed: 0 };
+    let task = Task::of(image.view());
     let new = |method: Method| Runner::new(method, method.default_setting(), &Tools::default());
     for (method, word) in [(Method::SegmentBank, "bank"), (Method::NetLm, "network"), (Method::RandOptZ, "network")] {
         assert!(new(method).unwrap_err().to_string().contains(word));

@@ -38,6 +38,7 @@ pub enum ScoreError {
 
 /// The scores of one image.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct Score {
     /// Mean absolute error over pixels and channels.
     pub mae: f64,
@@ -53,6 +54,7 @@ pub struct Score {
 
 /// Scores of which pixels belong to which object.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct MaskScore {
     /// Of the union masks.
     pub overlap: MaskOverlap,

@@ -26,6 +26,7 @@ pub struct Failure {
 
 /// The paper's columns: means over the images that were scored. None where nothing is known.
 #[derive(Clone, Debug, Serialize)]
+#[non_exhaustive]
 pub struct Totals {
     /// Images scored.
     pub n: usize,

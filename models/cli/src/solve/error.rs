@@ -3,11 +3,10 @@
 use dvp_core::image::ImageError;
 use dvp_core::loss::LossError;
 use dvp_core::shape::ShapeError;
-use dvp_fit::FitError;
 use dvp_fit::masks::LabelMapError;
-use dvp_net::error::NetError;
 
 use crate::format::FormatError;
+use crate::method::MethodError;
 use crate::paint::PaintError;
 
 /// Why nothing was found in a picture.
@@ -17,18 +16,12 @@ pub enum SolveError {
     /// A method and a start that do not go together.
     #[error("{0}")]
     Usage(&'static str),
-    /// The options or the picture were refused.
-    #[error(transparent)]
-    Fit(#[from] FitError),
     /// The scene to start from could not be read.
     #[error(transparent)]
     Start(#[from] FormatError),
-    /// The network refused the picture.
+    /// The method refused its options, the picture or the start.
     #[error(transparent)]
-    Network(#[from] NetError),
-    /// A method that starts from a scene failed.
-    #[error(transparent)]
-    Method(anyhow::Error),
+    Method(#[from] MethodError),
     /// What was found could not be painted.
     #[error(transparent)]
     Paint(#[from] PaintError),

@@ -13,6 +13,7 @@ use crate::paint::Painter;
 
 /// The scene of a label map.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct MaskFit {
     /// The scene, one object per label, and how near its rendering comes to the picture.
     pub fit: Fit<f32>,
@@ -53,7 +54,7 @@ pub fn fit_masks(
             let colors: Vec<[f32; 3]> = (0..known.len()).map(palette).collect();
             let pixels: Vec<f32> = labels.iter().flat_map(|label| colors[owner(label)]).collect();
             let image = Image::from_interleaved(size, &pixels)?;
-            (Picture { bits: BitDepth::Eight, ..Picture::from(image) }, colors)
+            (Picture::from(image).with_bits(BitDepth::Eight), colors)
         }
     };
     let objects = outlines

@@ -1,44 +1,27 @@
 //! One picture to one fit, by the chosen method.
 
+use alloc::sync::Arc;
 use core::panic::AssertUnwindSafe;
 use core::time::Duration;
 use std::panic::catch_unwind;
 use std::path::PathBuf;
 
-use clap::ValueEnum;
-use dvp_core::Scene;
-use dvp_fit::opt_iter::OptIter;
-use dvp_fit::paint::Canvas;
-use dvp_fit::picture::{Known, PictureScratch, cut_openings, fit_picture};
-use dvp_fit::refine::{Refine, RefineScratch};
-use dvp_fit::{Bank, Fit, FitOptions, Fitter};
+use dvp_fit::picture::Known;
+use dvp_fit::{Bank, Fit, FitOptions};
 use dvp_net::propose::Proposer;
 
+use super::choice::MethodChoice;
 use super::error::SolveError;
 use crate::format::{Picture, Place, read_scene};
-use crate::method;
-
-/// How a scene is found.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub enum Method {
-    /// Segmentation, distance samples, Levenberg-Marquardt; with --start net Levenberg-Marquardt from what the network sees
-    #[default]
-    Segment,
-    /// The paper's Opt-Iter: objects one by one where the image is worst explained
-    OptIter,
-    /// The paper's OptP: Adam on pose and color from the scenes of --start
-    OptP,
-    /// The paper's Rand-OptP: Adam from a random scene
-    RandOptP,
-}
+use crate::method::{Found, Memory, Runner, Task, Tools, seed_of};
 
 /// What a fit starts from.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub enum Start {
     /// What the method makes of the picture itself.
     Picture,
     /// What a network sees.
-    Network(Box<Proposer>),
+    Network(Arc<Proposer>),
     /// A folder of `{stem}.json`.
     Folder(PathBuf),
 }
@@ -56,26 +39,10 @@ pub struct Solved {
 /// Everything that a method needs, shared between threads.
 #[derive(Debug)]
 pub struct Solver {
-    method: Method,
-    options: FitOptions<f32>,
-    fitter: Fitter<f32>,
+    runner: Runner,
     start: Start,
     object_count: usize,
     seed: u64,
-}
-
-/// Memory of one thread, kept from picture to picture.
-#[derive(Debug, Default)]
-pub struct Scratch {
-    picture: PictureScratch,
-    refine: RefineScratch<f32>,
-}
-
-impl Scratch {
-    /// To paint what was found.
-    pub fn canvas(&mut self) -> &mut Canvas<f32> {
-        &mut self.picture.canvas
-    }
 }
 
 impl Solver {
@@ -83,97 +50,57 @@ impl Solver {
     /// from `seed`.
     ///
     /// # Errors
-    /// [`SolveError::Usage`] for a method and a start that do not go together, [`SolveError::Fit`] for options out of range.
+    /// [`SolveError::Usage`] for a method and a start that do not go together, [`SolveError::Method`] for options out of range.
     pub fn new(
-        method: Method,
+        choice: MethodChoice,
         options: FitOptions<f32>,
         start: Start,
         object_count: usize,
         seed: u64,
     ) -> Result<Self, SolveError> {
-        let problem = match (&start, method) {
-            (Start::Picture, Method::OptP) => "--method opt-p needs --start DIR, or --start net",
-            (Start::Folder(_), Method::OptP)
-            | (Start::Network(_), Method::OptP | Method::Segment)
-            | (Start::Picture, _) => "",
-            (Start::Folder(_), _) => "--start DIR goes with --method opt-p only",
-            (Start::Network(_), _) => "--start net goes with --method segment or opt-p only",
+        let method = choice.method(&start, options.bank.is_some())?;
+        let network = match &start {
+            Start::Network(network) => Some(Arc::clone(network)),
+            _ => None,
         };
-        if !problem.is_empty() {
-            return Err(SolveError::Usage(problem));
-        }
-        let fitter = Fitter::new(options.clone())?;
-        Ok(Self { method, options, fitter, start, object_count, seed })
+        let runner = Runner::new(method, method.default_setting(), &Tools { options, network })?;
+        Ok(Self { runner, start, object_count, seed })
     }
 
     /// The fit of a picture, with the openings of a transparent one cut out. `stem` names it: for [`Start::Folder`] its scene is
     /// `{stem}.json`, and random starts differ by it.
     ///
     /// # Errors
-    /// [`SolveError`]; of a panic in the fit [`SolveError::Defect`], with `scratch` as new.
-    pub fn solve(&self, picture: &Picture<f32>, stem: &str, scratch: &mut Scratch) -> Result<Solved, SolveError> {
-        let read = match &self.start {
+    /// [`SolveError`]; of a panic in the fit [`SolveError::Defect`], with `memory` as new.
+    pub fn solve(&self, picture: &Picture<f32>, stem: &str, memory: &mut Memory) -> Result<Solved, SolveError> {
+        let start = match &self.start {
             Start::Folder(folder) => {
                 let path = folder.join(format!("{stem}.json"));
                 Some(read_scene(&path)?.to_scene(self.bank(), &Place::file(&path))?)
             }
             _ => None,
         };
+        let matte = picture.transparent.then_some(picture.matte);
+        let known = Known::default().with_matte(matte).with_coded(picture.coded);
+        let task = Task {
+            known: Some(known),
+            start: start.as_ref(),
+            objects: Some(self.object_count),
+            seed: seed_of(stem, self.seed),
+            ..Task::of(picture.image.view())
+        };
         // A defect in the fit of one picture must not cost the others.
-        let run = || Ok(catch_unwind(AssertUnwindSafe(|| self.run(picture, read, stem, scratch))));
-        let (fit, time) = method::timed(run).map_err(SolveError::Method)?;
-        let Ok(fit) = fit else {
-            *scratch = Scratch::default();
+        let Ok(found) = catch_unwind(AssertUnwindSafe(|| self.runner.run(&task, memory))) else {
+            *memory = Memory::default();
             return Err(SolveError::Defect);
         };
-        Ok(Solved { fit: fit?, time })
+        let Found { fit, cpu, .. } = found?;
+        Ok(Solved { fit, time: cpu })
     }
 
     /// The known shapes.
     #[must_use]
     pub fn bank(&self) -> Option<&Bank<f32>> {
-        self.options.bank.as_ref()
-    }
-
-    fn run(
-        &self,
-        picture: &Picture<f32>,
-        read: Option<Scene<f32>>,
-        stem: &str,
-        scratch: &mut Scratch,
-    ) -> Result<Fit<f32>, SolveError> {
-        let image = picture.image.view();
-        let matte = picture.transparent.then_some(picture.matte);
-        let start = match &self.start {
-            Start::Network(network) => Some(network.objects(image)?),
-            _ => read,
-        };
-        let fit = match (self.method, start) {
-            (Method::Segment, None) => {
-                let known = Known { matte, coded: picture.coded };
-                return Ok(fit_picture(&self.fitter, image, &known, &mut scratch.picture)?);
-            }
-            (Method::Segment, Some(start)) => {
-                let FitOptions { compositing, max_objects, .. } = self.options;
-                let (compositing, settings) = (compositing.unwrap_or_default(), Refine::default());
-                method::refine(&settings, image, &start, compositing, max_objects, &mut scratch.refine)
-                    .map_err(SolveError::Method)
-            }
-            (Method::RandOptP, _) => {
-                let seed = method::seed_of(stem, self.seed);
-                let start = method::random_start(self.bank(), self.object_count, seed);
-                method::rand_opt_p(image, &start).map_err(SolveError::Method)
-            }
-            (Method::OptP, Some(start)) => method::opt_p(image, &start).map_err(SolveError::Method),
-            (Method::OptIter | Method::OptP, _) => {
-                let opt_iter = OptIter { object_count: self.object_count, ..OptIter::default() };
-                method::descend(&Scene::empty([0.0; 3]), |descent| Ok(opt_iter.fit(descent, image)?))
-                    .map_err(SolveError::Method)
-            }
-        }?;
-        match matte {
-            Some(matte) => Ok(cut_openings(fit, image, matte, scratch.canvas())?),
-            None => Ok(fit),
-        }
+        self.runner.tools().options.bank.as_ref()
     }
 }

@@ -46,6 +46,6 @@ fn radii_next_to_half_a_chord_keep_the_height_of_the_arc() {
 #[test]
 fn titles_are_xml_whatever_the_names_are() {
     let efd = Efd::new(vec![[1.0, 0.0, 0.0, -1.0]]);
-    let bank = Bank { prototypes: vec![("a & \u{1}\u{ffff}b".to_owned(), efd.clone())] };
+    let bank = Bank::new(vec![("a & \u{1}\u{ffff}b".to_owned(), efd.clone())]);
     assert!(from_svg(&text_of(AnyShape::of_efd(efd, Some(0)), Some(&bank))).is_ok(), "control characters are no XML");
 }

@@ -56,7 +56,7 @@ impl<T: Real> Adam<T> {
 
     /// One step down `gradient`. Parameters beyond the length given to [`Self::reset`], or without a gradient, stay.
     pub fn step(&mut self, parameters: &mut [T], gradient: &[T], learning_rate: f64) {
-        let AdamSettings { beta1, beta2, epsilon } = self.settings;
+        let AdamSettings { beta1, beta2, epsilon, .. } = self.settings;
         self.decay1 *= beta1;
         self.decay2 *= beta2;
         let rate = T::of(learning_rate / (1.0 - self.decay1));

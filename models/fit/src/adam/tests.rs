@@ -29,7 +29,9 @@ fn reset_forgets() {
 
 #[test]
 fn plateau_waits_cuts_and_cools_down() {
-    let mut plateau = Plateau::new(PlateauSettings { patience: 2, cooldown: 2, ..Default::default() }, 1.0);
+    let mut settings = PlateauSettings::default();
+    (settings.patience, settings.cooldown) = (2, 2);
+    let mut plateau = Plateau::new(settings, 1.0);
     let mut rates = Vec::new();
     for _ in 0..10 {
         plateau.observe(1.0);

@@ -139,7 +139,7 @@ fn edges_along_the_grid_do_not_hide_the_reference() {
     let prototypes = bank.prototypes().iter().map(|efd| (String::new(), efd.clone())).collect();
     let bank = Some(Bank { prototypes });
     for max_steps in [0, 10, 20] {
-        let options = FitOptions { bank: bank.clone(), max_steps, ..FitOptions::default() };
+        let options = FitOptions::default().with_bank(bank.clone()).with_max_steps(max_steps);
         let fit = Fitter::new(options).unwrap().fit(image.view(), &mut FitScratch::default()).unwrap();
         assert_eq!((fit.scene.edge.law, fit.scene.objects.len()), (EdgeLaw::SquaredDistance, 2), "{max_steps} steps");
         for (found, truth) in fit.scene.objects.iter().zip(&truth.objects) {

@@ -27,6 +27,7 @@ use crate::free::outline_fit::FreeOutline;
 
 /// The outline of a label.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct LabelOutline<T> {
     /// The label.
     pub label: u32,

@@ -8,6 +8,7 @@ use dvp_core::{ImageView, Real};
 
 /// How the color is found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum BackgroundStart {
     /// The median of each channel, as in the published evaluation. Where objects cover more than half of the image it is
     /// a color that nothing has, and the true background is taken for an object.

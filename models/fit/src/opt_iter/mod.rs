@@ -21,8 +21,10 @@ use crate::parameters::Free;
 use crate::{Fit, StopReason};
 
 /// Settings of Opt-Iter; the defaults are those of its published evaluation, but for
-/// [`Self::contour_length`], [`Self::background`] and [`Self::focus`]; see [`Self::published`].
+/// [`Self::contour_length`], [`Self::background`] and [`Self::focus`]; see [`Self::published`]. To change some: start with the
+/// default, set fields.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct OptIter {
     /// Objects to add.
     pub object_count: usize,

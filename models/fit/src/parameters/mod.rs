@@ -30,6 +30,7 @@ const POSE_AND_COLOR: usize = 8;
 
 /// Which parameters move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Free {
     /// Background, translation, scale, rotation, color.
     PoseAndColor,

@@ -42,6 +42,7 @@ const CLEARLY_WORSE: f32 = 2.0;
 
 /// Memory of [`fit_picture`], one per thread, kept between pictures.
 #[derive(Debug, Default)]
+#[non_exhaustive]
 pub struct PictureScratch {
     /// That of the fitter.
     pub fit: FitScratch<f32>,

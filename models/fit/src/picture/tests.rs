@@ -38,7 +38,7 @@ fn clear_edges_make_a_drawing_and_what_is_known_beforehand_segments() {
     let [object] = &drawn.scene.objects[..] else { panic!("{:?}", drawn.scene) };
     assert!(object.shape.efd().is_none(), "{object:?}");
     assert!(drawn.loss < 1e-5, "{}", drawn.loss);
-    let options = FitOptions { compositing: Some(Compositing::Over), ..FitOptions::default() };
+    let options = FitOptions::default().with_compositing(Some(Compositing::Over));
     let known = fit(&image, &Known::default(), options.clone());
     let segments = Fitter::new(options).unwrap().fit(image.view(), &mut FitScratch::default()).unwrap();
     assert_eq!(known.scene, segments.scene);
@@ -66,7 +66,7 @@ fn what_shows_the_matte_is_an_opening() {
     let matte = [1.0, 0.0, 1.0];
     let (outer, inner) = (in_square(8, 40), in_square(16, 32));
     let image = picture(|column, row| if outer(column, row) && !inner(column, row) { [0.0, 0.4, 0.2] } else { matte });
-    let known = Known { matte: Some(matte), coded: false };
+    let known = Known::default().with_matte(Some(matte));
     let frame = fit(&image, &known, FitOptions::default());
     assert!(frame.scene.transparent);
     let is_matte = |object: &Object<f32>| object.color()[0] > 0.5;
@@ -103,7 +103,7 @@ fn the_largest_of_a_drawing_stay_if_fewer_are_asked_for() {
         let own = squares.iter().find(|&&(least, most, _)| in_square(least, most)(column, row));
         own.map_or([1.0; 3], |&(.., color)| color)
     });
-    let with = |max_objects| fit(&image, &Known::default(), FitOptions { max_objects, ..FitOptions::default() });
+    let with = |max_objects| fit(&image, &Known::default(), FitOptions::default().with_max_objects(max_objects));
     let colors = |fit: &Fit<f32>| fit.scene.objects.iter().map(|object| object.color()[0] > 0.5).collect::<Vec<_>>();
     let (all, two, one) = (with(256), with(2), with(1));
     assert_eq!([&all, &two, &one].map(|fit| fit.scene.objects.len()), [3, 2, 1]);

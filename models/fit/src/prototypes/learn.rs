@@ -38,8 +38,9 @@ const SYMMETRIC: f64 = 0.01;
 /// Misfit of a mean's own truncation, radii.
 const TRUNCATION: f64 = 2e-3;
 
-/// Settings of [`learn`].
+/// Settings of [`learn`]. To change some: start with the default, set fields.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct PrototypeOptions {
     /// Most shapes that are looked for.
     pub max_shapes: usize,
@@ -58,6 +59,7 @@ impl Default for PrototypeOptions {
 
 /// A shape that was found.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Prototype {
     /// The mean of its members, with the symmetry that it evidently has.
     pub form: Form,
@@ -77,6 +79,7 @@ pub struct Prototype {
 
 /// What was learned.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Learned {
     /// The shapes, those seen most often first.
     pub prototypes: Vec<Prototype>,

@@ -137,6 +137,7 @@ fn assign(distances: &DistanceMatrix, medoids: &[usize]) -> Partition {
 
 /// How good a partition is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Silhouette {
     /// Mean over all things of (b - a) / max(a, b), in \[-1, 1\].
     pub mean: f64,

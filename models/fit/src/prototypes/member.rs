@@ -19,6 +19,7 @@ const CLEARANCE_PX: f64 = 2.0;
 
 /// An object to learn from.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Member {
     /// Its shape.
     pub form: Form,

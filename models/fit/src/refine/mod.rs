@@ -25,6 +25,7 @@ use scratch::to_scene;
 /// Settings of the refinement: Levenberg-Marquardt at softer edges first, which widens the basin from about a pixel to
 /// several.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Refine {
     /// The edge's sigma is multiplied by these, one after the other; the last one should be 1.
     pub factors: &'static [f64],
@@ -42,6 +43,24 @@ impl Default for Refine {
 }
 
 impl Refine {
+    /// The same with [`Self::factors`].
+    #[must_use]
+    pub fn with_factors(self, factors: &'static [f64]) -> Self {
+        Self { factors, ..self }
+    }
+
+    /// The same with [`Self::max_steps`].
+    #[must_use]
+    pub fn with_max_steps(self, max_steps: usize) -> Self {
+        Self { max_steps, ..self }
+    }
+
+    /// The same with [`Self::width`].
+    #[must_use]
+    pub fn with_width(self, width: f64) -> Self {
+        Self { width, ..self }
+    }
+
     /// The scene that Levenberg-Marquardt ends at, or `start` if that explains the image better.
     ///
     /// Translation, scale, rotation, colors and the background move, shapes and confidences stay. An outline that

@@ -39,6 +39,7 @@ const DAMPING: f64 = 0.1;
 
 /// Settings of the refinement.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct SceneRefine {
     /// Most steps.
     pub max_steps: usize,
@@ -84,6 +85,12 @@ pub struct RefineStep<'a, T> {
 }
 
 impl SceneRefine {
+    /// The same with [`Self::max_steps`].
+    #[must_use]
+    pub fn with_max_steps(self, max_steps: usize) -> Self {
+        Self { max_steps, ..self }
+    }
+
     /// The numbers at which the drawing explains `image` best, near those of `start`.
     ///
     /// A transparent scene is compared with an RGBA image over nothing; with an RGB image every scene is drawn on its

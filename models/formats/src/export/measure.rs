@@ -21,6 +21,7 @@ const SYMMETRY_HARMONICS: usize = 16;
 
 /// An object, measured.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct MeasuredObject {
     /// What it is called in this picture, by label maps too: its place in the order of painting, from 1, or its label in the
     /// label map that it comes from.
@@ -56,6 +57,7 @@ pub struct MeasuredObject {
 /// and angle of a shape that is as it was found. Every length changes with the size in the same ratio; bounds, which change with the
 /// angle in ways of their own, and colors have none.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Deviations {
     /// Of the coordinates of the centroid, px.
     pub centroid: [f64; 2],

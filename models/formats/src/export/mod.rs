@@ -42,6 +42,7 @@ use dvp_core::ImageSize;
 
 /// A picture of a run, with what came of it.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct MeasuredPicture {
     /// How the picture was named.
     pub picture: String,
@@ -61,6 +62,12 @@ pub struct Found {
 }
 
 impl MeasuredPicture {
+    /// A picture with the objects that were found in it, or why none were.
+    #[must_use]
+    pub fn new(picture: String, stem: String, found: Result<Found, String>) -> Self {
+        Self { picture, stem, found }
+    }
+
     /// The objects; none if the picture failed.
     #[must_use]
     pub fn objects(&self) -> &[MeasuredObject] {

@@ -35,7 +35,7 @@ struct PrototypeJson {
 pub fn mdshr_bank<T: Real>() -> Bank<T> {
     let shapes = shape::mdshr_bank(MDSHR_HARMONICS);
     let names = MDSHR_NAMES.into_iter().map(str::to_owned);
-    Bank { prototypes: names.zip(shapes.prototypes().iter().cloned()).collect() }
+    Bank::new(names.zip(shapes.prototypes().iter().cloned()).collect())
 }
 
 /// Reads a bank file in either layout.
@@ -80,7 +80,7 @@ pub fn parse_bank<T: Real>(text: &[u8], path: &Path) -> Result<Bank<T>, FormatEr
         let efd = checked_efd(&place, &format!("prototypes[{k}].efd"), &prototype.efd)?;
         Ok((prototype.name, efd))
     });
-    Ok(Bank { prototypes: checked.collect::<Result<_, FormatError>>()? })
+    Ok(Bank::new(checked.collect::<Result<_, FormatError>>()?))
 }
 
 fn parse_table(text: &[u8], place: &Place) -> Result<BankJson, FormatError> {

@@ -19,6 +19,7 @@ pub enum BitDepth {
 
 /// A picture as read from a file.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Picture<T> {
     /// Its colors. Where it is transparent, they are mixed with one color that stands for whatever is behind, far from all that
     /// the picture shows.
@@ -43,6 +44,18 @@ impl<T: Real> From<Image<T>> for Picture<T> {
 }
 
 impl<T: Real> Picture<T> {
+    /// The same with [`Self::coded`].
+    #[must_use]
+    pub fn with_coded(self, coded: bool) -> Self {
+        Self { coded, ..self }
+    }
+
+    /// The same with [`Self::bits`].
+    #[must_use]
+    pub fn with_bits(self, bits: BitDepth) -> Self {
+        Self { bits, ..self }
+    }
+
     /// A picture of r, g, b, r, g, b, ..., each made a number in [0, 1] by `real`.
     ///
     /// # Errors

@@ -1,5 +1,6 @@
 //! The sub-commands of the laboratory.
 
+mod arguments;
 mod chart;
 mod gradients;
 mod parsimony;

@@ -21,7 +21,7 @@ pub(super) struct Picture {
 /// The first `count` scenes of a data set, painted in float pixels: as the reference's evaluation does, which does not
 /// take the 8-bit files either. Scenes without a size get the square that networks are trained on.
 pub(super) fn painted(data: &DataSet<f32>, count: usize, renderer: RendererName) -> Result<Vec<Picture>> {
-    let painter = Painter { renderer, ..Painter::default() };
+    let painter = Painter::from(renderer);
     let picture = |sample: &Sample| {
         let (truth, size) = scene(data, sample)?;
         let size = size.map_or_else(|| square(TRAINED_SIDE), Ok)?;
@@ -32,7 +32,7 @@ pub(super) fn painted(data: &DataSet<f32>, count: usize, renderer: RendererName)
 
 /// Pairs of objects of one prototype and color whose centers are `gap` apart.
 pub(super) fn twins(gap: f32, count: u64) -> Result<Vec<Picture>> {
-    let (painter, size) = (Painter { renderer: RendererName::Triangles, ..Painter::default() }, square(TRAINED_SIDE)?);
+    let (painter, size) = (Painter::from(RendererName::Triangles), square(TRAINED_SIDE)?);
     let picture = |index| {
         let truth = hard::twins(gap, index);
         Ok(Picture { stem: format!("twins-{index:05}"), image: painter.paint(&truth, size)?, truth })

@@ -42,6 +42,24 @@ pub(super) fn page(title: &str, heading: &str, body: &Markup) -> String {
     page.into_string() + "\n"
 }
 
+/// What a page says of the run that it is of.
+pub(super) struct Run {
+    /// The command that makes the same report, but for the folder.
+    pub(super) command: String,
+    pub(super) machine: String,
+    pub(super) images: usize,
+    pub(super) seconds: f64,
+}
+
+impl Run {
+    /// A paragraph; `threads` says how many there were, if that matters.
+    pub(super) fn paragraph(&self, threads: &str) -> Markup {
+        let Self { command, machine, images, seconds } = self;
+        let seconds = format!("{seconds:.0}");
+        html! { p { code { (command) } br; (machine) "; " (threads) (images) " images; " (seconds) " s in all." } }
+    }
+}
+
 /// The machine, as far as the program knows it.
 pub(super) fn machine() -> String {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);

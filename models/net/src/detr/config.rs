@@ -7,6 +7,7 @@ use crate::error::{NetError, require};
 /// Sizes of a [`ConditionalDetr`](super::ConditionalDetr), under the keys of the published `config.json`; its other
 /// keys are passed over.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct DetrConfig {
     /// Numbers per token and per query; a multiple of 4, for sines and cosines of two coordinates.
     pub d_model: usize,

@@ -6,6 +6,7 @@ use crate::error::{NetError, require};
 
 /// Sizes of a [`Dinov2`](super::Dinov2), under the keys of the published `config.json`; its other keys are passed over.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Dinov2Config {
     /// Numbers per token.
     pub hidden_size: usize,

@@ -10,6 +10,7 @@ use crate::weights::Weights;
 /// Sizes of a [`ConvEncoder`].
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct ConvConfig {
     /// Side in pixels of the patches that the first layer takes, without overlap.
     pub patch: usize,

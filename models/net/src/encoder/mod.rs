@@ -40,6 +40,7 @@ pub trait Encoder<B: Backend>: Debug + Send + Sync {
 /// Which encoder, and its sizes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum EncoderConfig {
     /// Strided convolutions.
     Conv(ConvConfig),

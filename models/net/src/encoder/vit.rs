@@ -18,6 +18,7 @@ const CHANNEL_DEVIATION: [f64; 3] = [0.229, 0.224, 0.225];
 /// Sizes of a [`VitEncoder`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct VitConfig {
     /// Sizes of the transformer, under their published keys.
     pub model: Dinov2Config,

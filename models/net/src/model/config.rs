@@ -12,6 +12,7 @@ use crate::error::{NetError, require};
 /// How a model says what shape an object has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum ShapeHead {
     /// Attention to the prototypes of a bank, mixed softly: DVP+.
     Prototypes,
@@ -25,6 +26,7 @@ pub enum ShapeHead {
 /// How a model says how an object is turned.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum RotationHead {
     /// The sine and cosine of the angle: the paper's. A shape that a turn by 2 pi / k maps on itself has k right answers,
     /// between which such a head must jump somewhere.
@@ -37,6 +39,7 @@ pub enum RotationHead {
 /// What an object can be told by.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Slots {
     /// Learned queries of a decoder, `num_queries` of them: the paper's.
     #[default]
@@ -54,6 +57,7 @@ pub enum Slots {
 /// Sizes of a [`Model`](super::Model).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[non_exhaustive]
 pub struct ModelConfig {
     /// From an image to features.
     pub encoder: EncoderConfig,

@@ -9,6 +9,7 @@ use dvp_core::tensor::{Backend, Tensor, TensorError};
 /// Scenes of a batch as tensors, each of as many objects as the model has slots; units as in
 /// [`Scene`].
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Prediction<B: Backend> {
     /// batch x objects x 2.
     pub translations: Tensor<B>,

@@ -18,6 +18,7 @@ const IMAGE: &str = "image";
 /// *Source*: the paper, TI-TP-OptZ: 100 steps of Adam at rate 0.01, halved on a plateau of 10 steps (cooldown 10); the
 /// loss is that of its implementation.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct OptZ {
     /// Steps of Adam.
     pub steps: usize,
@@ -32,6 +33,14 @@ pub struct OptZ {
 impl Default for OptZ {
     fn default() -> Self {
         Self { steps: 100, learning_rate: 0.01, plateau: PlateauSettings::default(), loss: PixelLoss::Mae }
+    }
+}
+
+impl OptZ {
+    /// The same with [`Self::steps`].
+    #[must_use]
+    pub fn with_steps(self, steps: usize) -> Self {
+        Self { steps, ..self }
     }
 }
 

@@ -12,7 +12,7 @@ fn checkpoint<T: Real>() -> Checkpoint {
     let (config, bank) = (ModelConfig::tiny(), mdshr_bank::<T>(16));
     let steps = SceneSteps::new(config.objects(), 16, EdgeProfile::reference()).unwrap();
     let judge = Judge { mode: Mode::Gp, image_loss: PixelLoss::Mae, image_weight: 1.0, steps, bank: bank.clone() };
-    let schedule = Schedule { learning_rate: 1e-3, warm_up: 0, end: None };
+    let schedule = Schedule::constant(1e-3);
     let trainer = Trainer::<Host, T>::new(config, bank, judge, schedule, 4, HostDevice).unwrap();
     Checkpoint::of(&trainer, false, "").unwrap()
 }

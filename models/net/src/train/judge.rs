@@ -34,6 +34,7 @@ pub struct Judge<T: Real> {
 
 /// A batch, judged.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Judged<B: Backend> {
     /// A number.
     pub loss: Tensor<B>,

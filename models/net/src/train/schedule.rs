@@ -7,6 +7,7 @@ use core::f64::consts::PI;
 /// *Source*: the fall: Loshchilov and Hutter: SGDR: Stochastic Gradient Descent with Warm Restarts (2017), without
 /// restarts.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Schedule {
     /// The largest rate.
     pub learning_rate: f64,
@@ -17,6 +18,24 @@ pub struct Schedule {
 }
 
 impl Schedule {
+    /// The same rate at every step.
+    #[must_use]
+    pub fn constant(learning_rate: f64) -> Self {
+        Self { learning_rate, warm_up: 0, end: None }
+    }
+
+    /// The same with [`Self::warm_up`].
+    #[must_use]
+    pub fn with_warm_up(self, warm_up: u64) -> Self {
+        Self { warm_up, ..self }
+    }
+
+    /// The same with [`Self::end`].
+    #[must_use]
+    pub fn with_end(self, end: Option<u64>) -> Self {
+        Self { end, ..self }
+    }
+
     /// The rate of step `step`, from 1.
     #[must_use]
     pub fn rate(&self, step: u64) -> f64 {

@@ -27,7 +27,7 @@ fn judge<T: Real>(mode: Mode, config: &ModelConfig) -> Judge<T> {
 fn trainer<T: Real>(mode: Mode) -> Trainer<Host, T> {
     let config = ModelConfig::tiny();
     let judge = judge(mode, &config);
-    let schedule = Schedule { learning_rate: 2e-3, warm_up: 5, end: None };
+    let schedule = Schedule::constant(2e-3).with_warm_up(5);
     Trainer::new(config, mdshr_bank(HARMONICS), judge, schedule, 7, HostDevice).unwrap()
 }
 
@@ -167,7 +167,7 @@ fn files_of_other_sizes_are_refused() {
     let checkpoint = Checkpoint::of(&trainer::<f32>(Mode::Gp), false, "").unwrap();
     let config = ModelConfig { head_width: 16, ..ModelConfig::tiny() };
     let judge = judge::<f32>(Mode::Gp, &config);
-    let schedule = Schedule { learning_rate: 1e-3, warm_up: 0, end: None };
+    let schedule = Schedule::constant(1e-3);
     let mut other = Trainer::<Host, f32>::new(config, mdshr_bank(HARMONICS), judge, schedule, 1, HostDevice).unwrap();
     assert!(matches!(checkpoint.resume(&mut other, &HostDevice), Err(NetError::Checkpoint(_))));
 }

@@ -44,6 +44,7 @@ pub struct Trainer<B: Backend, T: Real> {
 
 /// What a step came to.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Step {
     /// Its number, from 1.
     pub number: u64,

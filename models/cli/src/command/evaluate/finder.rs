@@ -78,7 +78,7 @@ impl NetworkArguments {
             (Source::Net, Then::Refine) => Method::NetLm,
         };
         let network = method.needs_network().then(|| load_network(self.model.as_deref())).transpose()?;
-        let tools = Tools { bank: None, network: network.map(Arc::new) };
-        Runner::new(method, method.default_setting(), &tools)
+        let tools = Tools { network: network.map(Arc::new), ..Tools::default() };
+        Ok(Runner::new(method, method.default_setting(), &tools)?)
     }
 }

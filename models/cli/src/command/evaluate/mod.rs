@@ -162,7 +162,7 @@ impl Judge<'_> {
             Predictions::Network(runner) => {
                 let image = self.true_image(index, sample, truth.as_ref(), None)?;
                 let seed = seed_of(&sample.stem, self.arguments.network.seed);
-                let task = Task { image: image.view(), start: None, truth: truth.as_ref(), seed };
+                let task = Task { truth: truth.as_ref(), seed, ..Task::of(image.view()) };
                 let found = runner.run(&task, memory)?;
                 let score = self.compare(sample, truth.as_ref(), &image, [&found.fit.scene, &found.there], scratch)?;
                 Ok(Score { cpu_ms: Some(found.cpu.as_secs_f64() * 1e3), ..score })

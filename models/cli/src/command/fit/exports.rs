@@ -125,7 +125,7 @@ impl ExportArguments {
         let numbers = of.numbers();
         let measured = || -> Result<MeasuredPicture> {
             let found = Found { size, objects: measure(scene, covariance, bank, &numbers, size)? };
-            Ok(MeasuredPicture { picture: picture.to_owned(), stem: stem.to_owned(), found: Ok(found) })
+            Ok(MeasuredPicture::new(picture.to_owned(), stem.to_owned(), Ok(found)))
         };
         let measured = self.measures().then(measured).transpose()?;
         for ending in self.endings() {
@@ -188,10 +188,9 @@ pub(super) fn refuse_overwriting(
 pub(super) fn measured(reports: &mut [Report]) -> Vec<MeasuredPicture> {
     let of = |report: &mut Report| {
         let found = report.found.as_mut().and_then(|found| found.measured.take());
-        found.unwrap_or_else(|| MeasuredPicture {
-            picture: report.picture.clone(),
-            stem: report.stem.clone(),
-            found: Err(report.error.clone().unwrap_or_default()),
+        found.unwrap_or_else(|| {
+            let error = report.error.clone().unwrap_or_default();
+            MeasuredPicture::new(report.picture.clone(), report.stem.clone(), Err(error))
         })
     };
     reports.iter_mut().map(of).collect()

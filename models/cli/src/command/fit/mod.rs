@@ -5,6 +5,7 @@ mod inputs;
 mod masks;
 mod report;
 
+use alloc::sync::Arc;
 use core::time::Duration;
 use std::path::{Path, PathBuf};
 
@@ -22,8 +23,8 @@ use super::{Console, Outcome, in_words};
 use crate::format::{
     Picture, Place, SceneJson, encode_png, encode_png_rgba, labels_beside, read_npy, read_picture, write_atomic,
 };
-use crate::method::load_network;
-use crate::solve::{Method, Scratch, Solved, Solver, Start};
+use crate::method::{Memory, load_network};
+use crate::solve::{MethodChoice, Solved, Solver, Start};
 use crate::svg::to_svg_numbered;
 
 /// Finds the objects of pictures: shapes, poses and colors.
@@ -59,7 +60,7 @@ pub struct Arguments {
     bank: BankChoice,
     /// How scenes are found
     #[arg(long, value_enum, default_value_t)]
-    method: Method,
+    method: MethodChoice,
     /// Most objects per picture: those stay without which most of it would be unexplained
     #[arg(long, value_name = "N")]
     max_objects: Option<usize>,
@@ -93,12 +94,9 @@ pub struct Arguments {
 impl Arguments {
     fn solver(&self) -> Result<Solver> {
         let defaults = FitOptions::default();
-        let options = FitOptions {
-            bank: self.bank.load()?,
-            max_objects: self.max_objects.unwrap_or(defaults.max_objects),
-            compositing: self.compositing.map(Compositing::from),
-            ..defaults
-        };
+        let max_objects = self.max_objects.unwrap_or(defaults.max_objects);
+        let compositing = self.compositing.map(Compositing::from);
+        let options = defaults.with_bank(self.bank.load()?).with_max_objects(max_objects).with_compositing(compositing);
         if self.model.is_some() && self.start != StartChoice::Net {
             bail!("--model goes with --start net only");
         }
@@ -108,7 +106,7 @@ impl Arguments {
             StartChoice::Net if self.bank != BankChoice::None => {
                 bail!("--start net takes the shapes that the network knows: leave --bank away")
             }
-            StartChoice::Net => Start::Network(Box::new(load_network(self.model.as_deref())?)),
+            StartChoice::Net => Start::Network(Arc::new(load_network(self.model.as_deref())?)),
         };
         Ok(Solver::new(self.method, options, start, self.objects, self.seed)?)
     }
@@ -187,7 +185,7 @@ fn fit_all(arguments: &Arguments) -> Result<(Vec<Report>, Vec<String>)> {
     }
     let inputs = inputs::name(&pictures);
     refuse_overwriting(arguments, inputs.iter(), core::iter::empty())?;
-    let fit = |scratch: &mut Scratch, _: usize, input: &Input| fit_one(arguments, &solver, &stacks, input, scratch);
+    let fit = |memory: &mut Memory, _: usize, input: &Input| fit_one(arguments, &solver, &stacks, input, memory);
     Ok((arguments.batch.each(&inputs, Input::name, fit)?, failures))
 }
 
@@ -204,8 +202,8 @@ fn refuse_overwriting<'a>(
     exports::refuse_overwriting(kept, inputs.flat_map(files), exports.run_files())
 }
 
-fn fit_one(arguments: &Arguments, solver: &Solver, stacks: &[Stack], input: &Input, scratch: &mut Scratch) -> Report {
-    report_of(input, input.name(), try_fit(arguments, solver, stacks, input, scratch))
+fn fit_one(arguments: &Arguments, solver: &Solver, stacks: &[Stack], input: &Input, memory: &mut Memory) -> Report {
+    report_of(input, input.name(), try_fit(arguments, solver, stacks, input, memory))
 }
 
 /// What came of an input; `picture` is what tables and data sets call the picture that its objects are on.
@@ -226,7 +224,7 @@ fn try_fit(
     solver: &Solver,
     stacks: &[Stack],
     input: &Input,
-    scratch: &mut Scratch,
+    memory: &mut Memory,
 ) -> Result<FoundScene> {
     let read;
     let picture = match input.frame {
@@ -236,9 +234,9 @@ fn try_fit(
         }
         Some(frame) => stack_picture(stacks, &input.path, frame).context("image of the stack is gone")?,
     };
-    let Solved { fit, time } = solver.solve(picture, &input.stem, scratch)?;
+    let Solved { fit, time } = solver.solve(picture, &input.stem, memory)?;
     let scene = Measurable::new(&fit, solver.bank(), picture.image.size());
-    finish(arguments, [&*input.name(), &input.stem], picture, &scene, time, scratch.canvas())
+    finish(arguments, [&*input.name(), &input.stem], picture, &scene, time, memory.canvas())
 }
 
 /// Writes what is asked for of a scene, and says what it is. It has two names: that of its picture and the stem of its files.

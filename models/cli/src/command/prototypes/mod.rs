@@ -63,11 +63,10 @@ pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Ou
         }
         paths.extend(found);
     }
-    let options = PrototypeOptions {
-        max_shapes: arguments.max_shapes.into(),
-        min_members: arguments.min_members.into(),
-        mirror: arguments.mirror,
-    };
+    let mut options = PrototypeOptions::default();
+    options.max_shapes = arguments.max_shapes.into();
+    options.min_members = arguments.min_members.into();
+    options.mirror = arguments.mirror;
     let (found, bank, failures) = learn_from(arguments, &paths, &options)?;
     for failure in &failures {
         writeln!(console.err, "error: {failure}")?;
@@ -122,7 +121,7 @@ fn learn_from(
 
 /// Fits with the bank and lays its outlines on what all posed objects show.
 fn better_bank(arguments: &Arguments, paths: &[PathBuf], bank: Bank<f32>) -> Result<Bank<f32>> {
-    let fitter = Fitter::new(FitOptions { bank: Some(bank.clone()), ..FitOptions::default() })?;
+    let fitter = Fitter::new(FitOptions::default().with_bank(Some(bank.clone())))?;
     let empty = Pool::new(&bank)?;
     let parts = each(arguments, paths, |image, _, scratch| {
         let fit = fitter.fit(image, scratch)?;

@@ -169,11 +169,9 @@ impl Run {
             steps: self.painter.clone(),
             bank: self.bank.clone(),
         };
-        let schedule = Schedule {
-            learning_rate: learning_rate.unwrap_or(5e-4),
-            warm_up: warm_up.unwrap_or(0),
-            end: cosine.unwrap_or(true).then_some(steps),
-        };
+        let schedule = Schedule::constant(learning_rate.unwrap_or(5e-4))
+            .with_warm_up(warm_up.unwrap_or(0))
+            .with_end(cosine.unwrap_or(true).then_some(steps));
         let (config, bank, seed) = (self.config.clone(), self.bank.clone(), seed.unwrap_or(1));
         let mut trainer = Trainer::new(config, bank, judge, schedule, seed, device.clone())?;
         trainer.clip_norm = clip_norm.filter(|norm| *norm > 0.0);

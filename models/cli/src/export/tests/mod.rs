@@ -57,11 +57,11 @@ fn measured(objects: Vec<Object<f32>>) -> Vec<MeasuredObject> {
 
 fn picture(objects: Vec<Object<f32>>) -> MeasuredPicture {
     let found = Found { size: size(), objects: measured(objects) };
-    MeasuredPicture { picture: "a b.png".to_owned(), stem: "a b".to_owned(), found: Ok(found) }
+    MeasuredPicture::new("a b.png".to_owned(), "a b".to_owned(), Ok(found))
 }
 
 fn failed() -> MeasuredPicture {
-    MeasuredPicture { picture: "x.png".to_owned(), stem: "x".to_owned(), found: Err("x.png: no \"image\"".to_owned()) }
+    MeasuredPicture::new("x.png".to_owned(), "x".to_owned(), Err("x.png: no \"image\"".to_owned()))
 }
 
 /// Whether two numbers agree to `digits` after the point.

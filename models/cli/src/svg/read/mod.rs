@@ -55,6 +55,7 @@ const BORDER_PX: f64 = 1e-3;
 
 /// A drawing as a scene.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct SvgDrawing {
     /// What is drawn: edges by exact area, later objects over earlier ones; transparent unless the first object covers
     /// everything, which is the background then.

@@ -11,6 +11,7 @@ const CUT_SIGMAS: f64 = 4.210_240_366_975_849;
 /// An edge profile as it stands in a file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(remote = "Self", deny_unknown_fields)]
+#[non_exhaustive]
 pub struct EdgeJson {
     /// What coverage is measured by.
     #[serde(default, skip_serializing_if = "EdgeLawJson::is_squared_distance")]

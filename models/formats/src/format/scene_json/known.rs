@@ -21,6 +21,7 @@ pub(super) fn doubt_names() -> impl Iterator<Item = &'static str> {
 /// What a fit knows of a scene as a whole. What the method does not tell is missing.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(remote = "Self", deny_unknown_fields)]
+#[non_exhaustive]
 pub struct SceneKnownJson {
     /// Why the fit stopped.
     pub stop: StopJson,
@@ -41,6 +42,7 @@ pub struct SceneKnownJson {
 /// Why a fit stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum StopJson {
     /// The step or the gain fell below the tolerance.
     Converged,
@@ -58,9 +60,18 @@ pub enum StopJson {
     Other,
 }
 
+impl SceneKnownJson {
+    /// That a fit stopped so; nothing else is known.
+    #[must_use]
+    pub fn new(stop: StopJson) -> Self {
+        Self { stop, unexplained: None, noise: None, bits: None, doubts: Vec::new() }
+    }
+}
+
 /// What a fit knows of an object.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(remote = "Self", deny_unknown_fields)]
+#[non_exhaustive]
 pub struct ObjectKnownJson {
     /// How far the numbers may be off.
     #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
@@ -76,6 +87,7 @@ pub struct ObjectKnownJson {
 /// Standard deviations, each in the unit of its number. What is not known is missing.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(remote = "Self", deny_unknown_fields)]
+#[non_exhaustive]
 pub struct DeviationsJson {
     /// Of the translation, x and y.
     #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
@@ -97,6 +109,7 @@ pub struct DeviationsJson {
 /// What a fit cannot tell of an object.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(remote = "Self", tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+#[non_exhaustive]
 pub enum DoubtJson {
     /// The angle is known modulo 2 pi / order.
     Symmetry {
@@ -134,6 +147,7 @@ pub enum DoubtJson {
 /// What completes the hidden part of an outline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(remote = "Self", tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+#[non_exhaustive]
 pub enum CompletionJson {
     /// The prototype that fits what is seen.
     Prototype {},

@@ -53,6 +53,7 @@ const VERSION: u64 = 3;
 /// renderer's.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(remote = "Self", deny_unknown_fields)]
+#[non_exhaustive]
 pub struct SceneJson {
     /// Of the format: 3, whatever the version of the text was.
     pub version: u64,

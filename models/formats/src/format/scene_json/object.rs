@@ -12,6 +12,7 @@ use super::strict::present;
 
 /// An object as it stands in a file. What moves, turns or changes nothing is left out.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct ObjectJson {
     /// What it encloses: `kind` and the numbers of that kind, beside the fields here.
     #[serde(flatten)]

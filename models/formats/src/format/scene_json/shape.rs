@@ -9,6 +9,7 @@ use super::strict::{maps_only, present};
 /// carry to scene units: where they are left out, these are scene units (the shorter image side is 1).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(remote = "Self", tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+#[non_exhaustive]
 pub enum ShapeJson {
     /// A disk around the origin.
     Circle {
@@ -137,6 +138,7 @@ pub enum JoinJson {
 /// A closed ring, or an open line, of segments.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(remote = "Self", deny_unknown_fields)]
+#[non_exhaustive]
 pub struct RingJson {
     /// Where the segments meet: segment k leads from point k to point k + 1.
     pub points: Vec<[f64; 2]>,
@@ -148,6 +150,7 @@ pub struct RingJson {
 /// arrives; the first of a closed ring in that of the last.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(remote = "Self", tag = "kind", rename_all = "snake_case", deny_unknown_fields)]
+#[non_exhaustive]
 pub enum SegmentJson {
     /// Straight.
     Line {},

@@ -227,7 +227,7 @@ fn objects_are_numbered_from_one_or_as_they_are_told() {
 #[test]
 fn prototypes_are_titled_with_their_names() {
     let efd = Efd::new(vec![[1.0, 0.0, 0.0, -1.0]]);
-    let bank = Bank { prototypes: vec![("a & \u{1}\u{ffff}b".to_owned(), efd.clone())] };
+    let bank = Bank::new(vec![("a & \u{1}\u{ffff}b".to_owned(), efd.clone())]);
     let object = |prototype| Object { shape: AnyShape::of_efd(efd.clone(), Some(prototype)), ..disk(0.5, [0.0; 3]) };
     let scene = Scene { objects: vec![object(0), object(7)], ..Scene::empty([1.0; 3]) };
     let text = to_svg(&scene, ImageSize::new(64, 64).unwrap(), Some(&bank)).unwrap();

@@ -3,7 +3,7 @@
 use alloc::sync::Arc;
 
 use anyhow::Result;
-use dvp_fit::Bank;
+use dvp_fit::{Bank, FitOptions};
 use dvp_net::propose::Proposer;
 
 use crate::command::pictures::Picture;
@@ -49,9 +49,10 @@ pub(super) fn run(
     network: Proposer,
     seed: u64,
 ) -> Result<Vec<Charted>> {
-    let tools = Tools { bank: Some(bank), network: Some(Arc::new(network)) };
+    let options = FitOptions::default().with_bank(Some(bank));
+    let tools = Tools { options, network: Some(Arc::new(network)) };
     let new = |&(method, setting): &(Method, Setting)| Runner::new(method, setting, &tools);
-    let runners: Vec<Runner> = settings.iter().map(new).collect::<Result<_>>()?;
+    let runners: Vec<Runner> = settings.iter().map(new).collect::<Result<_, _>>()?;
     let mut rows: Vec<Vec<Row>> = runners.iter().map(|_| Vec::with_capacity(pictures.len())).collect();
     let mut scratch = (Scratch::default(), Memory::default());
     if let Some(first) = pictures.first() {
@@ -83,9 +84,10 @@ pub(super) fn run(
 fn try_one(runner: &Runner, picture: &Picture, seed: u64, memory: &mut (Scratch, Memory)) -> Result<Score> {
     let (scratch, memory) = memory;
     let (image, truth) = (picture.image.view(), &picture.truth);
-    let task = Task { image, start: None, truth: Some(truth), seed: seed_of(&picture.stem, seed) };
+    let task = Task { truth: Some(truth), seed: seed_of(&picture.stem, seed), ..Task::of(image) };
     let found = runner.run(&task, memory)?;
     let scenes = [&found.fit.scene, &found.there];
-    let score = score(&Painter::default(), image, Some(&Truth::Scene(truth)), scenes, scratch)?;
-    Ok(Score { cpu_ms: Some(found.cpu.as_secs_f64() * 1e3), ..score })
+    let mut score = score(&Painter::default(), image, Some(&Truth::Scene(truth)), scenes, scratch)?;
+    score.cpu_ms = Some(found.cpu.as_secs_f64() * 1e3);
+    Ok(score)
 }

@@ -4,14 +4,11 @@ use maud::html;
 
 use super::renderers::Rendered;
 use super::report::{Report, renderer_cells};
-use crate::command::report::{drawing, page, table};
+use crate::command::report::{Run, drawing, page, table};
 
 /// What the page tells.
 pub(super) struct Page<'a> {
-    pub(super) command: String,
-    pub(super) machine: String,
-    pub(super) images: usize,
-    pub(super) seconds: f64,
+    pub(super) run: Run,
     pub(super) report: &'a Report,
     pub(super) renderers: &'a [Rendered],
     /// SVG.
@@ -31,9 +28,8 @@ const CAPTIONS: [&str; 3] = [
 
 impl Page<'_> {
     pub(super) fn to_html(&self) -> String {
-        let seconds = format!("{:.0}", self.seconds);
         let body = html! {
-            p { code { (self.command) } br; (self.machine) "; one thread; " (self.images) " images; " (seconds) " s in all." }
+            (self.run.paragraph("one thread; "))
             ul { @for line in self.report.budgets() { li { (line) } } }
             @for (svg, caption) in self.charts.iter().zip(CAPTIONS) {
                 figure { (drawing(svg)) figcaption { (caption) } }

@@ -16,7 +16,8 @@ pub(super) struct Pair {
 
 /// Pairs of random scenes of MDS-HR, hidden slots kept.
 pub(super) fn pairs(count: usize, size: ImageSize, seed: u64) -> Vec<Pair> {
-    let settings = SceneSettings { keep_hidden: true, ..SceneSettings::mds_hr() };
+    let mut settings = SceneSettings::mds_hr();
+    settings.keep_hidden = true;
     let bank = mdshr_bank();
     let scene = |index| sample_scene(&settings, &bank, size, seed, index);
     (0..count as u64).map(|k| Pair { truth: scene(2 * k), other: scene(2 * k + 1) }).collect()

@@ -23,23 +23,23 @@ mod truth;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use anyhow::{Result, bail};
+use anyhow::Result;
 use clap::Args;
 use serde_json::json;
 
 use self::page::Page;
 use self::summary::Summary;
 use self::trial::{Contender, Subject};
+use super::arguments::{ReportArguments, SceneArguments};
 use super::pictures::Picture;
 use super::{pictures, report};
 use dvp_cli::command::{Console, Outcome, generated};
-use dvp_cli::format::{BitDepth, DataSet, encode_png, write_atomic};
+use dvp_cli::format::{BitDepth, DataSet, encode_png};
 use dvp_cli::generate::SceneSettings;
 use dvp_cli::method::load_network;
 use dvp_cli::paint::RendererName;
 
-/// Images with objects, and most images with noise, or of twins, that prices are tried on; in full and quick.
-const IMAGES: [u64; 2] = [512, 24];
+/// Most images with noise, or of twins, that prices are tried on; in full and quick.
 const PRICED: [usize; 2] = [144, 18];
 /// One image without objects to so many with them.
 const EMPTY: u64 = 8;
@@ -49,7 +49,7 @@ const NOISE: f64 = 0.02;
 const TWINS_GAP: f32 = 0.15;
 
 /// Shows whether methods model no more than a scene needs: objects, shapes, harmonics, numbers and bits of what they find
-/// beside those of the true scene.
+/// beside those of the true scene. Scenes that are drawn at random are followed by some without objects.
 ///
 /// Bits of both are counted by the law that fits decide by: 24 for the background, 72 for color and pose of an object, the
 /// choice among the shapes of a bank (segment-bank, opt-p, net, net-lm), or 32 per harmonic of a shape that is written out
@@ -61,51 +61,35 @@ const TWINS_GAP: f32 = 0.15;
 #[command(before_help = "Example: dvp parsimony --out parsimony --quick\n         \
                          dvp parsimony --out parsimony --data data --json > parsimony.json")]
 pub struct Arguments {
-    /// Folder to write to
-    #[arg(long, short, value_name = "DIR")]
-    out: PathBuf,
-    /// Fewer images: a minute or two
-    #[arg(long)]
-    quick: bool,
-    /// Folder of a data set with scenes.jsonl [default: scenes of MDS-HR drawn at random, and some without objects]
-    #[arg(long, value_name = "DIR")]
-    data: Option<PathBuf>,
-    /// Most images with objects [default: 512, with --quick 24]
-    #[arg(long, value_name = "N")]
-    images: Option<u64>,
+    #[command(flatten)]
+    report: ReportArguments,
+    #[command(flatten)]
+    scenes: SceneArguments<512, 24>,
     /// Folder of an SVG per picture, as VTracer traces pictures/: their sizes are counted too
     #[arg(long, value_name = "DIR")]
     traced: Option<PathBuf>,
-    /// Number that scenes, starts and noise are drawn from
-    #[arg(long, default_value_t = 4321)]
-    seed: u64,
-    /// What the machine is, for the page
-    #[arg(long, value_name = "TEXT")]
-    machine: Option<String>,
-    /// Print the figures as JSON
-    #[arg(long)]
-    json: bool,
 }
 
 pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Outcome> {
     let clock = Instant::now();
+    let Arguments { report: to, scenes, .. } = arguments;
     let (bank, pictures) = arguments.pictures()?;
     let stems: Vec<&str> = pictures.iter().map(|picture| picture.stem.as_str()).collect();
     let traced = arguments.traced.as_deref().map(|folder| traced::read(folder, stems.iter().copied())).transpose()?;
     let contenders = Contender::methods(&bank, load_network(None)?)?;
     let shapes = bank.prototypes.len();
     let subjects = |pictures: &[Picture], noise: Option<f64>| -> Result<Vec<Subject>> {
-        pictures.iter().map(|picture| Subject::new(picture.clone(), shapes, noise, arguments.seed)).collect()
+        pictures.iter().map(|picture| Subject::new(picture.clone(), shapes, noise, scenes.seed)).collect()
     };
     let shown = subjects(&pictures, None)?;
-    let trials = trial::run(&contenders, &shown, shapes, arguments.seed);
+    let trials = trial::run(&contenders, &shown, shapes, scenes.seed);
     let mut methods: Vec<Summary> =
         contenders.iter().zip(&trials).map(|(contender, trials)| Summary::of("clean", contender, trials)).collect();
     if let Some(drawings) = traced {
         let objects: Vec<usize> = shown.iter().map(|subject| subject.picture.truth.objects.len()).collect();
         methods.push(Summary::of_drawings(&drawings, &objects));
     }
-    let apart = pictures.len().div_ceil(PRICED[usize::from(arguments.quick)]);
+    let apart = pictures.len().div_ceil(PRICED[usize::from(scenes.quick)]);
     let some: Vec<Picture> = pictures.iter().step_by(apart).cloned().collect();
     let sets = [
         ("clean", subjects(&pictures, None)?),
@@ -115,34 +99,27 @@ pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Ou
     let mut prices = Vec::new();
     for (set, shown) in &sets {
         let contenders = Contender::ablations(&bank, *set == "noisy")?;
-        let trials = trial::run(&contenders, shown, shapes, arguments.seed);
+        let trials = trial::run(&contenders, shown, shapes, scenes.seed);
         prices.extend(contenders.iter().zip(&trials).map(|(contender, own)| Summary::of(set, contender, own)));
     }
 
-    let file = |name: &str, bytes: &[u8]| write_atomic(&arguments.out.join(name), bytes);
     for picture in &pictures {
-        file(&format!("pictures/{}.png", picture.stem), &encode_png(picture.image.view(), BitDepth::Eight)?)?;
+        to.write(&format!("pictures/{}.png", picture.stem), &encode_png(picture.image.view(), BitDepth::Eight)?)?;
     }
-    file("parsimony.csv", &report::csv(&summary::csv_cells(&methods))?)?;
-    file("prices.csv", &report::csv(&summary::csv_cells(&prices))?)?;
-    file("images.csv", &report::csv(&summary::image_cells(&contenders, &stems, &trials))?)?;
-    let chart = figure::chart(&contenders, &trials);
-    let svg = chart.to_svg()?;
-    file("bits.svg", svg.as_bytes())?;
-    file("bits.png", &chart.to_png()?)?;
+    to.write("parsimony.csv", &report::csv(&summary::csv_cells(&methods))?)?;
+    to.write("prices.csv", &report::csv(&summary::csv_cells(&prices))?)?;
+    to.write("images.csv", &report::csv(&summary::image_cells(&contenders, &stems, &trials))?)?;
+    let svg = to.write_chart("bits", &figure::chart(&contenders, &trials))?;
     let misses: Vec<String> = methods.iter().flat_map(Summary::misses).collect();
     let page = Page {
-        command: arguments.command(),
-        machine: arguments.machine.clone().unwrap_or_else(report::machine),
-        images: pictures.len(),
-        seconds: clock.elapsed().as_secs_f64(),
+        run: to.run(arguments.command(), pictures.len(), clock),
         methods: &methods,
         prices: &prices,
         misses: &misses,
         chart: &svg,
     };
-    file("index.html", page.to_html().as_bytes())?;
-    if arguments.json {
+    to.write("index.html", page.to_html().as_bytes())?;
+    if to.json {
         let rows = |rows: &[Summary]| rows.iter().map(Summary::json).collect::<Vec<_>>();
         let all = json!({ "methods": rows(&methods), "prices": rows(&prices), "not_met": misses });
         writeln!(console.out, "{}", serde_json::to_string_pretty(&all)?)?;
@@ -157,20 +134,18 @@ pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Ou
 impl Arguments {
     /// The bank and the images, those without objects last.
     fn pictures(&self) -> Result<(dvp_fit::Bank<f32>, Vec<Picture>)> {
-        let count = self.images.unwrap_or(IMAGES[usize::from(self.quick)]);
-        if count == 0 {
-            bail!("--images must be at least 1");
-        }
-        let most = usize::try_from(count).unwrap_or(usize::MAX);
+        let Self { scenes, .. } = self;
+        let (count, most) = scenes.count()?;
         let renderer = RendererName::Triangles;
-        if let Some(folder) = &self.data {
+        if let Some(folder) = &scenes.data {
             let data = DataSet::open(folder)?;
             let all = pictures::painted(&data, most, renderer)?;
             return Ok((data.bank, all));
         }
-        let data = generated::mds_hr(count, self.seed)?;
-        let nothing = SceneSettings { fewest: 0, most: 0, ..SceneSettings::mds_hr() };
-        let empty = generated::scenes(&nothing, count.div_ceil(EMPTY), self.seed)?;
+        let data = generated::mds_hr(count, scenes.seed)?;
+        let mut nothing = SceneSettings::mds_hr();
+        (nothing.fewest, nothing.most) = (0, 0);
+        let empty = generated::scenes(&nothing, count.div_ceil(EMPTY), scenes.seed)?;
         let mut all = pictures::painted(&data, most, renderer)?;
         for picture in pictures::painted(&empty, most, renderer)? {
             all.push(Picture { stem: format!("empty-{}", picture.stem), ..picture });
@@ -180,19 +155,7 @@ impl Arguments {
 
     /// The command that makes the same report, but for the folder.
     fn command(&self) -> String {
-        let mut text = "dvp parsimony --out DIR".to_owned();
-        if self.quick {
-            text += " --quick";
-        }
-        if let Some(folder) = &self.data {
-            text += &format!(" --data {}", folder.display());
-        }
-        if let Some(count) = self.images {
-            text += &format!(" --images {count}");
-        }
-        if let Some(folder) = &self.traced {
-            text += &format!(" --traced {}", folder.display());
-        }
-        text + &format!(" --seed {}", self.seed)
+        let traced = self.traced.as_ref().map(|folder| format!(" --traced {}", folder.display()));
+        format!("dvp parsimony --out DIR{}{}", self.scenes.words(), traced.unwrap_or_default())
     }
 }

@@ -3,14 +3,11 @@
 use maud::html;
 
 use super::summary::{Summary, cells, price_cells};
-use crate::command::report::{drawing, page, table};
+use crate::command::report::{Run, drawing, page, table};
 
 /// What the page tells.
 pub(super) struct Page<'a> {
-    pub(super) command: String,
-    pub(super) machine: String,
-    pub(super) images: usize,
-    pub(super) seconds: f64,
+    pub(super) run: Run,
     pub(super) methods: &'a [Summary],
     pub(super) prices: &'a [Summary],
     /// What is asked for and not met.
@@ -33,9 +30,8 @@ const PRICES: &str = "Segment-and-fit with one price set to nothing: of an objec
 
 impl Page<'_> {
     pub(super) fn to_html(&self) -> String {
-        let seconds = format!("{:.0}", self.seconds);
         let body = html! {
-            p { code { (self.command) } br; (self.machine) "; " (self.images) " images; " (seconds) " s in all." }
+            (self.run.paragraph(""))
             p { "Asked for and not met:" }
             ul { @for line in self.misses { li { (line) } } }
             h2 { "Methods" }

@@ -92,7 +92,8 @@ fn paths_and_their_numbers_are_counted() {
 #[test]
 fn segment_and_fit_spends_what_the_truth_costs() {
     let (bank, size) = (mdshr_bank(), square(128).unwrap());
-    let nothing = SceneSettings { fewest: 0, most: 0, ..SceneSettings::mds_hr() };
+    let mut nothing = SceneSettings::mds_hr();
+    (nothing.fewest, nothing.most) = (0, 0);
     let scenes = [truth(1, 0), truth(1, 1), sample_scene(&nothing, &bank, size, 1, 2)];
     let subjects: Vec<Subject> = scenes
         .into_iter()

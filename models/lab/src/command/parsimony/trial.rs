@@ -1,13 +1,12 @@
 //! Runs methods on images, and counts what their scenes spend.
 
 use alloc::sync::Arc;
-use core::time::Duration;
 
 use anyhow::Result;
+use dvp_core::Image;
 use dvp_core::loss::{ImagePair, Loss};
 use dvp_core::render::PixelLoss;
-use dvp_core::{Image, Scene};
-use dvp_fit::{Bank, FitOptions, FitScratch, Fitter, Prices, Unexplained};
+use dvp_fit::{Bank, FitOptions, Prices, Unexplained};
 use dvp_net::propose::Proposer;
 use rayon::prelude::*;
 
@@ -20,7 +19,7 @@ use crate::spoil::add_noise;
 use dvp_cli::command::in_words;
 use dvp_cli::command::progress;
 use dvp_cli::format::{from_rgb8, to_rgb8};
-use dvp_cli::method::{Memory, Method, Runner, Task, Tools, seed_of, timed};
+use dvp_cli::method::{Found, Memory, Method, Runner, Task, Tools, seed_of};
 use dvp_cli::paint::Painter;
 use dvp_cli::svg::to_svg;
 
@@ -67,12 +66,7 @@ pub(super) struct Contender {
     /// The price that it does without.
     pub(super) without: &'static str,
     pub(super) law: Law,
-    how: How,
-}
-
-enum How {
-    Method(Box<Runner>),
-    Fit(Box<Fitter<f32>>),
+    runner: Runner,
 }
 
 /// What a method spent on an image.
@@ -125,57 +119,40 @@ impl Subject {
 impl Contender {
     /// The methods with their usual settings.
     pub(super) fn methods(bank: &Bank<f32>, network: Proposer) -> Result<Vec<Self>> {
-        let tools = Tools { bank: Some(bank.clone()), network: Some(Arc::new(network)) };
-        let one = |&(method, law): &(Method, Law)| {
-            let runner = Runner::new(method, method.default_setting(), &tools)?;
-            Ok(Self { name: method.name(), without: "", law, how: How::Method(Box::new(runner)) })
-        };
-        METHODS.iter().map(one).collect()
+        let options = FitOptions::default().with_bank(Some(bank.clone()));
+        let tools = Tools { options, network: Some(Arc::new(network)) };
+        METHODS.iter().map(|&which| Self::new(which, "", &tools)).collect()
     }
 
     /// Segment-and-fit at all prices, and without each of those that `noisy` pictures or others know.
     pub(super) fn ablations(bank: &Bank<f32>, noisy: bool) -> Result<Vec<Self>> {
         let mut all = Vec::new();
-        for (method, law) in &METHODS[..2] {
+        for &(method, law) in &METHODS[..2] {
             let applies = |without: &str| match without {
-                "harmonic" => *law == Law::Free,
+                "harmonic" => law == Law::Free,
                 "boundary" => noisy,
                 _ => true,
             };
-            for (without, change) in WITHOUT.iter().filter(|(without, _)| applies(without)) {
-                let mut options =
-                    FitOptions { bank: (*law == Law::Bank).then(|| bank.clone()), ..FitOptions::default() };
+            for &(without, change) in WITHOUT.iter().filter(|(without, _)| applies(without)) {
+                let mut options = FitOptions::default().with_bank(Some(bank.clone()));
                 change(&mut options.prices);
-                let how = How::Fit(Box::new(Fitter::new(options)?));
-                all.push(Self { name: method.name(), without, law: *law, how });
+                all.push(Self::new((method, law), without, &Tools { options, network: None })?);
             }
         }
         Ok(all)
     }
 
-    /// The scene that is painted and that of the objects that count.
-    fn run(&self, subject: &Subject, seed: u64, scratch: &mut Scratch) -> Result<([Scene<f32>; 2], Duration)> {
-        let Subject { picture, shown, .. } = subject;
-        let image = shown.view();
-        match &self.how {
-            How::Method(runner) => {
-                let seed = seed_of(&picture.stem, seed);
-                let task = Task { image, start: None, truth: Some(&picture.truth), seed };
-                let found = runner.run(&task, &mut scratch.memory)?;
-                Ok(([found.fit.scene, found.there], found.cpu))
-            }
-            How::Fit(fitter) => {
-                let (fit, cpu) = timed(|| Ok(fitter.fit(image, &mut scratch.fit)?))?;
-                let mut there = fit.scene.clone();
-                there.keep_visible();
-                Ok(([fit.scene, there], cpu))
-            }
-        }
+    fn new((method, law): (Method, Law), without: &'static str, tools: &Tools) -> Result<Self> {
+        let runner = Runner::new(method, method.default_setting(), tools)?;
+        Ok(Self { name: method.name(), without, law, runner })
     }
 
-    fn try_one(&self, subject: &Subject, bank: usize, seed: u64, scratch: &mut Scratch) -> Result<Figures> {
-        let ([painted, there], cpu) = self.run(subject, seed, scratch)?;
+    fn try_one(&self, subject: &Subject, bank: usize, seed: u64, memory: &mut Memory) -> Result<Figures> {
         let Subject { picture, shown, price, left_bits, svg } = subject;
+        let seed = seed_of(&picture.stem, seed);
+        let task = Task { truth: Some(&picture.truth), seed, ..Task::of(shown.view()) };
+        let Found { fit, there, cpu, .. } = self.runner.run(&task, memory)?;
+        let painted = fit.scene;
         let size = shown.size();
         let image = Painter::default().paint(&painted, size)?;
         let agreement = Agreement::of(&picture.truth, &there, size)?;
@@ -198,24 +175,17 @@ impl Contender {
     }
 }
 
-/// Memory of one thread.
-#[derive(Default)]
-struct Scratch {
-    memory: Memory,
-    fit: FitScratch<f32>,
-}
-
 /// Every contender on every image, on all threads; a row of trials per contender.
 pub(super) fn run(contenders: &[Contender], subjects: &[Subject], bank: usize, seed: u64) -> Vec<Vec<Trial>> {
     let bar = progress::bar(subjects.len() as u64, 0);
-    let one = |scratch: &mut Scratch, subject: &Subject| {
+    let one = |memory: &mut Memory, subject: &Subject| {
         let trial =
-            |contender: &Contender| contender.try_one(subject, bank, seed, scratch).map_err(|error| in_words(&error));
+            |contender: &Contender| contender.try_one(subject, bank, seed, memory).map_err(|error| in_words(&error));
         let trials: Vec<Trial> = contenders.iter().map(trial).collect();
         bar.inc(1);
         trials
     };
-    let by_image: Vec<Vec<Trial>> = subjects.par_iter().map_init(Scratch::default, one).collect();
+    let by_image: Vec<Vec<Trial>> = subjects.par_iter().map_init(Memory::default, one).collect();
     bar.finish_and_clear();
     (0..contenders.len()).map(|k| by_image.iter().map(|trials| trials[k].clone()).collect()).collect()
 }

@@ -26,19 +26,20 @@ mod watch;
 
 use alloc::sync::Arc;
 use core::time::Duration;
-use std::path::PathBuf;
 
 use anyhow::{Result, bail};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
+use dvp_fit::FitOptions;
 
 use self::summary::SweepSummary;
 use self::sweep::{SWEEPS, Sweep};
 use self::trial::{Contender, Effort};
+use super::arguments::ReportArguments;
 use super::report;
 use dvp_cli::command::options::with_threads;
 use dvp_cli::command::{Console, Outcome, progress};
-use dvp_cli::format::{mdshr_bank, write_atomic};
+use dvp_cli::format::mdshr_bank;
 use dvp_cli::method::{Method, Tools, load_network};
 
 /// Pictures per level.
@@ -70,9 +71,8 @@ const METHODS: [Method; 9] = [
 #[command(before_help = "Example: dvp stability --quick --out stability\n         \
                          dvp stability --out stability --sweep noise twins --method segment-bank segment-free")]
 pub struct Arguments {
-    /// Folder to write to
-    #[arg(long, short, value_name = "DIR")]
-    out: PathBuf,
+    #[command(flatten)]
+    report: ReportArguments,
     /// Every second level and few pictures: minutes instead of an hour
     #[arg(long)]
     quick: bool,
@@ -91,15 +91,9 @@ pub struct Arguments {
     /// Seconds after which a run counts as endless [default: 180, with --quick 60]
     #[arg(long, value_name = "S", value_parser = clap::value_parser!(u64).range(1..))]
     limit: Option<u64>,
-    /// What the page says of the machine
-    #[arg(long, value_name = "TEXT")]
-    machine: Option<String>,
     /// Threads; 0 means one per core
     #[arg(long, default_value_t = 0, value_name = "N")]
     threads: usize,
-    /// Print the figures as JSON
-    #[arg(long)]
-    json: bool,
 }
 
 impl Arguments {
@@ -115,10 +109,11 @@ impl Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Outcome> {
+    let to = &arguments.report;
     let methods = if arguments.method.is_empty() { &METHODS[..] } else { &arguments.method };
     let needs_network = methods.iter().any(|method| method.needs_network());
     let network = needs_network.then(|| load_network(None)).transpose()?;
-    let tools = Tools { bank: Some(mdshr_bank()), network: network.map(Arc::new) };
+    let tools = Tools { options: FitOptions::default().with_bank(Some(mdshr_bank())), network: network.map(Arc::new) };
     let is_asked = |sweep: &&Sweep| arguments.sweep.is_empty() || arguments.sweep.iter().any(|name| name == sweep.name);
     let mut lists = Vec::new();
     for sweep in SWEEPS.iter().filter(is_asked) {
@@ -140,17 +135,16 @@ pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Ou
         bar.set_message(sweep.name);
         let trials = with_threads(arguments.threads, || trial::run(sweep, contenders, effort, &bar))??;
         let summary = SweepSummary::of(sweep, contenders, &trials, effort.quick);
-        write_atomic(&arguments.out.join(format!("{}.svg", sweep.name)), draw::svg(&summary)?.as_bytes())?;
+        to.write(&format!("{}.svg", sweep.name), draw::svg(&summary)?.as_bytes())?;
         table.extend(table::runs(sweep, contenders, &trials));
         summaries.push(summary);
     }
     bar.finish_and_clear();
-    let write = |name: &str, bytes: &[u8]| write_atomic(&arguments.out.join(name), bytes);
-    write("runs.csv", &report::csv(&table)?)?;
-    write("levels.csv", &report::csv(&table::levels(&summaries))?)?;
-    write("calibration.csv", &report::csv(&table::calibration(&summaries))?)?;
-    write("index.html", page::page(&summaries, arguments.machine.as_deref(), effort)?.as_bytes())?;
-    if arguments.json {
+    to.write("runs.csv", &report::csv(&table)?)?;
+    to.write("levels.csv", &report::csv(&table::levels(&summaries))?)?;
+    to.write("calibration.csv", &report::csv(&table::calibration(&summaries))?)?;
+    to.write("index.html", page::page(&summaries, to.machine.as_deref(), effort)?.as_bytes())?;
+    if to.json {
         writeln!(console.out, "{}", serde_json::to_string_pretty(&summaries)?)?;
     } else {
         writeln!(console.out, "{}", table::breaks(&summaries))?;

@@ -114,7 +114,7 @@ fn verdict_on(case: &Arc<Case>, contender: &Contender, seed: u64, limit: Duratio
     let (shared, runner) = (Arc::clone(case), Arc::clone(&contender.runner));
     let work = move || {
         let Case { image, truth, start } = &*shared;
-        let task = Task { image: image.view(), start: start.as_ref(), truth: Some(truth), seed };
+        let task = Task { start: start.as_ref(), truth: Some(truth), seed, ..Task::of(image.view()) };
         runner.run(&task, &mut Memory::default())
     };
     match within(limit, work)? {
