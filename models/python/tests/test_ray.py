@@ -1,12 +1,13 @@
-"""Ray: rows are objects, a killed worker loses and doubles nothing, a second run fits nothing again."""
+"""Ray: rows are objects, a killed worker or actor loses and doubles nothing, a second run fits nothing again."""
 
 from __future__ import annotations
 
+import contextlib
 import os
 import signal
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -44,18 +45,24 @@ def pictures(tmp_path_factory: Any) -> list[str]:
     return paths
 
 
-def kill_a_worker(stop: threading.Event, killed: list[int], out: Path) -> None:
-    """Kills a process that fits, once some shards are there."""
+def kill_a_process(stop: threading.Event, killed: list[str], title: str, is_time: Callable[[int], bool]) -> None:
+    """Kills a process that fits, by what Ray calls it while it works, once it is time after so many sights of such processes."""
     import psutil
 
+    seen = 0
     while not stop.is_set() and not killed:
-        if len(list(out.glob("*.parquet"))) >= 2:
-            for process in psutil.Process().children(recursive=True):
-                if "_write_shard" in " ".join(process.cmdline()):
+        for process in psutil.Process().children(recursive=True):
+            try:
+                own = " ".join(process.cmdline())
+            except psutil.Error:
+                continue
+            if own.startswith(title):
+                seen += 1
+                if is_time(seen):
                     os.kill(process.pid, signal.SIGKILL)
-                    killed.append(process.pid)
+                    killed.append(own)
                     break
-        time.sleep(0.005)
+        time.sleep(0.002)
 
 
 def rows_of(out: Path) -> list[tuple[str, int | None]]:
@@ -63,34 +70,52 @@ def rows_of(out: Path) -> list[tuple[str, int | None]]:
     return list(zip(table["picture"].to_pylist(), table["object"].to_pylist()))
 
 
-def test_a_killed_worker_loses_and_doubles_nothing(cluster: None, pictures: list[str], tmp_path: Path) -> None:
+@contextlib.contextmanager
+def one_is_killed(title: str, is_time: Callable[[int], bool]) -> Iterator[None]:
+    """While it lasts, one process of that title is killed."""
     pytest.importorskip("psutil")
+    stop, killed = threading.Event(), list[str]()
+    killer = threading.Thread(target=kill_a_process, args=(stop, killed, title, is_time))
+    killer.start()
+    try:
+        yield
+    finally:
+        stop.set()
+        killer.join()
+    assert killed, "nothing was killed, so that this test has shown nothing"
+    print(f"killed: {killed[0]}")
+
+
+@pytest.mark.parametrize(("actors", "title"), [(None, "ray::_write_shard"), (2, "ray::_ShardWriter.write")])
+def test_a_killed_process_loses_and_doubles_nothing(
+    actors: int | None, title: str, cluster: None, pictures: list[str], tmp_path: Path
+) -> None:
     import dvp.ray
 
     out = tmp_path / "objects"
     out.mkdir()
-    stop, killed = threading.Event(), list[int]()
-    killer = threading.Thread(target=kill_a_worker, args=(stop, killed, out))
-    killer.start()
-    start = time.perf_counter()
-    done = dvp.ray.fit_to_parquet(pictures, out, shard=max(10, COUNT // 40), bank="mdshr")
-    seconds = time.perf_counter() - start
-    stop.set()
-    killer.join()
-    assert killed, "no worker was killed, so that this test has shown nothing"
+    # Once some shards are there.
+    with one_is_killed(title, lambda _: len(list(out.glob("*.parquet"))) >= 2):
+        start = time.perf_counter()
+        done = dvp.ray.fit_to_parquet(pictures, out, shard=max(10, COUNT // 40), actors=actors, bank="mdshr")
+        seconds = time.perf_counter() - start
     start = time.perf_counter()
     expected = dvp.measures(dvp.fit_many(pictures, bank="mdshr", threads=2), names=pictures)
     alone = time.perf_counter() - start
-    print(f"{COUNT} pictures: {seconds:.1f} s on 2 workers of Ray, one killed; {alone:.1f} s by fit_many on 2 threads")
+    how = "tasks" if actors is None else f"{actors} actors"
+    print(f"{COUNT} pictures: {seconds:.1f} s by {how} of Ray, one killed; {alone:.1f} s by fit_many on 2 threads")
     assert rows_of(out) == list(zip(expected["picture"], expected["object"]))
     assert done["rows"] == len(expected["picture"]) and done["made"] == done["shards"]
     failed = [name for name, error in zip(expected["picture"], expected["error"]) if error is not None]
     assert failed == [pictures[-1]]
     # A second run fits nothing again; without one shard it fits that one.
-    again = dvp.ray.fit_to_parquet(pictures, out, shard=max(10, COUNT // 40), bank="mdshr")
+    before = {path: path.stat().st_mtime_ns for path in out.glob("*.parquet")}
+    again = dvp.ray.fit_to_parquet(pictures, out, shard=max(10, COUNT // 40), actors=actors, bank="mdshr")
+    assert {path: path.stat().st_mtime_ns for path in out.glob("*.parquet")} == before
     assert again == {"shards": done["shards"], "made": 0, "rows": 0}
     (out / "shard-00001.parquet").unlink()
-    assert dvp.ray.fit_to_parquet(pictures, out, shard=max(10, COUNT // 40), bank="mdshr")["made"] == 1
+    again = dvp.ray.fit_to_parquet(pictures, out, shard=max(10, COUNT // 40), actors=actors, bank="mdshr")
+    assert again["made"] == 1
     assert rows_of(out) == list(zip(expected["picture"], expected["object"]))
     with pytest.raises(dvp.DvpError, match="other pictures or options"):
         dvp.ray.fit_to_parquet(pictures, out)
@@ -108,6 +133,27 @@ def test_pipelines_of_ray_data(cluster: None, pictures: list[str]) -> None:
     rows = sorted((row["picture"], row["object"] or 0) for row in found.take_all())
     expected = dvp.measures(dvp.fit_many(some, bank="mdshr"), names=some)
     assert rows == sorted((name, number or 0) for name, number in zip(expected["picture"], expected["object"]))
+
+
+def test_a_killed_actor_of_a_pipeline_loses_and_doubles_nothing(cluster: None, pictures: list[str], tmp_path: Path) -> None:
+    pytest.importorskip("pandas", reason="Ray Data needs pandas")
+    import dvp.ray
+
+    out = tmp_path / "objects"
+    out.mkdir()
+    # Blocks of few pictures: some are done when the actor dies, some are not begun.
+    frame = ray.data.from_items([{"path": path} for path in pictures], override_num_blocks=40)
+    fitted = frame.map_batches(
+        dvp.ray.Fit,
+        batch_format="pyarrow",
+        batch_size=max(10, COUNT // 40),
+        concurrency=2,
+        fn_constructor_kwargs=dict(column="path", bank="mdshr"),
+    )
+    with one_is_killed("ray::MapWorker(MapBatches(Fit)).submit", lambda seen: seen >= 20):
+        fitted.write_parquet(str(out))
+    expected = dvp.measures(dvp.fit_many(pictures, bank="mdshr", threads=2), names=pictures)
+    assert sorted(rows_of(out), key=str) == sorted(zip(expected["picture"], expected["object"]), key=str)
 
 
 def test_batches_of_arrays() -> None:

@@ -20,14 +20,14 @@ True
 :func:`evaluate`       scores of scenes
 ``dvp.torch``          the renderer and its loss, differentiable in PyTorch
 ``dvp.jax``            the same in JAX
-``dvp.ray``            many pictures on a cluster; :func:`map_in_arrow` for Spark
+``dvp.ray``            many pictures on a cluster; :func:`map_in_arrow` and :func:`spark_schema` for Spark
 ``python -m dvp``      the command
 =====================  =====================================================================
 
 Coordinates of objects are in units of the *shorter* side of the picture, x to the right, y down; measures are in pixels.
 """
 
-from ._batches import map_in_arrow
+from ._batches import map_in_arrow, spark_schema
 from ._dvp import VERSION as __version__
 from ._dvp import DvpError
 from ._efd import efd, efd_center
@@ -51,5 +51,6 @@ __all__ = [
     "generate",
     "map_in_arrow",
     "measures",
+    "spark_schema",
     "table",
 ]

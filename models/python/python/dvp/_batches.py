@@ -9,6 +9,7 @@ import numpy as np
 
 from ._dvp import DvpError
 from ._fit import Fitter
+from ._scene import _columns as columns_of
 from ._scene import table
 
 if TYPE_CHECKING:
@@ -42,7 +43,7 @@ class BatchFitter:
 
 
 def map_in_arrow(column: str = "bytes", name: str | None = "path", **options: Any) -> Any:
-    """The same for Spark: ``frame.mapInArrow(dvp.map_in_arrow(...), schema)``, a function of an iterator of record batches.
+    """The same for Spark: ``frame.mapInArrow(dvp.map_in_arrow(...), dvp.spark_schema())``, a function of an iterator of record batches.
 
     >>> import dvp, pyarrow
     >>> batch = pyarrow.record_batch({"path": ["missing.png"]})
@@ -57,6 +58,17 @@ def map_in_arrow(column: str = "bytes", name: str | None = "path", **options: An
             yield from fitter(batch).to_batches()
 
     return fit
+
+
+def spark_schema(*, pixel_mm: float | None = None) -> str:
+    """The columns that :func:`map_in_arrow` gives, as Spark wants them told; with ``pixel_mm`` those in millimeters too.
+
+    >>> import dvp
+    >>> dvp.spark_schema()[:35]
+    '`picture` string, `object` bigint, '
+    """
+    kinds = {"text": "string", "count": "bigint", "number": "double"}
+    return ", ".join(f"`{name}` {kinds[kind]}" for name, kind, _ in columns_of([], [], pixel_mm))
 
 
 def _columns(batch: Any) -> list[str]:

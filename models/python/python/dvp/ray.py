@@ -11,7 +11,7 @@ import functools
 import hashlib
 import json
 import os
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +21,9 @@ from ._batches import BatchFitter
 from ._dvp import DvpError
 
 __all__ = ["Fit", "fit_to_parquet"]
+
+#: Paths of a shard's pictures, the file of its objects, the options as JSON.
+_Work = tuple[list[str], str, str]
 
 
 class Fit(BatchFitter):
@@ -49,24 +52,37 @@ def _write_shard(paths: list[str], target: str, options: str) -> int:
     return int(objects.num_rows)
 
 
+class _ShardWriter:
+    """An actor that writes shards, with bank and memory of its own."""
+
+    def write(self, paths: list[str], target: str, options: str) -> int:
+        return _write_shard(paths, target, options)
+
+
 def fit_to_parquet(
     pictures: Sequence[str | os.PathLike[str]],
     out: str | os.PathLike[str],
     *,
     shard: int = 500,
+    actors: int | None = None,
     **options: Any,
 ) -> dict[str, int]:
     """Fits the files ``pictures``, ``shard`` of them at a time on a core of the cluster, and writes the objects of each shard to
     ``out/shard-NNNNN.parquet``: a row per object, and one with ``error`` for each picture that failed.
 
+    Shards are tasks of the cluster, on all its cores and on those that join while it works; with ``actors``, so many actors of a core
+    each do them, which leaves the other cores to others.
+
     All machines must see the files and the folder. Run again with the same pictures and options it goes on: shards that are there are
-    not fitted again. A shard whose worker dies is done again, whole. Returns how many shards there are, how many of them this run
+    not fitted again. A shard whose worker or actor dies is done again, whole. Returns how many shards there are, how many of them this run
     made, and the rows that it wrote. ``options`` are those of :class:`dvp.Fitter`, of values that JSON can hold.
 
     Raises :class:`dvp.DvpError` if the folder holds the shards of other pictures or options.
     """
     if shard < 1:
         raise DvpError(f"shard={shard}: must be at least 1")
+    if actors is not None and actors < 1:
+        raise DvpError(f"actors={actors}: must be at least 1, or None for tasks on all cores")
     paths = [os.fspath(picture) for picture in pictures]
     folder = Path(out)
     folder.mkdir(parents=True, exist_ok=True)
@@ -84,11 +100,23 @@ def fit_to_parquet(
     shards = [paths[start : start + shard] for start in range(0, len(paths), shard)]
     targets = [folder / f"shard-{k:05}.parquet" for k in range(len(shards))]
     missing = [k for k, target in enumerate(targets) if not target.exists()]
-    # A worker that dies is no fault of the shard: it is tried again for ever. What is wrong with pictures is in the rows.
+    work_of = [(shards[k], str(targets[k].absolute()), text) for k in missing]
+    rows = sum(_by_tasks(work_of) if actors is None else _by_actors(work_of, actors))
+    return {"shards": len(shards), "made": len(missing), "rows": rows}
+
+
+# A process that dies is no fault of the shard: it is tried again for ever. What is wrong with pictures is in the rows.
+
+
+def _by_tasks(work: list[_Work]) -> Iterator[int]:
     remote = ray.remote(num_cpus=1, max_retries=-1)(_write_shard)
-    waiting = [remote.remote(shards[k], str(targets[k].absolute()), text) for k in missing]
-    rows = 0
+    waiting = [remote.remote(*own) for own in work]
     while waiting:
         done, waiting = ray.wait(waiting, num_returns=1)
-        rows += sum(ray.get(done))
-    return {"shards": len(shards), "made": len(missing), "rows": rows}
+        yield from ray.get(done)
+
+
+def _by_actors(work: list[_Work], count: int) -> Iterator[int]:
+    remote = ray.remote(num_cpus=1, max_restarts=-1, max_task_retries=-1)(_ShardWriter)
+    pool = ray.util.ActorPool([remote.remote() for _ in range(min(count, len(work)))])
+    yield from pool.map_unordered(lambda actor, own: actor.write.remote(*own), work) if work else ()
