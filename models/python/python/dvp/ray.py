@@ -118,5 +118,11 @@ def _by_tasks(work: list[_Work]) -> Iterator[int]:
 
 def _by_actors(work: list[_Work], count: int) -> Iterator[int]:
     remote = ray.remote(num_cpus=1, max_restarts=-1, max_task_retries=-1)(_ShardWriter)
-    pool = ray.util.ActorPool([remote.remote() for _ in range(min(count, len(work)))])
-    yield from pool.map_unordered(lambda actor, own: actor.write.remote(*own), work) if work else ()
+    actors = [remote.remote() for _ in range(min(count, len(work)))]
+    try:
+        pool = ray.util.ActorPool(actors)
+        yield from pool.map_unordered(lambda actor, own: actor.write.remote(*own), work) if work else ()
+    finally:
+        # Their cores are wanted by what comes next, which may be before anybody collects garbage.
+        for actor in actors:
+            ray.kill(actor)
