@@ -46,7 +46,8 @@ def rows_of(files: list[Path]) -> int:
 def main(count: int = 10_000, cores: int = 2) -> None:
     work = Path(tempfile.mkdtemp())
     paths = draw(work / "pictures", count)
-    ray.init(num_cpus=cores, include_dashboard=False, logging_level="ERROR", log_to_driver=False)
+    # One core more than actors: those of a pipeline never give theirs back, and somebody has to read and write.
+    ray.init(num_cpus=cores + 1, include_dashboard=False, logging_level="ERROR", log_to_driver=False)
     ray.data.DataContext.get_current().enable_progress_bars = False
 
     def command(out: Path) -> int:

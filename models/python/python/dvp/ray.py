@@ -27,7 +27,10 @@ _Work = tuple[list[str], str, str]
 
 
 class Fit(BatchFitter):
-    """For ``dataset.map_batches(dvp.ray.Fit, batch_format="pyarrow", concurrency=CORES)``; options by ``fn_constructor_kwargs``.
+    """For ``dataset.map_batches(dvp.ray.Fit, batch_format="pyarrow", concurrency=ACTORS)``; options by ``fn_constructor_kwargs``.
+
+    An actor keeps its core as long as the pipeline lasts: give it fewer actors than the cluster has cores, or what reads the pictures
+    waits for a core for ever.
 
     The data set holds a column of pictures (``bytes`` and ``path``, as ``ray.data.read_binary_files(folder, include_paths=True)`` gives
     them), or with ``batch_format="numpy"`` arrays. Out comes a row per object, and one with ``error`` for each picture that failed.
