@@ -119,9 +119,11 @@ fn drawing_or_segments(
         return Ok(drawn);
     }
     let segments = fitter.fit(image, &mut scratch.fit)?;
-    // Segments measure the profile of all edges at once: drawings have that of area coverage. Ringing hides it, and coders ring.
-    let is_area = segments.scene.edge.law == EdgeLaw::Area && traced.stained > 0.0 && !known.coded;
-    let (likely, other) = if is_area { (drawn, segments) } else { (segments, drawn) };
+    // Segments measure the profile of all edges at once: drawings have that of area coverage. Ringing hides it, but makes things of its own,
+    // and a scene is not more than it needs to be.
+    let is_area = segments.scene.edge.law == EdgeLaw::Area;
+    let is_drawing = is_area && drawn.scene.objects.len() <= segments.scene.objects.len();
+    let (likely, other) = if is_drawing { (drawn, segments) } else { (segments, drawn) };
     Ok(if CLEARLY_WORSE * other.loss < likely.loss { other } else { likely })
 }
 
