@@ -120,7 +120,7 @@ def _by_tasks(work: list[_Work]) -> Iterator[int]:
 
 
 def _by_actors(work: list[_Work], count: int) -> Iterator[int]:
-    remote = ray.remote(num_cpus=1, max_restarts=-1, max_task_retries=-1)(_ShardWriter)
+    remote: Any = ray.remote(num_cpus=1, max_restarts=-1, max_task_retries=-1)(_ShardWriter)
     actors = [remote.remote() for _ in range(min(count, len(work)))]
     try:
         pool = ray.util.ActorPool(actors)
