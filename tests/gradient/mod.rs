@@ -5,6 +5,7 @@ mod drawing;
 mod efd;
 mod exact;
 mod hard;
+mod live;
 mod loss;
 mod optim;
 mod render_contour;

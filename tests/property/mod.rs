@@ -9,6 +9,7 @@ mod exact;
 mod fit;
 mod geometry;
 mod hard;
+mod live;
 mod loss;
 mod matching;
 mod metric;

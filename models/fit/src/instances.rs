@@ -7,6 +7,7 @@ use dvp_core::Real;
 use dvp_core::render::ContourRenderer;
 
 use crate::adam::descent::Descent;
+use crate::live::Live;
 use crate::opt_iter::OptIter;
 use crate::opt_p::OptP;
 use crate::prototypes::{Form, Learned, Pool, members};
@@ -24,6 +25,7 @@ pub fn of<T: Real>() -> Vec<*const ()> {
         Descent::<T, ContourRenderer<T>>::new as *const (),
         Descent::<T, ContourRenderer<T>>::run as *const (),
         Descent::<T, ContourRenderer<T>>::paint as *const (),
+        Live::fit::<T> as *const (),
         OptIter::fit::<T, ContourRenderer<T>> as *const (),
         OptP::fit::<T, ContourRenderer<T>> as *const (),
         RandOptP::fit::<T, ContourRenderer<T>> as *const (),

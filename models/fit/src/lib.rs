@@ -18,6 +18,7 @@
 //! | [`refine`] | an image, a start | a [`Fit`] by Levenberg-Marquardt |
 //! | [`scene_refine`] | an image, a drawing near it | the drawing with every number refined |
 //! | [`opt_p`], [`opt_iter`], [`rand_opt_p`] | an image, for OptP and Rand-OptP a start | a [`Fit`] by the paper's Adam |
+//! | [`live`] | an image | a [`Fit`] of closed paths, layer by layer |
 //!
 //! # Features
 //!
@@ -32,6 +33,7 @@ extern crate alloc;
 mod readme {}
 
 pub mod adam;
+pub mod live;
 pub mod masks;
 pub mod opt_iter;
 pub mod opt_p;

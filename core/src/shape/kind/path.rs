@@ -98,7 +98,8 @@ impl<T> Segment<T> {
     }
 
     /// How many numbers it has, beside the points that it joins.
-    pub(super) fn number_count(&self) -> usize {
+    #[must_use]
+    pub fn number_count(&self) -> usize {
         self.number_names().len()
     }
 }

@@ -18,7 +18,7 @@ pub enum BackgroundStart {
 }
 
 impl BackgroundStart {
-    pub(super) fn color<T: Real>(self, image: ImageView<'_, T>) -> [T; CHANNELS] {
+    pub(crate) fn color<T: Real>(self, image: ImageView<'_, T>) -> [T; CHANNELS] {
         match self {
             Self::Median => median(image),
             Self::Mode => mode(image),

@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 
 use dvp_core::image::CHANNELS;
-use dvp_core::{ImageView, Real};
+use dvp_core::{ImageSize, ImageView, Real};
 
 /// Mean absolute error over the channels below which a pixel counts as explained.
 const EXPLAINED: f64 = 0.02;
@@ -12,13 +12,26 @@ const EXPLAINED: f64 = 0.02;
 /// and noise of a few 8-bit steps tears none apart.
 const SAME_COLOR: f64 = 0.04;
 
+/// Which of two blobs is the larger one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum BlobSize {
+    /// That with the larger sum of errors.
+    Error,
+    /// That with more pixels.
+    Pixels,
+}
+
 /// A connected region of one color that the scene does not explain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Blob<T> {
     /// Mean position, scene units.
     pub center: [T; 2],
+    /// Center of the pixel of the region that is nearest to the mean position, scene units.
+    pub inside: [T; 2],
     /// Direction of the long axis, radians in (-pi/2, pi/2\].
     pub orientation: T,
+    /// Half the long and the short axis of the ellipse with the same second moments, scene units; above 0.
+    pub half_axes: [T; 2],
     /// Mean color of the image in the region.
     pub color: [T; CHANNELS],
     /// Sum over the region of the mean absolute error per pixel.
@@ -50,6 +63,11 @@ impl<T: Real> BlobFinder<T> {
     /// A pixel is unexplained if its error is above 0.02, or above half the largest error where that is less. Blobs are
     /// connected through edges of pixels.
     pub fn largest(&mut self, image: ImageView<'_, T>, painted: &[T]) -> Option<Blob<T>> {
+        self.largest_by(BlobSize::Error, image, painted)
+    }
+
+    /// As [`Self::largest`], by the measure of `size`; of equal ones the first, row by row.
+    pub fn largest_by(&mut self, size: BlobSize, image: ImageView<'_, T>, painted: &[T]) -> Option<Blob<T>> {
         let pixels = image.size().pixels();
         let third = T::of(1.0 / 3.0);
         self.error.clear();
@@ -68,13 +86,28 @@ impl<T: Real> BlobFinder<T> {
         for seed in 0..pixels {
             if self.error[seed] > threshold && self.labels[seed] == 0 {
                 let sums = self.flood(image, seed, threshold);
-                if best.as_ref().is_none_or(|best: &Sums<T>| sums.error > best.error) {
+                let is_larger = |best: &Sums<T>| match size {
+                    BlobSize::Error => sums.error > best.error,
+                    BlobSize::Pixels => sums.count > best.count,
+                };
+                if best.as_ref().is_none_or(is_larger) {
                     best = Some(sums);
                     self.largest = seed + 1;
                 }
             }
         }
-        best.map(|sums| sums.blob(image))
+        best.map(|sums| {
+            let nearest = self.nearest(image.size(), sums.mean());
+            sums.blob(image.size(), nearest)
+        })
+    }
+
+    /// The pixel of the blob last found that is nearest to a place; places and pixels as column and row.
+    fn nearest(&self, size: ImageSize, [x, y]: [f64; 2]) -> [f64; 2] {
+        let own = self.labels.iter().enumerate().filter(|&(_, &label)| label == self.largest);
+        let places = own.map(|(index, _)| [index % size.width(), index / size.width()].map(f64::of_usize));
+        let squared = |[column, row]: [f64; 2]| (column - x) * (column - x) + (row - y) * (row - y);
+        places.min_by(|&a, &b| squared(a).total_cmp(&squared(b))).unwrap_or([x, y])
     }
 
     /// Replaces every unexplained pixel of planar `pixels` that is not in the blob last found by that of `painted`.
@@ -154,14 +187,26 @@ impl<T: Real> Sums<T> {
         self.error += error;
     }
 
-    fn blob(&self, image: ImageView<'_, T>) -> Blob<T> {
+    /// Mean column and row.
+    fn mean(&self) -> [f64; 2] {
         let count = f64::of_usize(self.count);
-        let (x, y) = (self.x / count, self.y / count);
+        [self.x / count, self.y / count]
+    }
+
+    fn blob(&self, size: ImageSize, inside: [f64; 2]) -> Blob<T> {
+        let count = f64::of_usize(self.count);
+        let [x, y] = self.mean();
         let (xx, xy, yy) = (self.xx / count - x * x, self.xy / count - x * y, self.yy / count - y * y);
-        let unit = f64::of_usize(image.size().unit_px());
+        let unit = f64::of_usize(size.unit_px());
+        // The variances along the axes; a pixel has one of its own. That of an ellipse is a quarter of the half axis squared.
+        let (middle, off) = ((xx + yy) / 2.0 + 1.0 / 12.0, num_traits::Float::hypot((xx - yy) / 2.0, xy));
+        let half_axis = |variance: f64| T::of(2.0 * num_traits::Float::sqrt(variance.max(1.0 / 12.0)) / unit);
+        let place = |place: [f64; 2]| place.map(|value| T::of((value + 0.5) / unit));
         Blob {
-            center: [T::of((x + 0.5) / unit), T::of((y + 0.5) / unit)],
+            center: place([x, y]),
+            inside: place(inside),
             orientation: T::of(0.5 * num_traits::Float::atan2(2.0 * xy, xx - yy)),
+            half_axes: [half_axis(middle + off), half_axis(middle - off)],
             color: self.color.map(|sum| sum / T::of(count)),
             error: self.error,
             pixels: self.count,

@@ -139,6 +139,9 @@ impl Report {
                 ("method", format!("published {}", row.name)),
                 ("hardware", "other".into()),
                 ("mae", row.mae.to_string()),
+                ("mse", row.mse.to_string()),
+                ("ssim", row.ssim.to_string()),
+                ("iou", row.iou.to_string()),
                 ("ari", row.ari.to_string()),
                 ("ms_median", row.ms.map_or_else(String::new, |ms| ms.to_string())),
             ]);
@@ -247,7 +250,11 @@ pub(super) fn json(report: &Report, renderers: &[Rendered]) -> Value {
             "mae": row.mae, "forward_ms": row.forward_ms, "backward_ms": row.backward_ms,
         })
     };
-    let published = PUBLISHED.iter().map(|row| json!({"name": row.name, "mae": row.mae, "ari": row.ari, "ms": row.ms}));
+    let published = PUBLISHED.iter().map(|row| {
+        json!({
+            "name": row.name, "mae": row.mae, "mse": row.mse, "ssim": row.ssim, "iou": row.iou, "ari": row.ari, "ms": row.ms,
+        })
+    });
     json!({
         "methods": report.rows.iter().enumerate().map(method).collect::<Vec<_>>(),
         "renderers": renderers.iter().map(rendered).collect::<Vec<_>>(),
