@@ -1,5 +1,6 @@
 //! Invariants of LIVE.
 
+use dvp_core::geometry::Px;
 use dvp_core::render::{Compositing, EdgeProfile};
 use dvp_core::shape::{Path, PathRing, Segment};
 use dvp_core::{Image, ImageSize, Object, Paint, Pose, Scene, SceneGrad};
@@ -9,7 +10,9 @@ use proptest::prelude::*;
 
 /// Few steps.
 fn short() -> Live {
-    Live { layer_steps: 8, finish_steps: 8, shape_count: 3, ..Live::default() }
+    let mut settings = Live::default();
+    (settings.layer_steps, settings.finish_steps, settings.shape_count) = (8, 8, 3);
+    settings
 }
 
 /// Boxes of one color and loose pixels on a background, in a picture of any sides.
@@ -59,14 +62,16 @@ proptest! {
     ) {
         let compositing = if over { Compositing::Over } else { Compositing::Blend };
         let edge = if over { EdgeProfile::area() } else { EdgeProfile::reference() };
-        let start = if circle { PathStart::Circle(dvp_core::geometry::Px(5.0)) } else { PathStart::Ellipse };
-        let settings = Live { start, segment_count, ..short() };
+        let start = if circle { PathStart::Circle(Px(5.0)) } else { PathStart::Ellipse };
+        let mut settings = short();
+        (settings.start, settings.segment_count) = (start, segment_count);
         let fit = settings.fit(image.view(), edge, compositing).unwrap();
         prop_assert_eq!(&fit.scene, &settings.fit(image.view(), edge, compositing).unwrap().scene);
-        let alone = Live { shape_count: 0, finish_steps: 0, ..settings };
-        let ground = alone.fit(image.view(), edge, compositing).unwrap();
         // The squared error is what decides whether a shape stays; the last stage may lower the absolute one at its cost.
-        let unfinished = Live { finish_steps: 0, ..settings }.fit(image.view(), edge, compositing).unwrap();
+        settings.finish_steps = 0;
+        let unfinished = settings.fit(image.view(), edge, compositing).unwrap();
+        settings.shape_count = 0;
+        let ground = settings.fit(image.view(), edge, compositing).unwrap();
         prop_assert!(unfinished.unexplained <= ground.unexplained + 1e-6, "{} {}", unfinished.unexplained, ground.unexplained);
         prop_assert!(fit.loss <= unfinished.loss + 1e-6, "{} {}", fit.loss, unfinished.loss);
         prop_assert!(fit.scene.objects.len() <= 3);
@@ -74,7 +79,8 @@ proptest! {
 
     #[test]
     fn published_settings_take_any_picture(image in picture()) {
-        let settings = Live { layer_steps: 6, ..Live::published() };
+        let mut settings = Live::published();
+        settings.layer_steps = 6;
         let fit = settings.fit(image.view(), EdgeProfile::area(), Compositing::Over).unwrap();
         prop_assert!(fit.loss.is_finite() && fit.scene.objects.len() <= 5);
         prop_assert!(fit.scene.objects.iter().all(|object| (0.0..=1.0).contains(&object.confidence)));

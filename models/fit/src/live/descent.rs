@@ -21,6 +21,7 @@ const TOLERANCE: Px<f64> = Px(0.02);
 
 /// What falls, beside the price on crossings.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum PathLoss {
     /// The squared error of pixels near the outlines, weighted by [`Focus`].
     Focused {

@@ -31,8 +31,9 @@ use crate::{Fit, StopReason};
 
 pub use start::PathStart;
 
-/// Settings of LIVE; the defaults are ours, the published ones [`Self::published`].
+/// Settings of LIVE; the defaults are ours, the published ones [`Self::published`]. To change some: start with either, set fields.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Live {
     /// Most shapes.
     pub shape_count: usize,

@@ -11,6 +11,7 @@ use crate::opt_iter::blob::Blob;
 
 /// As what a shape starts.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum PathStart {
     /// A circle of this radius around the pixel of the blob that is nearest to the blob's center.
     Circle(Px<f64>),

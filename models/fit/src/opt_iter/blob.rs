@@ -14,6 +14,7 @@ const SAME_COLOR: f64 = 0.04;
 
 /// Which of two blobs is the larger one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum BlobSize {
     /// That with the larger sum of errors.
     Error,

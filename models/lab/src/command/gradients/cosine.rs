@@ -4,7 +4,7 @@ use anyhow::Result;
 use dvp_core::loss::{Loss, SceneLoss, SceneLossScratch, ScenePairs};
 use dvp_core::render::contour::ContourRenderer;
 use dvp_core::render::{PixelLoss, Renderer};
-use dvp_core::scene::{DrawingGrad, SceneGrad};
+use dvp_core::scene::{DrawingGrad, ObjectGrad, SceneGrad};
 use dvp_core::shape::{OutlineBasis, REFERENCE_VERTICES};
 use dvp_core::{Drawing, Image, ImageSize, Scene};
 
@@ -37,18 +37,21 @@ impl Aspect {
         }
     }
 
-    /// The numbers of a gradient that are about it.
-    fn of(self, grad: &SceneGrad<f32>) -> Vec<f64> {
-        let objects = grad.objects.iter();
-        let values: Vec<f32> = match self {
-            Self::Translation => objects.flat_map(|object| object.translation).collect(),
-            Self::Scale => objects.map(|object| object.scale).collect(),
-            Self::Rotation => objects.map(|object| object.rotation).collect(),
-            Self::Color => objects.flat_map(|object| object.color).collect(),
-            Self::Shape => objects.flat_map(|object| object.numbers.iter().copied()).collect(),
-            Self::Background => grad.background.to_vec(),
+    /// The numbers of a gradient that are about it, slot by slot.
+    fn of(self, grad: &SceneGrad<f32>) -> Vec<Vec<f64>> {
+        let of_slot = |object: &ObjectGrad<f32>| match self {
+            Self::Translation => object.translation.to_vec(),
+            Self::Scale => vec![object.scale],
+            Self::Rotation => vec![object.rotation],
+            Self::Color => object.color.to_vec(),
+            Self::Shape => object.numbers.clone(),
+            Self::Background => Vec::new(),
         };
-        values.into_iter().map(f64::from).collect()
+        let slots: Vec<Vec<f32>> = match self {
+            Self::Background => vec![grad.background.to_vec()],
+            _ => grad.objects.iter().map(of_slot).collect(),
+        };
+        slots.into_iter().map(|slot| slot.into_iter().map(f64::from).collect()).collect()
     }
 }
 
@@ -97,8 +100,21 @@ impl Cosines {
         moved.draw_vjp(&self.basis, &self.drawing_grad, &mut self.grads[0])?;
         let pairs = ScenePairs::new(core::slice::from_ref(moved), core::slice::from_ref(truth))?;
         self.scene_loss.vjp(pairs, 1.0, &mut self.match_scratch, &mut self.grads[1..])?;
-        Ok(Aspect::ALL.map(|aspect| cosine(&aspect.of(&self.grads[0]), &aspect.of(&self.grads[1]))))
+        Ok(Aspect::ALL.map(|aspect| {
+            let [image, scene] = [0, 1].map(|k| aspect.of(&self.grads[k]));
+            match std::env::var("MEAN").as_deref() {
+                Ok("slots") => mean(image.iter().zip(&scene).map(|(a, b)| cosine(a, b))),
+                Ok("rows") if aspect == Aspect::Shape => mean(image.iter().zip(&scene).flat_map(|(a, b)| a.chunks(4).zip(b.chunks(4))).map(|(a, b)| cosine(a, b))),
+                Ok("rows") => mean(image.iter().zip(&scene).map(|(a, b)| cosine(a, b))),
+                _ => cosine(&image.concat(), &scene.concat()),
+            }
+        }))
     }
+}
+
+fn mean(values: impl Iterator<Item = f64>) -> f64 {
+    let values: Vec<f64> = values.collect();
+    values.iter().sum::<f64>() / values.len().max(1) as f64
 }
 
 fn cosine(a: &[f64], b: &[f64]) -> f64 {

@@ -27,10 +27,14 @@ pub(super) fn descend(truth: &Scene<f32>, moved: &Scene<f32>, size: ImageSize) -
         let squares = painted.data().iter().zip(image.data()).map(|(a, b)| f64::from(a - b).powi(2));
         Ok(squares.sum::<f64>() / painted.data().len() as f64)
     };
-    let before = error(&mut descent, moved)?;
     let mut scene = moved.clone();
-    let free = Free::PoseColorAndShape;
-    let stage = Stage { steps: STEPS, learning_rate: LEARNING_RATE, free, loss: PixelLoss::Mse, contour_length: 0.0 };
+    let free = if std::env::var("FREE").as_deref() == Ok("pose") { Free::PoseAndColor } else { Free::PoseColorAndShape };
+    let learning_rate = std::env::var("LR").map_or(LEARNING_RATE, |v| v.parse().unwrap());
+    let loss = if std::env::var("LOSS").as_deref() == Ok("mae") { PixelLoss::Mae } else { PixelLoss::Mse };
+    if std::env::var("CONF").is_ok() { scene.objects.iter_mut().zip(&truth.objects).for_each(|(a, b)| a.confidence = b.confidence); }
+    if std::env::var("TRUESHAPE").is_ok() { scene.objects.iter_mut().zip(&truth.objects).for_each(|(a, b)| a.shape = b.shape.clone()); }
+    let before = error(&mut descent, &scene)?;
+    let stage = Stage { steps: STEPS, learning_rate, free, loss, contour_length: 0.0 };
     descent.run(image.view(), &mut scene, &stage)?;
     Ok([before, error(&mut descent, &scene)?])
 }
