@@ -88,7 +88,7 @@ fn every_method_runs_and_the_number_of_threads_changes_nothing() {
     let [data, start] = ["data", "start"].map(|name| folder.path().join(name));
     dvp_done(["generate", "--count", "2", "--width", "32", "--visible", "1", "--out", text(&data)]);
     dvp_done(["fit", text(&data), "--bank", "mdshr", "--out", text(&start), "--no-png", "--no-svg"]);
-    for method in ["segment", "opt-iter", "opt-p", "rand-opt-p"] {
+    for method in ["segment", "opt-iter", "live", "live-published", "opt-p", "rand-opt-p"] {
         let mut texts = Vec::new();
         for threads in ["1", "2"] {
             let out = folder.path().join(format!("{method}-{threads}"));
@@ -104,6 +104,45 @@ fn every_method_runs_and_the_number_of_threads_changes_nothing() {
     }
     let run = dvp(["fit", text(&data), "--method", "opt-p", "--out", text(&start)]);
     assert!(run.code == 1 && run.err.contains("--start"), "{}", run.err);
+}
+
+#[test]
+fn live_draws_closed_paths_of_as_many_cubics_as_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let [data, out] = ["data", "out"].map(|name| folder.path().join(name));
+    dvp_done(["generate", "--count", "1", "--width", "48", "--visible", "2", "--seed", "3", "--out", text(&data)]);
+    let fit = |method: &'static str, options: &[&'static str]| {
+        let arguments = ["fit", text(&data), "--out", text(&out), "--no-png", "--method", method, "--json"];
+        let said: Value =
+            serde_json::from_str(&dvp_done(arguments.into_iter().chain(options.iter().copied()))).unwrap();
+        let written: Value = serde_json::from_slice(&fs::read(out.join("00000.json")).unwrap()).unwrap();
+        (said["images"][0]["loss"].as_f64().unwrap(), written)
+    };
+    let (loss, scene) = fit("live", &["--segments", "6"]);
+    assert!(loss < 0.02, "{loss}");
+    let objects = scene["objects"].as_array().unwrap();
+    assert!((1..=8).contains(&objects.len()), "{scene}");
+    for object in objects {
+        assert_eq!(object["kind"], "path");
+        let ring = &object["rings"][0];
+        let [points, segments] = ["points", "segments"].map(|name| ring[name].as_array().unwrap());
+        assert_eq!((points.len(), segments.len()), (6, 6), "closed");
+        assert!(segments.iter().all(|segment| segment["kind"] == "cubic"), "{ring}");
+    }
+    assert!(fs::read_to_string(out.join("00000.svg")).unwrap().contains(" C") || objects.is_empty());
+    let (_, scene) = fit("live-published", &["--objects", "2"]);
+    assert_eq!(
+        (scene["objects"].as_array().unwrap().len(), &scene["background"]),
+        (2, &serde_json::json!([1.0, 1.0, 1.0]))
+    );
+    for (options, said) in [
+        (&["--method", "segment", "--segments", "4"][..], "--method live"),
+        (&["--method", "live", "--start", "net"], "--start net"),
+    ] {
+        let run = dvp(["fit", text(&data), "--out", text(&out)].into_iter().chain(options.iter().copied()));
+        assert!(run.code == 1 && run.err.contains(said), "{}", run.err);
+    }
+    assert_eq!(dvp(["fit", text(&data), "--out", text(&out), "--method", "live", "--segments", "1"]).code, 2);
 }
 
 #[test]

@@ -35,10 +35,12 @@ fn networks_are_scored_after_every_optimizer_whatever_the_number_of_threads() {
         &["--then", "refine"],
         &["--method", "rand-opt-z"],
         &["--method", "rand-opt-p"],
+        &["--method", "live"],
+        &["--method", "live-published"],
     ] {
         let mut arguments = vec!["evaluate", "--generated", "2"];
         arguments.extend(options);
-        if options != ["--method", "rand-opt-p"] {
+        if !["rand-opt-p", "live", "live-published"].contains(&options[1]) {
             arguments.extend(seen);
         }
         let run = |threads| figures(&[&arguments[..], &["--threads", threads]].concat());
@@ -110,6 +112,7 @@ fn what_does_not_go_together_is_refused() {
         (&["evaluate", data], &["--model", model, "--generated", "2"], "--generated"),
         (&["evaluate", data], &["--model", model, "--method", "rand-opt-z", "--then", "refine"], "--then"),
         (&["evaluate", data], &["--model", model, "--method", "rand-opt-p"], "--model"),
+        (&["evaluate", data], &["--model", model, "--method", "live"], "--model"),
         (&["evaluate", data], &["--model", broken], "broken.safetensors"),
         (&["evaluate"], &["--model", model, "--generated", "0"], "--generated"),
     ] {

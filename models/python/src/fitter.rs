@@ -55,7 +55,7 @@ impl Fitter {
         bank_text: &str,
         method: &str,
         max_objects: Option<usize>,
-        objects: usize,
+        objects: Option<usize>,
         start: &str,
         model: Option<std::path::PathBuf>,
         seed: u64,
@@ -63,7 +63,7 @@ impl Fitter {
         max_pixels: usize,
     ) -> PyResult<Self> {
         let method = MethodChoice::named(method).ok_or_else(|| {
-            refusal(format!("method {method:?}: must be segment, opt-iter, opt-p or rand-opt-p"))
+            refusal(format!("method {method:?}: must be segment, opt-iter, live, live-published, opt-p or rand-opt-p"))
         })?;
         let compositing = match compositing {
             None => None,

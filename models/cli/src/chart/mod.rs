@@ -18,7 +18,7 @@ pub use lines::{Chart, Line};
 pub const FONT: &str = "sans-serif";
 
 /// Colors of lines, in order; the first six are told apart also without colors of red and green.
-pub const COLORS: [RGBColor; 12] = [
+pub const COLORS: [RGBColor; 14] = [
     RGBColor(0, 90, 181),
     RGBColor(220, 50, 32),
     RGBColor(80, 80, 80),
@@ -31,6 +31,8 @@ pub const COLORS: [RGBColor; 12] = [
     RGBColor(150, 150, 40),
     RGBColor(0, 110, 110),
     RGBColor(60, 50, 120),
+    RGBColor(120, 160, 60),
+    RGBColor(200, 110, 60),
 ];
 
 /// Refuses names that charts are not written to, before any work is done.

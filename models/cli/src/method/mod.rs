@@ -56,6 +56,10 @@ pub enum Method {
     OptIter,
     /// The paper's Opt-Iter to the letter
     OptIterPublished,
+    /// LIVE with our settings: closed paths of cubics, one by one where the image is worst explained
+    Live,
+    /// LIVE with its published settings: five paths of four cubics on white
+    LivePublished,
     /// The paper's Rand-OptP: Adam from a random scene of as many objects as there are
     RandOptP,
     /// The paper's Rand-OptZ: Adam from random latents, through the heads of a network
@@ -109,7 +113,8 @@ impl Method {
     #[must_use]
     pub fn start(self) -> Start {
         match self {
-            Self::SegmentBank | Self::SegmentFree | Self::OptIter | Self::OptIterPublished => Start::Image,
+            Self::SegmentBank | Self::SegmentFree => Start::Image,
+            Self::OptIter | Self::OptIterPublished | Self::Live | Self::LivePublished => Start::Image,
             Self::OptP | Self::Lm | Self::LmContinuation => Start::Scene,
             Self::RandOptP | Self::RandOptZ => Start::Random,
             Self::Net | Self::NetLm | Self::NetOptP | Self::OptZ => Start::Network,
@@ -136,7 +141,7 @@ impl Method {
             Self::SegmentFree => "harmonics",
             Self::Lm => "LM steps",
             Self::LmContinuation | Self::NetLm => "LM steps per sigma",
-            Self::OptIter | Self::OptIterPublished => "Adam steps per object",
+            Self::OptIter | Self::OptIterPublished | Self::Live | Self::LivePublished => "Adam steps per object",
             Self::OptP | Self::RandOptP | Self::RandOptZ | Self::NetOptP | Self::OptZ => "Adam steps",
             Self::Net => "none",
         }
@@ -151,7 +156,8 @@ impl Method {
             Self::Lm => 20,
             Self::LmContinuation | Self::NetLm => 12,
             Self::OptP | Self::RandOptZ | Self::NetOptP | Self::OptZ => 100,
-            Self::OptIter | Self::OptIterPublished | Self::RandOptP => 500,
+            Self::OptIter | Self::OptIterPublished | Self::RandOptP | Self::LivePublished => 500,
+            Self::Live => 60,
             Self::Net => 0,
         };
         Setting { steps, precision: Precision::F32 }

@@ -2,7 +2,9 @@
 
 use core::time::Duration;
 
+use dvp_core::render::{Compositing, EdgeProfile};
 use dvp_core::{Image, ImageView, Real, Scene};
+use dvp_fit::live::Live;
 use dvp_fit::opt_iter::OptIter;
 use dvp_fit::opt_p::OptP;
 use dvp_fit::picture::{cut_openings, fit_picture};
@@ -161,6 +163,11 @@ impl Runner {
                 settings.object_count = task.objects.unwrap_or(settings.object_count);
                 descend(&Scene::empty([T::zero(); 3]), |descent| timed(|| Ok(settings.fit(descent, image)?)))
             }
+            (Method::Live | Method::LivePublished, _) => {
+                let settings = self.live_settings(task);
+                let compositing = self.tools.options.compositing.unwrap_or(Compositing::Over);
+                timed(|| Ok(settings.fit(image, EdgeProfile::area(), compositing)?))
+            }
             (Method::Lm | Method::LmContinuation, _) => {
                 let (start, settings) = (self.start(task)?, self.refine_settings());
                 timed(|| Ok(settings.fit(image, &start, refine)?))
@@ -171,6 +178,14 @@ impl Runner {
                 Err(MethodError::NeedsNetwork(method))
             }
         }
+    }
+
+    fn live_settings(&self, task: &Task<'_>) -> Live {
+        let mut settings = if self.method == Method::Live { Live::default() } else { Live::published() };
+        settings.layer_steps = self.setting.steps;
+        settings.shape_count = task.objects.unwrap_or(settings.shape_count);
+        settings.segment_count = task.segments.unwrap_or(settings.segment_count);
+        settings
     }
 
     fn refine_settings(&self) -> Refine {

@@ -36,8 +36,10 @@ pub struct Task<'a> {
     /// What methods go on from that need a scene near the truth; none: [`Self::truth`], perturbed.
     pub start: Option<&'a Scene<f32>>,
     /// How many objects there are, for Rand-OptP and Opt-Iter, which cannot tell; none: as many as the truth has for the one,
-    /// 4 for the other.
+    /// 4 for the other. For LIVE the most; none: 8, or the 5 of its published settings.
     pub objects: Option<usize>,
+    /// Cubics of each path of LIVE; none: 4.
+    pub segments: Option<usize>,
     /// The true scene.
     pub truth: Option<&'a Scene<f32>>,
     /// Of what is random.
@@ -48,7 +50,7 @@ impl<'a> Task<'a> {
     /// An image alone.
     #[must_use]
     pub fn of(image: ImageView<'a, f32>) -> Self {
-        Self { image, known: None, start: None, objects: None, truth: None, seed: 0 }
+        Self { image, known: None, start: None, objects: None, segments: None, truth: None, seed: 0 }
     }
 }
 

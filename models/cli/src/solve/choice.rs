@@ -15,6 +15,10 @@ pub enum MethodChoice {
     Segment,
     /// The paper's Opt-Iter: objects one by one where the image is worst explained
     OptIter,
+    /// LIVE: closed paths of cubics, one by one where the image is worst explained
+    Live,
+    /// LIVE with its published settings: five paths of four cubics on white
+    LivePublished,
     /// The paper's OptP: Adam on pose and color from the scenes of --start
     OptP,
     /// The paper's Rand-OptP: Adam from a random scene
@@ -22,10 +26,16 @@ pub enum MethodChoice {
 }
 
 impl MethodChoice {
-    /// The choice of a name: `segment`, `opt-iter`, `opt-p` or `rand-opt-p`.
+    /// The choice of a name: `segment`, `opt-iter`, `live`, `live-published`, `opt-p` or `rand-opt-p`.
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         Self::from_str(name, false).ok()
+    }
+
+    /// Whether it is LIVE, whose objects are paths of as many cubics as one asks for.
+    #[must_use]
+    pub fn draws_paths(self) -> bool {
+        matches!(self, Self::Live | Self::LivePublished)
     }
 
     pub(super) fn method(self, start: &Start, has_bank: bool) -> Result<Method, SolveError> {
@@ -34,6 +44,8 @@ impl MethodChoice {
             (Self::Segment, Start::Picture) => Ok(Method::SegmentFree),
             (Self::Segment, Start::Network(_)) => Ok(Method::NetLm),
             (Self::OptIter, Start::Picture) => Ok(Method::OptIter),
+            (Self::Live, Start::Picture) => Ok(Method::Live),
+            (Self::LivePublished, Start::Picture) => Ok(Method::LivePublished),
             (Self::OptP, Start::Folder(_)) => Ok(Method::OptP),
             (Self::OptP, Start::Network(_)) => Ok(Method::NetOptP),
             (Self::RandOptP, Start::Picture) => Ok(Method::RandOptP),

@@ -13,7 +13,7 @@ use dvp_net::propose::Proposer;
 use super::choice::MethodChoice;
 use super::error::SolveError;
 use crate::format::{Picture, Place, read_scene};
-use crate::method::{Found, Memory, Runner, Task, Tools, seed_of};
+use crate::method::{Found, Memory, Method, Runner, Task, Tools, seed_of};
 
 /// What a fit starts from.
 #[derive(Clone, Debug)]
@@ -41,13 +41,17 @@ pub struct Solved {
 pub struct Solver {
     runner: Runner,
     start: Start,
-    object_count: usize,
+    object_count: Option<usize>,
+    segment_count: Option<usize>,
     seed: u64,
 }
 
+/// Objects of a random start, where nobody says how many there are.
+const RANDOM_OBJECTS: usize = 4;
+
 impl Solver {
-    /// A method with its options; `object_count` objects for methods that cannot tell how many there are, random starts drawn
-    /// from `seed`.
+    /// A method with its options; `object_count` objects for methods that cannot tell how many there are (none: 4; LIVE at
+    /// most 8, or the 5 of its published settings), random starts drawn from `seed`.
     ///
     /// # Errors
     /// [`SolveError::Usage`] for a method and a start that do not go together, [`SolveError::Method`] for options out of range.
@@ -55,7 +59,7 @@ impl Solver {
         choice: MethodChoice,
         options: FitOptions<f32>,
         start: Start,
-        object_count: usize,
+        object_count: impl Into<Option<usize>>,
         seed: u64,
     ) -> Result<Self, SolveError> {
         let method = choice.method(&start, options.bank.is_some())?;
@@ -64,7 +68,14 @@ impl Solver {
             _ => None,
         };
         let runner = Runner::new(method, method.default_setting(), &Tools { options, network })?;
-        Ok(Self { runner, start, object_count, seed })
+        let object_count = object_count.into().or((method == Method::RandOptP).then_some(RANDOM_OBJECTS));
+        Ok(Self { runner, start, object_count, segment_count: None, seed })
+    }
+
+    /// The same with so many cubics for each path of LIVE; none: 4.
+    #[must_use]
+    pub fn with_segments(self, segment_count: Option<usize>) -> Self {
+        Self { segment_count, ..self }
     }
 
     /// The fit of a picture, with the openings of a transparent one cut out. `stem` names it: for [`Start::Folder`] its scene is
@@ -85,7 +96,8 @@ impl Solver {
         let task = Task {
             known: Some(known),
             start: start.as_ref(),
-            objects: Some(self.object_count),
+            objects: self.object_count,
+            segments: self.segment_count,
             seed: seed_of(stem, self.seed),
             ..Task::of(picture.image.view())
         };

@@ -71,12 +71,12 @@ fn price_and_slopes<T: Real>([a, b, c, d]: [Vec2<T>; 4]) -> (T, [Vec2<T>; 4]) {
     let (first, last) = (b - a, d - c);
     let none = (T::zero(), [Vec2::default(); 4]);
     let lengths = first.length() * last.length();
-    if !(lengths > T::min_positive_value()) {
+    if lengths <= T::min_positive_value() {
         return none;
     }
     let sign = if first.cross(c - b) > T::zero() { T::one() } else { -T::one() };
     let sine = first.cross(last) / lengths;
-    if !(sign * sine < T::zero()) {
+    if sign * sine >= T::zero() {
         return none;
     }
     // d (u x v) / |u||v|: by u it is (v_y, -v_x) / |u||v| - sin u / |u|^2, by v the same turned round.

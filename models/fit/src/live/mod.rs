@@ -143,7 +143,7 @@ impl Live {
             descent.run(&mut scene, &layer)?;
             steps += layer.steps;
             let now = descent.paint(&scene, PixelLoss::Mse)?;
-            if least_gain.is_some_and(|gain| !(error - now > gain)) {
+            if least_gain.is_some_and(|gain| error - now <= gain) {
                 scene = before;
                 stop = StopReason::Converged;
                 break;

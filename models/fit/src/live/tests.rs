@@ -112,7 +112,12 @@ fn layers_explain_a_picture() {
     let image = picture();
     let fit = Live::default().fit(image.view(), EdgeProfile::area(), Compositing::Over).unwrap();
     assert_eq!((fit.scene.objects.len(), fit.stop), (2, StopReason::Converged));
-    assert!(fit.loss < 2e-3 && fit.marginal_gain.iter().all(|&gain| gain > 0.1), "{} {:?}", fit.loss, fit.marginal_gain);
+    assert!(
+        fit.loss < 2e-3 && fit.marginal_gain.iter().all(|&gain| gain > 0.1),
+        "{} {:?}",
+        fit.loss,
+        fit.marginal_gain
+    );
     // The larger one comes first.
     assert!(fit.scene.objects[0].color()[0] < 0.2, "{:?}", fit.scene.objects[0]);
     // What was painted is what the scene paints.

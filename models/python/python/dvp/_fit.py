@@ -22,7 +22,7 @@ class Options(TypedDict, total=False):
     bank: Bank | None
     method: str
     max_objects: int | None
-    objects: int
+    objects: int | None
     start: str | os.PathLike[str] | None
     model: str | os.PathLike[str] | None
     seed: int
@@ -43,11 +43,12 @@ class Fitter:
         Known shapes: ``"mdshr"`` (heart, square, ellipse), the path of a bank file, or names with rows (a, b, c, d) of
         descriptors each. None: shapes are found, too.
     ``method``
-        ``"segment"``, or the paper's ``"opt-iter"``, ``"opt-p"``, ``"rand-opt-p"``.
+        ``"segment"``, or the paper's ``"opt-iter"``, ``"opt-p"``, ``"rand-opt-p"``, or its rival ``"live"`` (``"live-published"``).
     ``max_objects``
         Most objects per picture: those stay without which most of it would be unexplained. None: 256.
     ``objects``
-        Objects per picture, for ``opt-iter`` and ``rand-opt-p``, which cannot tell.
+        Objects per picture, for ``opt-iter`` and ``rand-opt-p``, which cannot tell; for ``live`` the most. None: 4, for
+        ``live`` 8, for ``live-published`` 5.
     ``start``
         None, ``"net"`` (what a network sees) or, for ``opt-p``, a folder of STEM.json.
     ``model``
@@ -72,7 +73,7 @@ class Fitter:
         bank: Bank | None = None,
         method: str = "segment",
         max_objects: int | None = None,
-        objects: int = 4,
+        objects: int | None = None,
         start: str | os.PathLike[str] | None = None,
         model: str | os.PathLike[str] | None = None,
         seed: int = 1234,

@@ -34,6 +34,14 @@ enum Source {
     /// A network
     #[default]
     Net,
+    /// The paper's Opt-Iter with our settings; no network
+    OptIter,
+    /// The paper's Opt-Iter to the letter; no network
+    OptIterPublished,
+    /// LIVE with our settings; no network
+    Live,
+    /// LIVE with its published settings; no network
+    LivePublished,
     /// The paper's Rand-OptP: Adam from a random scene of as many disks as there are objects; no network
     RandOptP,
     /// The paper's Rand-OptZ: Adam from random latents, through the heads of the network
@@ -66,10 +74,11 @@ impl NetworkArguments {
         if source != Source::Net && self.then != Then::None {
             bail!("--then goes on from what a network sees: leave --method away");
         }
-        if source == Source::RandOptP && self.model.is_some() {
-            bail!("--method rand-opt-p uses no network: leave --model away");
-        }
         let method = match (source, self.then) {
+            (Source::OptIter, _) => Method::OptIter,
+            (Source::OptIterPublished, _) => Method::OptIterPublished,
+            (Source::Live, _) => Method::Live,
+            (Source::LivePublished, _) => Method::LivePublished,
             (Source::RandOptP, _) => Method::RandOptP,
             (Source::RandOptZ, _) => Method::RandOptZ,
             (Source::Net, Then::None) => Method::Net,
@@ -77,6 +86,9 @@ impl NetworkArguments {
             (Source::Net, Then::OptZ) => Method::OptZ,
             (Source::Net, Then::Refine) => Method::NetLm,
         };
+        if !method.needs_network() && self.model.is_some() {
+            bail!("--method {} uses no network: leave --model away", method.name());
+        }
         let network = method.needs_network().then(|| load_network(self.model.as_deref())).transpose()?;
         let tools = Tools { network: network.map(Arc::new), ..Tools::default() };
         Ok(Runner::new(method, method.default_setting(), &tools)?)

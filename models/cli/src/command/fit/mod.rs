@@ -50,7 +50,7 @@ pub struct Arguments {
     /// One label map goes with one picture. Of several, each goes with the picture whose name its own begins with:
     /// cell1_mask.tif with cell1.png, and cell10_mask.tif with cell10.png.
     #[arg(long, value_name = "LABELS")]
-    #[arg(conflicts_with_all = ["bank", "method", "max_objects", "objects", "start", "model", "seed", "compositing"])]
+    #[arg(conflicts_with_all = ["bank", "method", "max_objects", "objects", "segments", "start", "model", "seed", "compositing"])]
     masks: Option<PathBuf>,
     /// Folder to write to
     #[arg(long, short, value_name = "DIR")]
@@ -64,9 +64,12 @@ pub struct Arguments {
     /// Most objects per picture: those stay without which most of it would be unexplained
     #[arg(long, value_name = "N")]
     max_objects: Option<usize>,
-    /// Objects per picture, for opt-iter and rand-opt-p, which cannot tell
-    #[arg(long, default_value_t = 4, value_name = "N")]
-    objects: usize,
+    /// Objects per picture, for opt-iter and rand-opt-p, which cannot tell; for live the most [default: 4, live 8, live-published 5]
+    #[arg(long, value_name = "N")]
+    objects: Option<usize>,
+    /// Cubics of each path, for live [default: 4]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(2..))]
+    segments: Option<u16>,
     /// What fits start from: segment, net (what a network sees, with its shapes), or for opt-p a folder of STEM.json
     #[arg(long, default_value = "segment", value_name = "START")]
     start: StartChoice,
@@ -108,7 +111,11 @@ impl Arguments {
             }
             StartChoice::Net => Start::Network(Arc::new(load_network(self.model.as_deref())?)),
         };
-        Ok(Solver::new(self.method, options, start, self.objects, self.seed)?)
+        if self.segments.is_some() && !self.method.draws_paths() {
+            bail!("--segments goes with --method live and live-published only");
+        }
+        let solver = Solver::new(self.method, options, start, self.objects, self.seed)?;
+        Ok(solver.with_segments(self.segments.map(usize::from)))
     }
 
     /// What the names of the files of a picture end with.

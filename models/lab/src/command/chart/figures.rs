@@ -137,6 +137,8 @@ fn color(method: Method) -> usize {
         Method::OptP => 4,
         Method::OptIter => 5,
         Method::OptIterPublished => 8,
+        Method::Live => 12,
+        Method::LivePublished => 13,
         Method::RandOptP => 9,
         Method::RandOptZ => 10,
         Method::Net => 7,

@@ -19,7 +19,7 @@ const HARMONICS: &[usize] = &[2, 4, 8, 16, 31];
 const ADAM: &[usize] = &[10, 30, 100, 300];
 const NONE: &[usize] = &[];
 
-const SWEEPS: [Sweep; 13] = {
+const SWEEPS: [Sweep; 15] = {
     use Method as M;
     [
         sweep(M::SegmentBank, [JOINT, JOINT, &[0, 1, 3, 10, 20], &[10]]),
@@ -29,6 +29,8 @@ const SWEEPS: [Sweep; 13] = {
         sweep(M::OptP, [ADAM, ADAM, &[10, 100, 300], &[100]]),
         sweep(M::OptIter, [&[100, 250, 500], &[500], &[500], NONE]),
         sweep(M::OptIterPublished, [&[500], NONE, &[500], NONE]),
+        sweep(M::Live, [&[20, 60, 200], &[60], &[60], NONE]),
+        sweep(M::LivePublished, [&[500], NONE, &[500], NONE]),
         sweep(M::RandOptP, [&[100, 500], &[500], &[500], NONE]),
         sweep(M::RandOptZ, [&[100], NONE, &[100], NONE]),
         sweep(M::Net, [&[0], NONE, &[0], NONE]),

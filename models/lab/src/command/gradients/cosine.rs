@@ -104,7 +104,9 @@ impl Cosines {
             let [image, scene] = [0, 1].map(|k| aspect.of(&self.grads[k]));
             match std::env::var("MEAN").as_deref() {
                 Ok("slots") => mean(image.iter().zip(&scene).map(|(a, b)| cosine(a, b))),
-                Ok("rows") if aspect == Aspect::Shape => mean(image.iter().zip(&scene).flat_map(|(a, b)| a.chunks(4).zip(b.chunks(4))).map(|(a, b)| cosine(a, b))),
+                Ok("rows") if aspect == Aspect::Shape => mean(
+                    image.iter().zip(&scene).flat_map(|(a, b)| a.chunks(4).zip(b.chunks(4))).map(|(a, b)| cosine(a, b)),
+                ),
                 Ok("rows") => mean(image.iter().zip(&scene).map(|(a, b)| cosine(a, b))),
                 _ => cosine(&image.concat(), &scene.concat()),
             }

@@ -28,11 +28,16 @@ pub(super) fn descend(truth: &Scene<f32>, moved: &Scene<f32>, size: ImageSize) -
         Ok(squares.sum::<f64>() / painted.data().len() as f64)
     };
     let mut scene = moved.clone();
-    let free = if std::env::var("FREE").as_deref() == Ok("pose") { Free::PoseAndColor } else { Free::PoseColorAndShape };
+    let free =
+        if std::env::var("FREE").as_deref() == Ok("pose") { Free::PoseAndColor } else { Free::PoseColorAndShape };
     let learning_rate = std::env::var("LR").map_or(LEARNING_RATE, |v| v.parse().unwrap());
     let loss = if std::env::var("LOSS").as_deref() == Ok("mae") { PixelLoss::Mae } else { PixelLoss::Mse };
-    if std::env::var("CONF").is_ok() { scene.objects.iter_mut().zip(&truth.objects).for_each(|(a, b)| a.confidence = b.confidence); }
-    if std::env::var("TRUESHAPE").is_ok() { scene.objects.iter_mut().zip(&truth.objects).for_each(|(a, b)| a.shape = b.shape.clone()); }
+    if std::env::var("CONF").is_ok() {
+        scene.objects.iter_mut().zip(&truth.objects).for_each(|(a, b)| a.confidence = b.confidence);
+    }
+    if std::env::var("TRUESHAPE").is_ok() {
+        scene.objects.iter_mut().zip(&truth.objects).for_each(|(a, b)| a.shape = b.shape.clone());
+    }
     let before = error(&mut descent, &scene)?;
     let stage = Stage { steps: STEPS, learning_rate, free, loss, contour_length: 0.0 };
     descent.run(image.view(), &mut scene, &stage)?;
