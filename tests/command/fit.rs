@@ -116,7 +116,7 @@ fn live_draws_closed_paths_of_as_many_cubics_as_asked_for() {
         let said: Value =
             serde_json::from_str(&dvp_done(arguments.into_iter().chain(options.iter().copied()))).unwrap();
         let written: Value = serde_json::from_slice(&fs::read(out.join("00000.json")).unwrap()).unwrap();
-        (said["images"][0]["loss"].as_f64().unwrap(), written)
+        (said["images"][0]["mae"].as_f64().unwrap(), written)
     };
     let (loss, scene) = fit("live", &["--segments", "6"]);
     assert!(loss < 0.02, "{loss}");

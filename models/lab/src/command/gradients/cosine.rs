@@ -8,6 +8,8 @@ use dvp_core::scene::{DrawingGrad, ObjectGrad, SceneGrad};
 use dvp_core::shape::{OutlineBasis, REFERENCE_VERTICES};
 use dvp_core::{Drawing, Image, ImageSize, Scene};
 
+use super::Setting;
+
 /// Harmonics of the scenes of MDS-HR.
 pub(super) const HARMONICS: usize = 64;
 
@@ -37,7 +39,7 @@ impl Aspect {
         }
     }
 
-    /// The numbers of a gradient that are about it, slot by slot.
+    /// The numbers of a gradient that are about it, slot by slot; those of the background as of one slot.
     fn of(self, grad: &SceneGrad<f32>) -> Vec<Vec<f64>> {
         let of_slot = |object: &ObjectGrad<f32>| match self {
             Self::Translation => object.translation.to_vec(),
@@ -85,8 +87,9 @@ impl Cosines {
         place.as_mut().ok_or_else(|| anyhow::anyhow!("just made"))
     }
 
-    /// Cosines at `moved` by aspect; 0 where a gradient is 0.
-    pub(super) fn of(&mut self, truth: &Scene<f32>, moved: &Scene<f32>) -> Result<[f64; 6]> {
+    /// Cosines at `moved` by aspect; 0 where a gradient is 0. Ours are of all slots' numbers as one vector, the published ones means
+    /// over the slots.
+    pub(super) fn of(&mut self, truth: &Scene<f32>, moved: &Scene<f32>, setting: Setting) -> Result<[f64; 6]> {
         let renderer = ContourRenderer::new(truth.edge, truth.compositing);
         let mut scratch = Default::default();
         let mut image = Image::zeros(self.size);
@@ -102,21 +105,17 @@ impl Cosines {
         self.scene_loss.vjp(pairs, 1.0, &mut self.match_scratch, &mut self.grads[1..])?;
         Ok(Aspect::ALL.map(|aspect| {
             let [image, scene] = [0, 1].map(|k| aspect.of(&self.grads[k]));
-            match std::env::var("MEAN").as_deref() {
-                Ok("slots") => mean(image.iter().zip(&scene).map(|(a, b)| cosine(a, b))),
-                Ok("rows") if aspect == Aspect::Shape => mean(
-                    image.iter().zip(&scene).flat_map(|(a, b)| a.chunks(4).zip(b.chunks(4))).map(|(a, b)| cosine(a, b)),
-                ),
-                Ok("rows") => mean(image.iter().zip(&scene).map(|(a, b)| cosine(a, b))),
-                _ => cosine(&image.concat(), &scene.concat()),
+            match setting {
+                Setting::Ours => cosine(&image.concat(), &scene.concat()),
+                Setting::Published => mean_cosine(&image, &scene),
             }
         }))
     }
 }
 
-fn mean(values: impl Iterator<Item = f64>) -> f64 {
-    let values: Vec<f64> = values.collect();
-    values.iter().sum::<f64>() / values.len().max(1) as f64
+/// The mean over the slots; in those without an object both gradients, or one of them, are 0.
+fn mean_cosine(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| cosine(a, b)).sum::<f64>() / a.len().max(1) as f64
 }
 
 fn cosine(a: &[f64], b: &[f64]) -> f64 {
@@ -134,6 +133,10 @@ mod tests {
     fn cosines_by_hand() {
         assert!((cosine(&[3.0, 0.0], &[1.0, 1.0]) - 0.5_f64.sqrt()).abs() < 1e-12);
         assert!(cosine(&[0.0, 0.0], &[1.0, 1.0]).abs() < 1e-12);
+        // One slot agrees, one is turned by an eighth, one has no object.
+        let [a, b] = [[1.0, 0.0], [2.0, 0.0]].map(|first| vec![first.to_vec(), vec![3.0, 0.0], vec![0.0, 0.0]]);
+        let b = vec![b[0].clone(), vec![1.0, 1.0], b[2].clone()];
+        assert!((mean_cosine(&a, &b) - (1.0 + 0.5_f64.sqrt()) / 3.0).abs() < 1e-12);
     }
 
     #[test]
@@ -144,7 +147,9 @@ mod tests {
         wrong.background[0] += 0.05;
         let mut place = None;
         let cosines = Cosines::in_place(&mut place, PixelLoss::Mse, size).unwrap();
-        let found = cosines.of(&pair.truth, &wrong).unwrap();
-        assert!((found[5] - 1.0).abs() < 1e-6, "both losses pull at the background's red alone: {found:?}");
+        for setting in [Setting::Ours, Setting::Published] {
+            let found = cosines.of(&pair.truth, &wrong, setting).unwrap();
+            assert!((found[5] - 1.0).abs() < 1e-6, "both losses pull at the background's red alone: {found:?}");
+        }
     }
 }

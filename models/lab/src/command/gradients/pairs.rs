@@ -7,6 +7,8 @@ use dvp_core::{AnyShape, ImageSize, Object, Scene};
 use dvp_cli::format::mdshr_bank;
 use dvp_cli::generate::{SceneSettings, sample_scene};
 
+use super::Setting;
+
 /// A scene and another one, slot by slot.
 pub(super) struct Pair {
     /// The scene that is looked for.
@@ -24,8 +26,9 @@ pub(super) fn pairs(count: usize, size: ImageSize, seed: u64) -> Vec<Pair> {
 }
 
 impl Pair {
-    /// The scene a share `alpha` of the way to the other one: every number mixed, rotations as (sin, cos) pairs.
-    pub(super) fn moved(&self, alpha: f64) -> Scene<f32> {
+    /// The scene a share `alpha` of the way to the other one: every number mixed, rotations as (sin, cos) pairs. In the published
+    /// setting confidences are rounded, 1/2 to 0.
+    pub(super) fn moved(&self, alpha: f64, setting: Setting) -> Scene<f32> {
         #[expect(clippy::cast_possible_truncation, reason = "a share, rounded")]
         let alpha = alpha as f32;
         let mix = |a: f32, b: f32| (1.0 - alpha) * a + alpha * b;
@@ -37,7 +40,11 @@ impl Pair {
             let pair = [mix(from.rotation.sin(), to.rotation.sin()), mix(from.rotation.cos(), to.rotation.cos())];
             object.pose.rotation = rotation_from_pair(pair);
             object.paint = [0, 1, 2].map(|k| mix(a.color()[k], b.color()[k])).into();
-            object.confidence = mix(a.confidence, b.confidence);
+            object.confidence = match (setting, mix(a.confidence, b.confidence)) {
+                (Setting::Ours, mixed) => mixed,
+                (Setting::Published, mixed) if mixed > 0.5 => 1.0,
+                (Setting::Published, _) => 0.0,
+            };
             let rows = a.efd_rows().iter().zip(b.efd_rows());
             let mixed = Efd::new(rows.map(|(a, b)| [0, 1, 2, 3].map(|k| mix(a[k], b[k]))).collect());
             object.shape = AnyShape::of_efd(mixed, a.prototype());

@@ -8,14 +8,16 @@ use dvp_core::{Drawing, Image, ImageSize, Scene};
 use dvp_fit::adam::descent::{Descent, Stage};
 use dvp_fit::parameters::Free;
 
+use super::Setting;
 use super::cosine::HARMONICS;
 
 /// Steps and learning rate of the paper's optimizers.
 const STEPS: usize = 100;
 const LEARNING_RATE: f64 = 0.01;
 
-/// Mean squared error of the image of `moved` against that of `truth`, before and after Adam on all but confidences.
-pub(super) fn descend(truth: &Scene<f32>, moved: &Scene<f32>, size: ImageSize) -> Result<[f64; 2]> {
+/// Mean squared error of the image of `moved` against that of `truth`, before and after Adam on all but confidences; in the
+/// published setting with the true shapes, on pose and color.
+pub(super) fn descend(truth: &Scene<f32>, moved: &Scene<f32>, size: ImageSize, setting: Setting) -> Result<[f64; 2]> {
     let renderer = ContourRenderer::new(truth.edge, truth.compositing);
     let mut descent = Descent::new(&renderer, REFERENCE_VERTICES, HARMONICS)?;
     let [mut image, mut painted] = [Image::zeros(size), Image::zeros(size)];
@@ -28,18 +30,16 @@ pub(super) fn descend(truth: &Scene<f32>, moved: &Scene<f32>, size: ImageSize) -
         Ok(squares.sum::<f64>() / painted.data().len() as f64)
     };
     let mut scene = moved.clone();
-    let free =
-        if std::env::var("FREE").as_deref() == Ok("pose") { Free::PoseAndColor } else { Free::PoseColorAndShape };
-    let learning_rate = std::env::var("LR").map_or(LEARNING_RATE, |v| v.parse().unwrap());
-    let loss = if std::env::var("LOSS").as_deref() == Ok("mae") { PixelLoss::Mae } else { PixelLoss::Mse };
-    if std::env::var("CONF").is_ok() {
-        scene.objects.iter_mut().zip(&truth.objects).for_each(|(a, b)| a.confidence = b.confidence);
-    }
-    if std::env::var("TRUESHAPE").is_ok() {
-        scene.objects.iter_mut().zip(&truth.objects).for_each(|(a, b)| a.shape = b.shape.clone());
-    }
+    let free = match setting {
+        Setting::Ours => Free::PoseColorAndShape,
+        Setting::Published => {
+            let shapes = scene.objects.iter_mut().zip(&truth.objects);
+            shapes.for_each(|(object, truth)| object.shape = truth.shape.clone());
+            Free::PoseAndColor
+        }
+    };
     let before = error(&mut descent, &scene)?;
-    let stage = Stage { steps: STEPS, learning_rate, free, loss, contour_length: 0.0 };
+    let stage = Stage { steps: STEPS, learning_rate: LEARNING_RATE, free, loss: PixelLoss::Mse, contour_length: 0.0 };
     descent.run(image.view(), &mut scene, &stage)?;
     Ok([before, error(&mut descent, &scene)?])
 }
