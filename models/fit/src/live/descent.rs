@@ -84,7 +84,7 @@ impl<'a, T: Real> PathDescent<'a, T> {
     /// A descent toward `image`, painted with these edges and this mixing.
     ///
     /// # Errors
-    /// None today: what there is to refuse is refused when a scene is painted.
+    /// As [`OutlineBasis::new`]; numbers out of range are refused when a scene is painted.
     pub fn new(image: ImageView<'a, T>, edge: EdgeProfile<T>, compositing: Compositing) -> Result<Self, DescentError> {
         let moved = || Moved { adam: Adam::new(AdamSettings::default(), 0), ..Moved::default() };
         Ok(Self {
