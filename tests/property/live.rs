@@ -3,7 +3,7 @@
 use dvp_core::geometry::Px;
 use dvp_core::render::{Compositing, EdgeProfile};
 use dvp_core::shape::{Path, PathRing, Segment};
-use dvp_core::{Image, ImageSize, Object, Paint, Pose, Scene, SceneGrad};
+use dvp_core::{Image, ImageSize, Object, Paint, Pose, Real as _, Scene, SceneGrad};
 use dvp_fit::live::crossing::crossing_and_grad;
 use dvp_fit::live::{Live, PathStart};
 use proptest::prelude::*;
@@ -23,7 +23,7 @@ fn picture() -> impl Strategy<Value = Image<f32>> {
     (1_usize..24, 1_usize..24, color(), patches, loose).prop_map(|(width, height, ground, patches, loose)| {
         let size = ImageSize::new(width, height).unwrap();
         let mut pixels = vec![ground; size.pixels()];
-        let at = |share: f32, count: usize| (share * count as f32) as usize;
+        let at = |share: f32, count: usize| (share * f32::of_usize(count)).to_count();
         for ([left, top, wide, high], color) in patches {
             for y in at(top, height)..(at(top, height) + 1 + at(high, height)).min(height) {
                 for x in at(left, width)..(at(left, width) + 1 + at(wide, width)).min(width) {
