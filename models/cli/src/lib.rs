@@ -13,6 +13,7 @@
 //! | [`method`] | the methods that find scenes, by name |
 //! | [`solve`] | pictures to scenes: what `dvp fit` does with each |
 //! | [`score`] | scenes against what was drawn: what `dvp evaluate` does with each |
+//! | [`suite`] | the benchmarks of the field: published files to data sets |
 //! | [`statistics`] | means and quantiles |
 //! | [`command`] | the sub-commands: arguments, threads, tables |
 //!
@@ -42,4 +43,5 @@ pub mod paint;
 pub mod score;
 pub mod solve;
 pub mod statistics;
+pub mod suite;
 pub mod svg;

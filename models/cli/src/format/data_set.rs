@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use dvp_core::Real;
 use dvp_fit::Bank;
 
-use super::labels::{is_label_map, labels_beside};
+use super::labels::{is_truth, labels_beside};
 use super::{FormatError, MAX_TEXT, Place, SceneJson, mdshr_bank, read_bank};
 
 /// The file of a data set that holds its scenes, one per line.
@@ -68,7 +68,7 @@ pub fn bank_near<T: Real>(folder: &Path) -> Result<Bank<T>, FormatError> {
     places.find(|path| path.is_file()).map_or_else(|| Ok(mdshr_bank()), |path| read_bank(&path))
 }
 
-/// The pictures of a folder, by name; neither label maps nor what lies in sub-folders.
+/// The pictures of a folder, by name; neither label maps, images of whole objects nor what lies in sub-folders.
 ///
 /// # Errors
 /// [`FormatError::Read`] if the folder cannot be listed.
@@ -79,7 +79,7 @@ pub fn pictures_of(folder: &Path) -> Result<Vec<PathBuf>, FormatError> {
         let path = entry.map_err(refused)?.path();
         let ending = path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
         if ending.is_some_and(|ending| PICTURE_ENDINGS.contains(&ending.as_str()))
-            && !is_label_map(&path)
+            && !is_truth(&path)
             && !path.is_dir()
         {
             pictures.push(path);

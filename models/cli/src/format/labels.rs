@@ -23,6 +23,8 @@ use super::picture::{Decoded, decode};
 
 /// What the names of label maps end with.
 const ENDING: &str = "labels.png";
+/// What the names of images of whole objects end with.
+pub(crate) const WHOLE_ENDING: &str = "whole.png";
 
 /// The label map of a picture, if there is one.
 #[must_use]
@@ -31,9 +33,10 @@ pub fn labels_beside(picture: &Path) -> Option<PathBuf> {
     path.is_file().then_some(path)
 }
 
-/// Whether a path names a label map, not a picture.
-pub(super) fn is_label_map(path: &Path) -> bool {
-    path.file_name().and_then(|name| name.to_str()).is_some_and(|name| name.ends_with(&format!(".{ENDING}")))
+/// Whether a path names what is in a picture, not a picture: a label map, or its objects whole.
+pub(super) fn is_truth(path: &Path) -> bool {
+    let is_one = |name: &str| [ENDING, WHOLE_ENDING].iter().any(|ending| name.ends_with(&format!(".{ending}")));
+    path.file_name().and_then(|name| name.to_str()).is_some_and(is_one)
 }
 
 /// Reads a label map of at most `max_pixels` pixels: one label per pixel, row by row, 0 for the background. Colors other than black

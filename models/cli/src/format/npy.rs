@@ -17,6 +17,48 @@ const MAX_HEADER: u32 = 1 << 16;
 /// Bytes before the header in version 1.
 const PREAMBLE: usize = 10;
 
+/// An array of bytes as NumPy writes it, in C order: what data sets are kept in (`.npz`).
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct ByteArray {
+    /// Extents, the slowest first.
+    pub(crate) shape: Vec<usize>,
+    /// The numbers, the last extent fastest.
+    pub(crate) values: Vec<u8>,
+}
+
+impl ByteArray {
+    /// Reads an array of unsigned bytes or truth values (`|u1`, `|b1`) of at most `most` numbers.
+    ///
+    /// # Errors
+    /// What is wrong with the file, in words.
+    pub(crate) fn read(reader: &mut impl Read, most: usize) -> Result<Self, String> {
+        let header = read_header(reader).map_err(|error| format!("cannot be read: {error}"))?;
+        let header = header.ok_or("is no NumPy array")?;
+        let [descr, order, shape] = ["descr", "fortran_order", "shape"].map(|key| field(&header, key));
+        if !matches!(descr.trim_matches(['\'', '"']), "|u1" | "|b1") {
+            return Err(format!("holds numbers of type {descr}, must be bytes (|u1): convert it with .astype('uint8')"));
+        }
+        if order != "False" {
+            return Err("is stored column by column, must be in C order: save numpy.ascontiguousarray of it".to_owned());
+        }
+        let shape = extents(shape).ok_or_else(|| format!("has the shape ({shape}), which is none"))?;
+        let count = shape.iter().try_fold(1_usize, |product, &extent| product.checked_mul(extent));
+        let count = count.filter(|&count| count <= most);
+        let count = count.ok_or_else(|| format!("has more than {most} numbers; keep fewer pictures in a file"))?;
+        let mut values = Vec::new();
+        reader.take(count as u64).read_to_end(&mut values).map_err(|error| format!("cannot be read: {error}"))?;
+        if values.len() < count {
+            return Err(format!("ends after {} of {count} numbers; it is truncated", values.len()));
+        }
+        Ok(Self { shape, values })
+    }
+}
+
+/// The extents of a Python tuple without its parentheses.
+fn extents(tuple: &str) -> Option<Vec<usize>> {
+    tuple.split(',').map(str::trim).filter(|n| !n.is_empty()).map(|n| n.parse().ok()).collect()
+}
+
 /// Reads the images of a NumPy file of f32, f64 (as they are) or u8 (over 255), little-endian, in C order.
 ///
 /// # Errors
@@ -40,9 +82,7 @@ pub fn read_npy<T: Real>(path: &Path, max_pixels: usize) -> Result<Vec<Image<T>>
         "|u1" => (1, |b| f64::from(b[0]) / 255.0),
         other => return Err(wrong("descr", format!("is {other}, must be <f4, <f8 or |u1"))),
     };
-    let extents: Option<Vec<usize>> =
-        shape.split(',').map(str::trim).filter(|n| !n.is_empty()).map(|n| n.parse().ok()).collect();
-    let (count, height, width) = match extents.as_deref() {
+    let (count, height, width) = match extents(shape).as_deref() {
         Some(&[height, width, CHANNELS]) if order == "False" => (1, height, width),
         Some(&[count, height, width, CHANNELS]) if order == "False" => (count, height, width),
         _ => {

@@ -1,4 +1,4 @@
-//! Scenes against what was drawn, in the paper's columns.
+//! Scenes against what was drawn, in the columns of the paper and of the field's benchmarks.
 //!
 //! In: a picture, the scene that was found in it and, where known, the scene or the label map that it was drawn from. Out: a
 //! [`Score`], and of many pictures their [`Totals`]. Measures as core implements them.
@@ -7,14 +7,28 @@
 //! |---|---|
 //! | `mod.rs` | [`score`]: one picture |
 //! | `totals.rs` | [`Totals`]: means of many |
+//! | `objects.rs`, `object_totals.rs` | [`score_objects`]: objects against objects, and over many pictures |
+//! | `classes.rs` | [`Confusion`]: true and found classes |
+//! | `components.rs` | [`connected_components`]: what the simplest program finds |
 //!
 //! Proved by `tests/command`, which runs `dvp evaluate`.
 
+mod classes;
+mod components;
+mod object_totals;
+mod objects;
+#[cfg(test)]
+mod tests;
 mod totals;
 
+pub use classes::Confusion;
+pub use components::connected_components;
+pub use object_totals::ObjectTotals;
+pub use objects::{ObjectScore, Parts, Share, score_objects};
 pub use totals::{Failure, Row, Totals};
 
 use dvp_core::loss::{ImagePair, Loss, LossError, Ssim, SsimScratch};
+use dvp_core::matching::MatchingError;
 use dvp_core::metric::{MaskOverlap, MetricError, Ownership, OwnershipRule, RandIndexScratch, adjusted_rand_index};
 use dvp_core::render::{Compositing, ContourRenderer, PixelLoss, Renderer};
 use dvp_core::{ImageSize, ImageView, Scene};
@@ -34,6 +48,9 @@ pub enum ScoreError {
     /// The pixels of objects could not be told or compared.
     #[error(transparent)]
     Metric(#[from] MetricError),
+    /// Objects could not be matched.
+    #[error(transparent)]
+    Matching(#[from] MatchingError),
 }
 
 /// The scores of one image.

@@ -7,6 +7,7 @@
 //! | file | holds |
 //! |---|---|
 //! | `mod` | [`fit_picture`]: the decision between the two fits |
+//! | `bank` | pictures whose shapes are known |
 //! | `ground` | [`Ground`]: the color that transparent pictures are put over |
 //! | `most` | fewer objects than a drawing has |
 //! | `openings` | [`cut_openings`]: what shows nothing in a transparent picture |
@@ -14,6 +15,7 @@
 //! *Units*: scene units, the shorter side of the picture is 1. Works in f32, as images come. Proved by the tests beside it, and by
 //! those of the command, which calls it.
 
+mod bank;
 mod ground;
 mod most;
 mod openings;
@@ -25,9 +27,10 @@ use alloc::vec::Vec;
 use dvp_core::loss::{ImagePair, Loss as _};
 use dvp_core::render::{EdgeLaw, PixelLoss};
 use dvp_core::{ImageView, Real as _};
-use dvp_trace::{PoseDeviation, tuning};
+use dvp_trace::{PoseDeviation, Traced, tuning};
 
 use crate::paint::Canvas;
+use crate::prototypes::Decoder;
 use crate::{Ambiguity, Fit, FitError, FitOptions, FitScratch, Fitter, StopReason};
 
 pub use dvp_trace::Known;
@@ -48,6 +51,8 @@ pub struct PictureScratch {
     pub fit: FitScratch<f32>,
     /// What scenes are painted on, to be compared with the picture.
     pub canvas: Canvas<f32>,
+    /// The shapes that were looked for last, made ready.
+    decoder: Option<Decoder<f32>>,
 }
 
 /// The scene of a picture, with the openings of a transparent one cut out.
@@ -105,9 +110,25 @@ fn drawing_or_segments(
     scratch: &mut PictureScratch,
 ) -> Result<Fit<f32>, FitError> {
     let options = fitter.options();
-    let is_known = options.bank.is_some() || options.compositing.is_some();
-    let traced = if is_known { None } else { dvp_trace::trace(&image, known).ok() };
-    let Some(traced) = traced else { return fitter.fit(image, &mut scratch.fit) };
+    if options.compositing.is_some() {
+        return fitter.fit(image, &mut scratch.fit);
+    }
+    if let Some(bank) = &options.bank {
+        return bank::fit(fitter, bank, image, known, scratch);
+    }
+    match dvp_trace::trace(&image, known) {
+        Ok(traced) => drawing(fitter, traced, image, scratch),
+        Err(_) => fitter.fit(image, &mut scratch.fit),
+    }
+}
+
+/// The fit of a drawing, or of segments where edges leave a doubt and those are nearer.
+fn drawing(
+    fitter: &Fitter<f32>,
+    traced: Traced,
+    image: ImageView<'_, f32>,
+    scratch: &mut PictureScratch,
+) -> Result<Fit<f32>, FitError> {
     let (painted, drawing) = scratch.canvas.paint(&traced.scene, image.size())?;
     let loss = PixelLoss::Mae.value(ImagePair::new(painted.view(), image)?, &mut ())?;
     let fit = Fit::of_painted(traced.scene, &drawing, &image, painted.data());

@@ -30,6 +30,15 @@ pub struct Form {
     spectrum: Vec<[f64; 2]>,
 }
 
+/// What may be done to a form before it is compared with another one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Freedom {
+    /// It may be turned.
+    pub turn: bool,
+    /// It may be mirrored.
+    pub mirror: bool,
+}
+
 /// How one form is laid on another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Alignment {
@@ -104,11 +113,18 @@ impl Form {
     /// Newton's method.
     #[must_use]
     pub fn align(&self, other: &Self, mirror: bool) -> Alignment {
-        let plain = self.align_one(other, false);
+        self.align_by(other, Freedom { turn: true, mirror })
+    }
+
+    /// As [`Self::align`], with less freedom: without turns, the minimum is over starting points alone, and the best phase is where
+    /// the real part of G is largest.
+    #[must_use]
+    pub fn align_by(&self, other: &Self, Freedom { turn, mirror }: Freedom) -> Alignment {
+        let plain = self.align_one(other, turn, false);
         if !mirror {
             return plain;
         }
-        let reflected = self.align_one(&other.mirrored(), true);
+        let reflected = self.align_one(&other.mirrored(), turn, true);
         if reflected.distance < plain.distance { reflected } else { plain }
     }
 
@@ -118,10 +134,12 @@ impl Form {
         self.align(other, mirror).distance
     }
 
-    fn align_one(&self, other: &Self, mirrored: bool) -> Alignment {
+    fn align_one(&self, other: &Self, turn: bool, mirrored: bool) -> Alignment {
         let products: Vec<[f64; 2]> =
             self.spectrum.iter().zip(&other.spectrum).map(|(&a, &b)| times([a[0], -a[1]], b)).collect();
-        let on_grid: Vec<f64> = (0..SHIFTS).map(|i| square(correlation(&products, grid_phase(i))[0])).collect();
+        // Without turns, G is only worth what of it points along the real axis.
+        let worth = |g: [f64; 2]| if turn { square(g) } else { Float::abs(g[0]) * g[0] };
+        let on_grid: Vec<f64> = (0..SHIFTS).map(|i| worth(correlation(&products, grid_phase(i))[0])).collect();
         let best = on_grid.iter().copied().fold(0.0, f64::max);
         let mut found = Alignment { distance: f64::INFINITY, phase: 0.0, rotation: 0.0, mirrored };
         for i in 0..SHIFTS {
@@ -129,9 +147,9 @@ impl Form {
             if on_grid[i] < WORTH_REFINING * best || on_grid[i] < before || on_grid[i] < after {
                 continue;
             }
-            let phase = climb(&products, grid_phase(i));
+            let phase = climb(&products, grid_phase(i), turn);
             let [re, im] = correlation(&products, phase)[0];
-            let rotation = -Float::atan2(im, re);
+            let rotation = if turn { -Float::atan2(im, re) } else { 0.0 };
             let laid = other.laid(phase, rotation);
             let squared: f64 = self.spectrum.iter().zip(&laid).map(|(a, b)| square([a[0] - b[0], a[1] - b[1]])).sum();
             let distance = Float::sqrt(squared);
@@ -182,7 +200,7 @@ impl Form {
         if disk {
             form.spectrum.iter_mut().skip(1).for_each(|value| *value = [0.0; 2]);
         }
-        let reflection = form.align_one(&form.mirrored(), true);
+        let reflection = form.align_one(&form.mirrored(), true, true);
         let own_mirror = reflection.distance < tolerance;
         if own_mirror {
             let image = form.aligned(&reflection);
@@ -253,13 +271,14 @@ fn correlation(products: &[[f64; 2]], phase: f64) -> [[f64; 2]; 3] {
     sums
 }
 
-/// The phase near `phase` where |G|^2 is largest.
-fn climb(products: &[[f64; 2]], mut phase: f64) -> f64 {
+/// The phase near `phase` where |G|^2 is largest, or, without turns, the real part of G.
+fn climb(products: &[[f64; 2]], mut phase: f64, turn: bool) -> f64 {
     let step_limit = TAU / f64::of_usize(SHIFTS);
     for _ in 0..NEWTON_STEPS {
         let [g, first, second] = correlation(products, phase);
         let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
-        let (slope, bend) = (dot(g, first), square(first) + dot(g, second));
+        let (slope, bend) =
+            if turn { (dot(g, first), square(first) + dot(g, second)) } else { (first[0], second[0]) };
         // Not a summit (a disk: |G| is constant): stay.
         if bend >= 0.0 {
             break;

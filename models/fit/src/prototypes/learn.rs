@@ -8,7 +8,7 @@ use alloc::vec::Vec;
 use dvp_core::{Efd, Real};
 use num_traits::Float;
 
-use super::form::Form;
+use super::form::{Form, Freedom};
 use super::medoids::{DistanceMatrix, Partition, Silhouette, k_medoids, silhouette};
 use super::member::Member;
 use crate::Bank;
@@ -18,9 +18,6 @@ const MAX_MEMBERS: usize = 384;
 /// A split into clusters must have at least this mean silhouette; below, there is one shape. "A reasonable structure has
 /// been found" in the words of Kaufman and Rousseeuw, 1990.
 const LEAST_SILHOUETTE: f64 = 0.5;
-/// How far a free outline may be off (root mean square, px): soft edges hide notches, small objects are cut to few
-/// harmonics.
-const OUTLINE_NOISE_PX: f64 = 0.7;
 /// Outlines closer than this (root mean square, radii) are not told apart, however large.
 const SAME_SHAPE: f64 = 0.02;
 /// Typical distances larger than this are those of different shapes, not of one.
@@ -49,11 +46,19 @@ pub struct PrototypeOptions {
     /// Whether mirror images are one shape. The bank then holds both hands of a shape that is not its own mirror image
     /// if both were seen: poses do not mirror.
     pub mirror: bool,
+    /// Whether objects stand as they are: turned shapes are other shapes then, and the bank holds each as it stands.
+    pub upright: bool,
 }
 
 impl Default for PrototypeOptions {
     fn default() -> Self {
-        Self { max_shapes: 8, min_members: 3, mirror: false }
+        Self { max_shapes: 24, min_members: 3, mirror: false, upright: false }
+    }
+}
+
+impl PrototypeOptions {
+    fn freedom(&self) -> Freedom {
+        Freedom { turn: !self.upright, mirror: self.mirror }
     }
 }
 
@@ -75,6 +80,8 @@ pub struct Prototype {
     pub own_mirror: bool,
     /// How many of its members are mirrored.
     pub mirrored: usize,
+    /// Whether it stands as its members do.
+    pub upright: bool,
 }
 
 /// What was learned.
@@ -152,11 +159,13 @@ pub fn learn(members: &[Member], options: &PrototypeOptions) -> Result<Learned, 
     used.sort_by(|&a, &b| members[b].radius_px.total_cmp(&members[a].radius_px));
     used.truncate(MAX_MEMBERS);
     used.sort_unstable();
-    let distance = |i: usize, j: usize| members[i].form.distance(&members[j].form, options.mirror);
+    let freedom = options.freedom();
+    let distance = |i: usize, j: usize| members[i].form.align_by(&members[j].form, freedom).distance;
     let all = DistanceMatrix::new(used.len(), |i, j| distance(used[i], used[j]));
     let typical = (SPREAD * median(&neighbor_distances(&all, 1))).min(LARGEST_TYPICAL);
     let spread = |i: usize, j: usize| {
-        let from_pixels = OUTLINE_NOISE_PX * Float::hypot(members[i].radius_px.recip(), members[j].radius_px.recip());
+        let noise = |member: &Member| member.noise_px / member.radius_px;
+        let from_pixels = Float::hypot(noise(&members[i]), noise(&members[j]));
         typical.max(from_pixels.min(OTHER_SHAPE)).max(SAME_SHAPE)
     };
     // In units of how far members of one shape may be apart.
@@ -212,7 +221,7 @@ fn prototype(members: &[Member], own: Vec<usize>, medoid: usize, options: &Proto
     let mut mirrored = 0;
     // Laid on the medoid, then once more on the mean, without those that are far off.
     for round in 0..2 {
-        let alignments: Vec<_> = own.iter().map(|&i| mean.align(&members[i].form, options.mirror)).collect();
+        let alignments: Vec<_> = own.iter().map(|&i| mean.align_by(&members[i].form, options.freedom())).collect();
         distances = alignments.iter().map(|alignment| alignment.distance).collect();
         mirrored = alignments.iter().filter(|alignment| alignment.mirrored).count();
         let limit = if round == 0 { f64::INFINITY } else { SPREAD * median(&distances) };
@@ -228,7 +237,8 @@ fn prototype(members: &[Member], own: Vec<usize>, medoid: usize, options: &Proto
     let tolerance = (EVIDENT * spread / Float::sqrt(f64::of_usize(own.len()))).clamp(SYMMETRIC, SAME_SHAPE);
     let (form, symmetry, own_mirror) = mean.symmetrized(tolerance);
     let mirrored = if own_mirror { 0 } else { mirrored };
-    Some(Prototype { form, members: own, medoid, spread, symmetry, own_mirror, mirrored })
+    let upright = options.upright;
+    Some(Prototype { form, members: own, medoid, spread, symmetry, own_mirror, mirrored, upright })
 }
 
 impl Learned {
@@ -240,17 +250,23 @@ impl Learned {
         for (number, prototype) in (1..).zip(&self.prototypes) {
             let name = format!("shape {number}");
             if prototype.mirrored > 0 && prototype.mirrored < prototype.members.len() {
-                push(&mut bank, format!("{name} mirrored"), &prototype.form.mirrored());
+                push(&mut bank, format!("{name} mirrored"), &prototype.form.mirrored(), prototype.upright);
             }
-            push(&mut bank, name, &prototype.form);
+            push(&mut bank, name, &prototype.form, prototype.upright);
         }
         bank
     }
 }
 
-fn push<T: Real>(bank: &mut Bank<T>, name: String, form: &Form) {
-    let efd = form.efd(TRUNCATION);
-    let efd = efd.normalize().map_or(efd, |normal| normal.efd);
+fn push<T: Real>(bank: &mut Bank<T>, name: String, form: &Form, upright: bool) {
+    let mut efd = form.efd(TRUNCATION);
+    match efd.normalize() {
+        // Its own size is that of the first harmonic, as of all shapes of banks; it stays as it stands.
+        Ok(normal) if upright => efd.rotate_scale(0.0, normal.scale.recip()),
+        Ok(normal) => efd = normal.efd,
+        // What has no first harmonic is as large as a disk of its area.
+        Err(_) => (),
+    }
     let rows = efd.rows().iter().map(|row| row.map(T::of)).collect();
     bank.prototypes.push((name, Efd::new(rows)));
 }

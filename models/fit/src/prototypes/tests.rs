@@ -23,7 +23,7 @@ fn flower(lobes: f64, depth: f64) -> Form {
 }
 
 fn members(forms: impl IntoIterator<Item = Form>) -> Vec<Member> {
-    let member = |(object, form)| Member { form, radius_px: 30.0, image: 0, object };
+    let member = |(object, form)| Member { form, radius_px: 30.0, noise_px: 0.7, image: 0, object };
     forms.into_iter().enumerate().map(member).collect()
 }
 

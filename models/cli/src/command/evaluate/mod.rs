@@ -2,6 +2,7 @@
 
 mod finder;
 mod report;
+mod suite;
 
 use std::path::{Path, PathBuf};
 
@@ -16,6 +17,7 @@ use crate::format::{DataSet, Place, Sample, SceneJson, read_labels, read_npy, re
 use crate::method::{Memory, Runner, Task, seed_of};
 use crate::paint::Painter;
 use crate::score::{Row, Score, Scratch, Totals, Truth, score};
+use crate::suite::Suite;
 
 /// Scores a folder of predictions (STEM.json, as `dvp fit` writes them), or a network, against a data set.
 ///
@@ -27,9 +29,15 @@ use crate::score::{Row, Score, Scratch, Totals, Truth, score};
 /// background and k where object k is seen, or a palette with black for the background. Against true scenes that blend,
 /// objects own what they reach, as in the paper; else the topmost object that covers half a pixel owns it, and objects
 /// count that own one. Missing and bad predictions are listed and counted; they are in no mean.
+///
+/// With --suite the columns are those of the field's benchmarks, and what connected components of equal color come to stands in the first
+/// row: ARI-FG (of the pixels of true objects), ARI, OCA (share of exact counts), OOA (order of what overlaps), IoU and F1 of whole objects
+/// (from the true scenes, or STEM.whole.png), and the mean accuracy of classes (prototypes of the prediction against those of the true
+/// scenes, or classes.json).
 #[derive(Debug, Args)]
 #[command(before_help = "Example: dvp evaluate out data\n         \
                          dvp evaluate out data --against float --json\n         \
+                         dvp evaluate out data --suite tetrominoes\n         \
                          dvp evaluate data --model run/best.safetensors --then refine\n         \
                          dvp evaluate --generated 500 --model run/best.safetensors --then opt-z")]
 pub struct Arguments {
@@ -44,6 +52,9 @@ pub struct Arguments {
     /// What reconstructions are compared with
     #[arg(long, value_enum, default_value_t)]
     against: Against,
+    /// Score objects against objects, in the columns of this benchmark
+    #[arg(long, value_enum, conflicts_with_all = ["model", "method", "generated", "against", "npy", "csv"])]
+    suite: Option<Suite>,
     /// NumPy file of float pixels to compare with; as many images as it holds are scored
     #[arg(long, value_name = "FILE", conflicts_with = "against")]
     npy: Option<PathBuf>,
@@ -107,6 +118,9 @@ impl Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Outcome> {
+    if let Some(suite) = arguments.suite {
+        return suite::run(arguments, suite, console);
+    }
     let (predictions, mut data) = arguments.sides()?;
     let stack = arguments.npy.as_ref().map(|path| read_npy(path, arguments.batch.max_pixels)).transpose()?;
     if let Some(stack) = &stack {

@@ -8,8 +8,9 @@ use std::time::Instant;
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use dvp_core::ImageView;
-use dvp_fit::prototypes::{Learned, Member, Pool, PrototypeOptions, learn, members};
-use dvp_fit::{Bank, Fit, FitOptions, FitScratch, Fitter};
+use dvp_fit::picture::{Known, PictureScratch, fit_picture};
+use dvp_fit::prototypes::{Learned, Member, Pool, PrototypeOptions, is_drawing, learn, members};
+use dvp_fit::{Bank, FitOptions, Fitter};
 
 use self::report::Report;
 use super::options::BatchArguments;
@@ -32,7 +33,7 @@ pub struct Arguments {
     #[arg(long, short, value_name = "FILE")]
     out: PathBuf,
     /// Most shapes that are looked for
-    #[arg(long, default_value_t = 8, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=64))]
+    #[arg(long, default_value_t = 24, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=64))]
     max_shapes: u16,
     /// A shape must be seen at least this often
     #[arg(long, default_value_t = 3, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
@@ -40,6 +41,9 @@ pub struct Arguments {
     /// Count mirror images as one shape
     #[arg(long)]
     mirror: bool,
+    /// Objects are never turned: a turned shape is another shape, and the bank holds each as it stands
+    #[arg(long)]
+    upright: bool,
     /// Passes: after the first, all objects of a shape together make its outline better
     #[arg(long, default_value_t = 3, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=10))]
     passes: u8,
@@ -67,6 +71,7 @@ pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Ou
     options.max_shapes = arguments.max_shapes.into();
     options.min_members = arguments.min_members.into();
     options.mirror = arguments.mirror;
+    options.upright = arguments.upright;
     let (found, bank, failures) = learn_from(arguments, &paths, &options)?;
     for failure in &failures {
         writeln!(console.err, "error: {failure}")?;
@@ -97,24 +102,29 @@ fn learn_from(
     let mut failures = Vec::new();
     let free = Fitter::new(FitOptions::default())?;
     let fitted = each(arguments, paths, |image, index, scratch| {
-        let fit: Fit<f32> = free.fit(image, scratch)?;
-        Ok((fit.scene.objects.len(), members(&fit, image.size(), index)?))
+        let fit = fit_picture(&free, image, &Known::default(), scratch)?;
+        Ok((fit.scene.objects.len(), is_drawing(&fit.scene), members(&fit, image.size(), index)?))
     })?;
     let mut found = Vec::new();
+    let mut soft = Vec::new();
     let mut objects = 0;
     for (path, result) in paths.iter().zip(fitted) {
         match result {
-            Ok((count, members)) => {
+            Ok((count, is_drawing, members)) => {
                 objects += count;
                 found.extend(members);
+                if !is_drawing {
+                    soft.push(path.clone());
+                }
             }
             Err(error) => failures.push(format!("{}: {}", path.display(), in_words(&error))),
         }
     }
     let learned = learn(&found, options)?;
     let mut bank = learned.bank();
-    for _ in 1..arguments.passes {
-        bank = better_bank(arguments, paths, bank)?;
+    // Outlines of drawings are exact as they are.
+    for _ in (1..arguments.passes).take_while(|_| !soft.is_empty()) {
+        bank = better_bank(arguments, &soft, bank)?;
     }
     Ok((Found { members: found, learned, objects }, bank, failures))
 }
@@ -124,9 +134,9 @@ fn better_bank(arguments: &Arguments, paths: &[PathBuf], bank: Bank<f32>) -> Res
     let fitter = Fitter::new(FitOptions::default().with_bank(Some(bank.clone())))?;
     let empty = Pool::new(&bank)?;
     let parts = each(arguments, paths, |image, _, scratch| {
-        let fit = fitter.fit(image, scratch)?;
+        let fit = fitter.fit(image, &mut scratch.fit)?;
         let mut pool = empty.clone();
-        pool.add(&fit, image.size(), scratch);
+        pool.add(&fit, image.size(), &scratch.fit);
         Ok(pool)
     })?;
     let mut pool = empty.clone();
@@ -139,7 +149,7 @@ fn better_bank(arguments: &Arguments, paths: &[PathBuf], bank: Bank<f32>) -> Res
 fn each<R: Send>(
     arguments: &Arguments,
     paths: &[PathBuf],
-    work: impl Fn(ImageView<'_, f32>, usize, &mut FitScratch<f32>) -> Result<R> + Sync,
+    work: impl Fn(ImageView<'_, f32>, usize, &mut PictureScratch) -> Result<R> + Sync,
 ) -> Result<Vec<Result<R>>> {
     arguments.batch.each(
         paths,

@@ -1,5 +1,8 @@
-//! `dvp generate`: a data set of random scenes.
+//! `dvp generate`: a data set of random scenes, or of those of a published file.
 
+mod published;
+
+use alloc::collections::BTreeMap;
 use std::path::PathBuf;
 
 use anyhow::{Context, Result, bail};
@@ -13,16 +16,23 @@ use super::{Console, Outcome, progress};
 use crate::format::{
     BitDepth, Place, SCENES_FILE, SceneJson, ShapeJson, bank_to_json, edge_cut, encode_png, write_atomic,
 };
-use crate::generate::{Range, SceneSettings, sample_scene};
+use crate::generate::{
+    OPENINGS_SIDE, Range, SceneSettings, TETROMINO_SIDE, sample_openings, sample_scene, sample_tetrominoes,
+};
 use crate::paint::Painter;
+use crate::suite::{CLASSES_FILE, Classes};
 
-/// Draws random scenes and their images, as MDS-HR or as you like.
+/// Draws random scenes and their images, as MDS-HR, as the benchmarks of the field or as you like.
 ///
-/// Writes scenes.jsonl (one scene per line), bank.json (the shapes that scenes refer to) and 00000.png, 00001.png, ...
-/// The same options give the same bytes, on any number of threads.
+/// Writes scenes.jsonl (one scene per line), bank.json (the shapes that scenes refer to; tetrominoes and csr have classes.json instead)
+/// and 00000.png, 00001.png, ... The same options give the same bytes, on any number of threads.
+///
+/// With --from it writes the pictures of a published file, which object each pixel shows (00000.labels.png), where known every object
+/// whole (00000.whole.png), and classes.json.
 #[derive(Debug, Args)]
 #[command(before_help = "Example: dvp generate --count 100 --out data\n         \
-                         dvp generate --preset multi-dsprites --count 100 --out data")]
+                         dvp generate --preset tetrominoes --count 100 --out data\n         \
+                         dvp generate --preset multi-dsprites --from multi_dsprites_colored_on_colored.tfrecords --out data")]
 pub struct Arguments {
     /// Folder to write to
     #[arg(long, short, value_name = "DIR")]
@@ -36,6 +46,10 @@ pub struct Arguments {
     /// Distribution to start from; the options below change it
     #[arg(long, value_enum, default_value_t)]
     preset: Preset,
+    /// Published file to take the first --count scenes of: for multi-dsprites and tetrominoes the TFRecords of multi_object_datasets,
+    /// for csr an .npz with the arrays image, segment and layers of one group of the HDF5
+    #[arg(long, value_name = "FILE")]
+    from: Option<PathBuf>,
     /// Columns; without --height also the rows [128, multi-dsprites: 64]
     #[arg(long)]
     width: Option<usize>,
@@ -96,6 +110,18 @@ enum Preset {
     MdsHr,
     /// 64 x 64, hard edges, occlusion, smaller objects
     MultiDsprites,
+    /// 35 x 35, three tetrominoes of 17 turned shapes and 6 colors on black
+    Tetrominoes,
+    /// 64 x 64, two to four squares and triangles with openings, occlusion
+    Csr,
+}
+
+/// What scenes are drawn from.
+enum Source {
+    /// A distribution over the shapes of a bank.
+    Bank(Box<(SceneSettings, Bank<f32>)>),
+    Tetrominoes,
+    Openings,
 }
 
 fn parse_counts(text: &str) -> Result<(usize, usize), String> {
@@ -104,12 +130,50 @@ fn parse_counts(text: &str) -> Result<(usize, usize), String> {
     Ok((low.parse().map_err(wrong)?, high.parse().map_err(wrong)?))
 }
 
+impl Source {
+    /// A scene and, where shapes are those of no bank, the classes of its objects.
+    fn sample(&self, size: ImageSize, seed: u64, index: u64) -> (Scene<f32>, Option<Vec<u32>>) {
+        let with_classes = |(scene, classes)| (scene, Some(classes));
+        match self {
+            Self::Bank(known) => (sample_scene(&known.0, &known.1, size, seed, index), None),
+            Self::Tetrominoes => with_classes(sample_tetrominoes(seed, index)),
+            Self::Openings => with_classes(sample_openings(seed, index)),
+        }
+    }
+
+    /// The shapes that scenes refer to.
+    fn bank(&self) -> Option<&Bank<f32>> {
+        if let Self::Bank(known) = self { Some(&known.1) } else { None }
+    }
+}
+
 impl Arguments {
-    fn settings(&self) -> Result<(SceneSettings, ImageSize)> {
-        let (mut settings, side) = match self.preset {
-            Preset::MdsHr => (SceneSettings::mds_hr(), 128),
-            Preset::MultiDsprites => (SceneSettings::multi_dsprites(), 64),
+    /// What scenes are drawn from, and the size of their images.
+    fn source(&self) -> Result<(Source, ImageSize)> {
+        let (source, side) = match self.preset {
+            Preset::MdsHr => return self.settings(SceneSettings::mds_hr(), 128),
+            Preset::MultiDsprites => return self.settings(SceneSettings::multi_dsprites(), 64),
+            Preset::Tetrominoes => (Source::Tetrominoes, TETROMINO_SIDE),
+            Preset::Csr => (Source::Openings, OPENINGS_SIDE),
         };
+        if self.changes_the_preset() {
+            bail!("tetrominoes and csr are drawn as they are: of the options that change a preset, leave all away");
+        }
+        Ok((source, square(side)?))
+    }
+
+    /// Whether an option is given that changes what a preset draws.
+    fn changes_the_preset(&self) -> bool {
+        self.width.or(self.height).or(self.slots).or(self.placements).is_some()
+            || self.visible.is_some()
+            || self.margin.or(self.edge_offset).or(self.edge_sigma).is_some()
+            || self.scale.or(self.color).or(self.background).is_some()
+            || self.keep_hidden
+            || self.compositing.is_some()
+            || self.bank != BankChoice::Mdshr
+    }
+
+    fn settings(&self, mut settings: SceneSettings, side: usize) -> Result<(Source, ImageSize)> {
         if let Some((fewest, most)) = self.visible {
             (settings.fewest, settings.most) = (fewest, most);
             settings.slots = settings.slots.max(most);
@@ -131,13 +195,16 @@ impl Arguments {
         }
         settings.compositing = self.compositing.map_or(settings.compositing, Into::into);
         settings.check().map_err(anyhow::Error::msg)?;
-        Ok((settings, size_or(self.width, self.height, square(side)?)?))
+        let bank = self.bank.load()?.context("--bank none: random scenes need shapes")?;
+        Ok((Source::Bank(Box::new((settings, bank))), size_or(self.width, self.height, square(side)?)?))
     }
 }
 
 pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Outcome> {
-    let (settings, size) = arguments.settings()?;
-    let bank: Bank<f32> = arguments.bank.load()?.context("--bank none: random scenes need shapes")?;
+    if let Some(file) = &arguments.from {
+        return published::run(arguments, file, console);
+    }
+    let (source, size) = arguments.source()?;
     let scenes_file = arguments.out.join(SCENES_FILE);
     if scenes_file.exists() && !arguments.overwrite {
         bail!("{} is already there; choose another --out or add --overwrite", scenes_file.display());
@@ -145,31 +212,45 @@ pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Ou
     let painter = arguments.paint.painter();
     let bar = progress::bar(arguments.count as u64, 0);
     let one = |index: usize| {
-        let scene = sample_scene(&settings, &bank, size, arguments.seed, index as u64);
-        let line = write_image(arguments, &bank, painter, &scene, size, index);
+        let (scene, classes) = source.sample(size, arguments.seed, index as u64);
+        let line = write_image(arguments, source.bank(), painter, &scene, size, index);
         bar.inc(1);
-        line
+        Ok((line?, classes))
     };
-    let lines: Result<Vec<String>> =
+    let lines: Result<Vec<(String, Option<Vec<u32>>)>> =
         with_threads(arguments.threads, || (0..arguments.count).into_par_iter().map(one).collect())?;
+    let lines = lines?;
     bar.finish_and_clear();
-    write_atomic(&arguments.out.join("bank.json"), bank_to_json(&bank).as_bytes())?;
+    let (name, text) = match source.bank() {
+        Some(bank) => ("bank.json", bank_to_json(bank)),
+        None => {
+            let objects = lines.iter().enumerate().filter_map(|(index, (_, classes))| Some((stem(index), classes.clone()?)));
+            (CLASSES_FILE, Classes::new(objects.collect::<BTreeMap<_, _>>()).to_json()?)
+        }
+    };
+    write_atomic(&arguments.out.join(name), text.as_bytes())?;
     // Last: a folder with this file is a whole data set.
-    write_atomic(&scenes_file, lines?.concat().as_bytes())?;
+    let lines: String = lines.into_iter().map(|(line, _)| line).collect();
+    write_atomic(&scenes_file, lines.as_bytes())?;
     writeln!(console.out, "{} images in {}", arguments.count, arguments.out.display())?;
     Ok(Outcome::Done)
+}
+
+/// What the files of a picture are called by.
+fn stem(index: usize) -> String {
+    format!("{index:05}")
 }
 
 /// Writes the image of a scene and returns its line.
 fn write_image(
     arguments: &Arguments,
-    bank: &Bank<f32>,
+    bank: Option<&Bank<f32>>,
     painter: Painter,
     scene: &Scene<f32>,
     size: ImageSize,
     index: usize,
 ) -> Result<String> {
-    let path = arguments.out.join(format!("{index:05}.png"));
+    let path = arguments.out.join(format!("{}.png", stem(index)));
     let mut json = SceneJson::from_scene(scene, size)?;
     json.id = Some(index as u64);
     for object in &mut json.objects {
@@ -180,7 +261,7 @@ fn write_image(
     }
     let place = Place::file(&path);
     // What is painted is what was written, after rounding.
-    let scene = json.to_scene(Some(bank), &place)?;
+    let scene = json.to_scene(bank, &place)?;
     write_atomic(&path, &encode_png(painter.paint(&scene, size)?.view(), BitDepth::Eight)?)?;
     Ok(json.to_line(&place)? + "\n")
 }

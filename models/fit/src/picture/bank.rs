@@ -1,0 +1,47 @@
+//! Pictures whose shapes are known.
+//!
+//! Where no pixel is mixed, the shapes are laid on the pixels one by one ([`Decoder`]); everywhere else edges tell poses better
+//! ([`Fitter`]). Of a picture of few colors whose shapes are others, the nearer fit is taken: a bank never makes a fit worse.
+
+use dvp_core::ImageView;
+use dvp_core::loss::{ImagePair, Loss as _};
+use dvp_core::render::PixelLoss;
+
+use super::{Known, PictureScratch, drawing};
+use crate::prototypes::{Decoder, Undecoded};
+use crate::{Bank, Fit, FitError, Fitter, StopReason};
+
+/// Mean absolute error of a scene that paints every pixel in its color: pixels near the outline are not quite of one color.
+const RIGHT: f32 = 1e-4;
+
+/// The fit of a picture whose objects have the shapes of `bank`, which are those of `fitter`.
+pub(super) fn fit(
+    fitter: &Fitter<f32>,
+    bank: &Bank<f32>,
+    image: ImageView<'_, f32>,
+    known: &Known,
+    scratch: &mut PictureScratch,
+) -> Result<Fit<f32>, FitError> {
+    let decoder = match scratch.decoder.take().filter(|decoder| decoder.bank() == bank) {
+        Some(decoder) => decoder,
+        None => Decoder::new(bank).map_err(FitError::Shape)?,
+    };
+    let decoded = decoder.scene(&image);
+    scratch.decoder = Some(decoder);
+    let found = match decoded {
+        Ok(scene) => {
+            let (painted, drawing) = scratch.canvas.paint(&scene, image.size())?;
+            let loss = PixelLoss::Mae.value(ImagePair::new(painted.view(), image)?, &mut ())?;
+            let fit = Fit::of_painted(scene, &drawing, &image, painted.data());
+            Fit { loss, stop: StopReason::Converged, ..fit }
+        }
+        Err(Undecoded::NotFlat) => return fitter.fit(image, &mut scratch.fit),
+        Err(Undecoded::Unexplained) => fitter.fit(image, &mut scratch.fit)?,
+    };
+    if found.loss <= RIGHT {
+        return Ok(found);
+    }
+    let Ok(traced) = dvp_trace::trace(&image, known) else { return Ok(found) };
+    let drawn = drawing(fitter, traced, image, scratch)?;
+    Ok(if drawn.loss < found.loss { drawn } else { found })
+}
