@@ -22,6 +22,7 @@ mod raw_png;
 mod refine;
 mod rows;
 mod runner;
+mod suites;
 mod svg;
 mod train;
 mod transparent;

@@ -78,9 +78,7 @@ pub fn pictures_of(folder: &Path) -> Result<Vec<PathBuf>, FormatError> {
     for entry in fs::read_dir(folder).map_err(refused)? {
         let path = entry.map_err(refused)?.path();
         let ending = path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase);
-        if ending.is_some_and(|ending| PICTURE_ENDINGS.contains(&ending.as_str()))
-            && !is_truth(&path)
-            && !path.is_dir()
+        if ending.is_some_and(|ending| PICTURE_ENDINGS.contains(&ending.as_str())) && !is_truth(&path) && !path.is_dir()
         {
             pictures.push(path);
         }

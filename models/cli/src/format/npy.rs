@@ -36,7 +36,9 @@ impl ByteArray {
         let header = header.ok_or("is no NumPy array")?;
         let [descr, order, shape] = ["descr", "fortran_order", "shape"].map(|key| field(&header, key));
         if !matches!(descr.trim_matches(['\'', '"']), "|u1" | "|b1") {
-            return Err(format!("holds numbers of type {descr}, must be bytes (|u1): convert it with .astype('uint8')"));
+            return Err(format!(
+                "holds numbers of type {descr}, must be bytes (|u1): convert it with .astype('uint8')"
+            ));
         }
         if order != "False" {
             return Err("is stored column by column, must be in C order: save numpy.ascontiguousarray of it".to_owned());

@@ -21,8 +21,11 @@ const MOST_NUMBERS: usize = 1 << 30;
 /// [`FormatError::Read`], or [`FormatError::Field`] for what is no archive of such arrays.
 pub(crate) fn read_npz(path: &Path, wanted: &[&str]) -> Result<Vec<(String, ByteArray)>, FormatError> {
     let bytes = fs::read(path).map_err(|source| FormatError::Read { path: path.to_path_buf(), source })?;
-    let wrong =
-        |field: &str, problem: String| FormatError::Field { place: Place::file(path), field: field.to_owned(), problem };
+    let wrong = |field: &str, problem: String| FormatError::Field {
+        place: Place::file(path),
+        field: field.to_owned(),
+        problem,
+    };
     let damaged = |error: rawzip::Error| wrong("archive", format!("is no readable .npz file: {error}"));
     let archive = ZipArchive::from_slice(&bytes).map_err(damaged)?;
     let mut entries = archive.entries();

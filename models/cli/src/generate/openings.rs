@@ -33,10 +33,7 @@ type Ring = &'static [[f32; 2]];
 const SHAPES: [([f32; 2], [Ring; 2]); 3] = [
     (
         [14.0, 14.0],
-        [
-            &[[0.0, 0.0], [14.0, 0.0], [14.0, 14.0], [0.0, 14.0]],
-            &[[4.0, 4.0], [4.0, 10.0], [10.0, 10.0], [10.0, 4.0]],
-        ],
+        [&[[0.0, 0.0], [14.0, 0.0], [14.0, 14.0], [0.0, 14.0]], &[[4.0, 4.0], [4.0, 10.0], [10.0, 10.0], [10.0, 4.0]]],
     ),
     (
         [28.0, 15.0],
@@ -139,12 +136,13 @@ fn all_are_seen(scene: &Scene<f32>, size: ImageSize) -> bool {
     let renderer = TileRenderer { coverage: HardMask, compositing: scene.compositing };
     let mut owners = vec![usize::MAX; size.pixels()];
     let mut areas = vec![0.0_f32; scene.objects.len()];
-    let visited = renderer.visit_coverage(&drawing, size, &mut Default::default(), |object, pixel, coverage: &[f32]| {
-        for (owner, _) in owners[pixel..].iter_mut().zip(coverage).filter(|(_, coverage)| **coverage >= 0.5) {
-            *owner = object;
-            areas[object] += 1.0;
-        }
-    });
+    let visited =
+        renderer.visit_coverage(&drawing, size, &mut Default::default(), |object, pixel, coverage: &[f32]| {
+            for (owner, _) in owners[pixel..].iter_mut().zip(coverage).filter(|(_, coverage)| **coverage >= 0.5) {
+                *owner = object;
+                areas[object] += 1.0;
+            }
+        });
     let mut seen = vec![0.0_f32; areas.len()];
     for &owner in &owners {
         if let Some(seen) = seen.get_mut(owner) {

@@ -1,8 +1,12 @@
 use dvp_core::ImageSize;
+use dvp_core::contour::{contains, signed_area};
+use dvp_core::shape::AnyShape;
 
 use super::sample::closest_distance;
-use super::{Range, SceneSettings, sample_scene};
+use super::tetrominoes::TETROMINOES;
+use super::{OPENINGS_SIDE, Range, SceneSettings, TETROMINO_SIDE, sample_openings, sample_scene, sample_tetrominoes};
 use crate::format::mdshr_bank;
+use crate::paint::Painter;
 
 #[test]
 fn ranges_are_read() {
@@ -53,4 +57,72 @@ fn bad_settings_name_the_option() {
     assert!(SceneSettings { slots: 2, ..good }.check().unwrap_err().contains("--slots"));
     assert!(SceneSettings { margin: 0.5, ..good }.check().unwrap_err().contains("--margin"));
     assert!(SceneSettings { scale: Range::new(0.0, 0.1), ..good }.check().unwrap_err().contains("--scale"));
+}
+
+#[test]
+fn pieces_are_tetrominoes_and_their_corners_go_around_their_cells() {
+    for (class, piece) in TETROMINOES.iter().enumerate() {
+        let corners: Vec<[f64; 2]> = piece.corners.iter().map(|corner| corner.map(f64::from)).collect();
+        let middle = |cell: [usize; 2]| cell.map(|v| v as f64 + 0.5);
+        let inside = piece.cells.iter().filter(|cell| contains(&corners, middle(**cell))).count();
+        assert_eq!((inside, signed_area(&corners).abs()), (4, 4.0), "{class}");
+        let mut cells = piece.cells.to_vec();
+        cells.sort_unstable();
+        let is_new = TETROMINOES[..class].iter().all(|other| {
+            let mut others = other.cells.to_vec();
+            others.sort_unstable();
+            others != cells
+        });
+        assert!(is_new, "{class}");
+    }
+}
+
+#[test]
+fn tetrominoes_lie_beside_one_another() {
+    let size = ImageSize::new(TETROMINO_SIDE, TETROMINO_SIDE).unwrap();
+    let mut seen = [0; 17];
+    for index in 0..200 {
+        let (scene, classes) = sample_tetrominoes(5, index);
+        assert_eq!((&scene, &classes), (&sample_tetrominoes(5, index).0, &sample_tetrominoes(5, index).1));
+        assert_eq!((scene.objects.len(), classes.len()), (3, 3));
+        classes.iter().for_each(|&class| seen[class as usize] += 1);
+        let image = Painter::default().paint(&scene, size).unwrap();
+        let shown = (0..size.pixels()).filter(|&pixel| image.view().pixel(pixel).iter().any(|&v| v > 0.5)).count();
+        // Three pieces of four cells of 25 pixels, none on another.
+        assert_eq!(shown, 300, "{index}");
+        let levels = image.data().iter().all(|&v| !(0.001..=0.999).contains(&v));
+        assert!(levels, "a pixel of picture {index} is mixed");
+    }
+    // Expected 35 each; 3 standard deviations are 17.
+    assert!(seen.iter().all(|n| (18..=52).contains(n)), "{seen:?}");
+}
+
+#[test]
+fn shapes_with_openings_are_in_view_and_told_apart() {
+    let mut counts = [0; 5];
+    for index in 0..100 {
+        let (scene, classes) = sample_openings(5, index);
+        assert_eq!(scene, sample_openings(5, index).0);
+        counts[classes.len()] += 1;
+        assert_eq!(scene.objects.len(), classes.len());
+        let side = OPENINGS_SIDE as f32;
+        for (object, &class) in scene.objects.iter().zip(&classes) {
+            let AnyShape::Polygon(polygon) = &object.shape else { panic!("{:?}", object.shape) };
+            assert_eq!(polygon.rings.len(), 2);
+            assert!((1.0..=1.5).contains(&object.pose.scale));
+            for corner in polygon.rings.iter().flatten() {
+                let at = [0, 1].map(|c| (object.pose.translation[c] + object.pose.scale * corner[c]) * side);
+                assert!(at.iter().all(|v| (-0.001..=side + 0.001).contains(v)), "class {class}: {at:?}");
+            }
+        }
+        let colors: Vec<[f32; 3]> =
+            scene.objects.iter().map(|object| object.color()).chain([scene.background]).collect();
+        for (i, a) in colors.iter().enumerate() {
+            for b in &colors[..i] {
+                assert!((0..3).map(|c| (a[c] - b[c]).powi(2)).sum::<f32>() > 0.08);
+            }
+        }
+    }
+    // Expected a third of 100 each; 3 standard deviations are 14. Pictures of many are begun anew more often.
+    assert!(counts[..2] == [0, 0] && counts[2..].iter().all(|n| (15..=52).contains(n)), "{counts:?}");
 }

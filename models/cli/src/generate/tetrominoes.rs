@@ -114,7 +114,8 @@ pub fn sample_tetrominoes(seed: u64, index: u64) -> (Scene<f32>, Vec<u32>) {
             break placed;
         }
     };
-    let objects = placed.iter().map(|&(class, at)| TETROMINOES[class].object(at, COLORS[below(&mut rng, COLORS.len())]));
+    let objects =
+        placed.iter().map(|&(class, at)| TETROMINOES[class].object(at, COLORS[below(&mut rng, COLORS.len())]));
     let scene = Scene {
         background: [0.0; 3],
         transparent: false,

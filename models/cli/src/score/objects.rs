@@ -142,11 +142,7 @@ pub fn score_objects(image: ImageView<'_, f32>, truth: &Parts, found: &Parts) ->
 /// What two masks share, and the areas of both.
 fn overlap(a: &[bool], b: &[bool]) -> [f64; 3] {
     let count = |masks: &mut dyn Iterator<Item = bool>| masks.filter(|is| *is).map(|_| 1.0).sum::<f64>();
-    [
-        count(&mut a.iter().zip(b).map(|(a, b)| *a && *b)),
-        count(&mut a.iter().copied()),
-        count(&mut b.iter().copied()),
-    ]
+    [count(&mut a.iter().zip(b).map(|(a, b)| *a && *b)), count(&mut a.iter().copied()), count(&mut b.iter().copied())]
 }
 
 /// Scores whole objects and their order. True objects that are not seen are left out.

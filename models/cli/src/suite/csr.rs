@@ -38,7 +38,8 @@ pub(super) fn read(path: &Path, count: usize) -> Result<Vec<SuiteScene>, FormatE
         return Err(wrong("segment", problem));
     }
     let &[own_number, layer_count @ (1..), own_height, own_width, layer_channels @ (1..)] = &layers.shape[..] else {
-        let problem = format!("has the extents {:?}, must be number x layers x height x width x channels", layers.shape);
+        let problem =
+            format!("has the extents {:?}, must be number x layers x height x width x channels", layers.shape);
         return Err(wrong("layers", problem));
     };
     if [own_number, own_height, own_width] != [number, height, width] {
@@ -68,12 +69,15 @@ impl Extents {
         });
         let mask = |layer: usize| {
             let start = (index * self.layer_count + layer) * pixels * self.layer_channels;
-            layers.values[start..][..pixels * self.layer_channels].chunks_exact(self.layer_channels).map(|c| c[c.len() - 1])
+            layers.values[start..][..pixels * self.layer_channels]
+                .chunks_exact(self.layer_channels)
+                .map(|c| c[c.len() - 1])
         };
         // From the one behind all others to the one in front; layers of fewer objects than there is room for are empty.
         let objects = (0..self.layer_count - 1).rev().filter(|&layer| mask(layer).any(|value| value > 0));
         let objects: Vec<usize> = objects.collect();
-        let label = |&layer: &u8| (1..).zip(&objects).find(|&(_, &own)| own == usize::from(layer)).map_or(0, |(k, _)| k);
+        let label =
+            |&layer: &u8| (1..).zip(&objects).find(|&(_, &own)| own == usize::from(layer)).map_or(0, |(k, _)| k);
         SuiteScene {
             size: self.size,
             pixels: colors.collect(),

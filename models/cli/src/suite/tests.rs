@@ -146,7 +146,10 @@ fn damaged_files_are_refused_with_the_record() {
         (framed(&example([])), "'visibility'"),
     ] {
         let error = refused(bytes, Suite::Tetrominoes);
-        assert!(error.contains(part) && error.contains("record ") && error.contains("set.tfrecords"), "{part}: {error}");
+        assert!(
+            error.contains(part) && error.contains("record ") && error.contains("set.tfrecords"),
+            "{part}: {error}"
+        );
     }
     let error = refused(good.clone(), Suite::MultiDsprites);
     assert!(error.contains("right --preset"), "{error}");
@@ -172,8 +175,7 @@ fn npy(shape: &[usize], values: &[u8]) -> Vec<u8> {
 fn npz(folder: &Path, arrays: &[(&str, Vec<u8>)], method: CompressionMethod) -> PathBuf {
     let mut archive = ZipArchiveWriter::new(Vec::new());
     for (name, bytes) in arrays {
-        let (mut entry, config) =
-            archive.new_file(format!("{name}.npy")).compression_method(method).start().unwrap();
+        let (mut entry, config) = archive.new_file(format!("{name}.npy")).compression_method(method).start().unwrap();
         let descriptor = if method == CompressionMethod::STORE {
             let mut writer = config.wrap(&mut entry);
             writer.write_all(bytes).unwrap();

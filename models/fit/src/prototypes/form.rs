@@ -277,8 +277,7 @@ fn climb(products: &[[f64; 2]], mut phase: f64, turn: bool) -> f64 {
     for _ in 0..NEWTON_STEPS {
         let [g, first, second] = correlation(products, phase);
         let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
-        let (slope, bend) =
-            if turn { (dot(g, first), square(first) + dot(g, second)) } else { (first[0], second[0]) };
+        let (slope, bend) = if turn { (dot(g, first), square(first) + dot(g, second)) } else { (first[0], second[0]) };
         // Not a summit (a disk: |G| is constant): stay.
         if bend >= 0.0 {
             break;

@@ -9,10 +9,12 @@ use dvp_core::{Efd, ImageSize, Object, Real};
 use num_traits::Float;
 
 use super::MAX_HARMONICS;
+use super::decode::WholeObject;
 use crate::fitter::FitScratch;
 use crate::free::basis::Basis;
 use crate::free::foot::{EdgeLanes, foot};
 use crate::free::outline_fit::{FreeOutline, OutlineScratch, OutlineSettings, refine};
+use crate::pose::gauss_newton::Frame;
 use crate::segment::{EdgeSample, PIXEL_NOISE, Segment};
 use crate::{Bank, Fit, FitError};
 
@@ -32,6 +34,12 @@ const SAME_COLOR: f64 = 0.02;
 const FEW_SAMPLES: usize = 500;
 /// Residual at which a sample loses most of its say, frame units.
 const WIDTHS: [f64; 3] = [4.0, 1.5, 1.5];
+/// The same where pixels are not mixed, which tell edges to half a pixel.
+const HARD_WIDTHS: [f64; 3] = [12.0, 8.0, 8.0];
+/// How far an edge between two pixels may be off (standard deviation, px): it is anywhere between their middles.
+const STEP_PX: f64 = 0.29;
+/// A prototype whose first harmonic is turned by more (radians) stands as it was learned.
+const STANDS: f64 = 1e-3;
 /// Gauss-Newton steps per width.
 const STEPS: usize = 12;
 /// Pull of high harmonics to 0, of no weight beside thousands of samples.
@@ -44,6 +52,8 @@ pub struct Pool<T> {
     outlines: Vec<Vec<[f64; 2]>>,
     samples: Vec<Vec<EdgeSample<f64>>>,
     lanes: EdgeLanes<f64>,
+    /// Whether samples are those of pixels that are not mixed.
+    hard: bool,
 }
 
 impl<T: Real> Pool<T> {
@@ -63,7 +73,7 @@ impl<T: Real> Pool<T> {
             outlines.push(outline);
         }
         let samples = vec![Vec::new(); bank.prototypes.len()];
-        Ok(Self { bank: bank.clone(), outlines, samples, lanes: EdgeLanes::default() })
+        Ok(Self { bank: bank.clone(), outlines, samples, lanes: EdgeLanes::default(), hard: false })
     }
 
     /// Takes the samples of the objects of `fit`, which must be the last fit that `scratch` was used for.
@@ -112,6 +122,22 @@ impl<T: Real> Pool<T> {
         if count > 0.0 { sum / count } else { f64::INFINITY }
     }
 
+    /// Takes what an object that is seen whole shows of its shape: its outline passes half-way between pixels, to half a pixel.
+    #[inline(never)]
+    pub fn add_whole(&mut self, object: &WholeObject) {
+        let Some(samples) = self.samples.get_mut(object.prototype) else { return };
+        if samples.len() < SAMPLES_PER_PROTOTYPE {
+            let frame = Frame::new(&object.pose);
+            let scale = FRAME / frame.scale;
+            samples.extend(object.edges.iter().map(|&edge| EdgeSample {
+                point: frame.to_unit(edge).map(|v| v * FRAME),
+                distance: 0.0,
+                weight: PIXEL_NOISE / (STEP_PX * scale),
+            }));
+            self.hard = true;
+        }
+    }
+
     /// Adds the samples of another pool for the same bank.
     #[inline(never)]
     pub fn merge(&mut self, other: Self) {
@@ -119,6 +145,7 @@ impl<T: Real> Pool<T> {
             let room = SAMPLES_PER_PROTOTYPE.saturating_sub(own.len());
             own.extend(more.into_iter().take(room));
         }
+        self.hard |= other.hard;
     }
 
     /// The bank with each outline laid at the distances of its samples; prototypes with few samples stay as they are.
@@ -131,7 +158,11 @@ impl<T: Real> Pool<T> {
         let mut prototypes = Vec::new();
         for ((name, efd), samples) in self.bank.prototypes.iter().zip(&self.samples) {
             let few = samples.len() < FEW_SAMPLES;
-            let better = if few { efd.clone() } else { refined(efd, samples, &basis)? };
+            let better = if few {
+                efd.clone()
+            } else {
+                refined(efd, samples, &basis, if self.hard { &HARD_WIDTHS } else { &WIDTHS })?
+            };
             prototypes.push((name.clone(), better));
         }
         Ok(Bank { prototypes })
@@ -147,7 +178,12 @@ impl<T: Real> Pool<T> {
 /// The outline at the sampled distances, as its 64 vertices can.
 ///
 /// Its starting point stays: vertices lie where the samples have them, and a shift would move them off.
-fn refined<T: Real>(efd: &Efd<T>, samples: &[EdgeSample<f64>], basis: &Basis<f64>) -> Result<Efd<T>, ShapeError> {
+fn refined<T: Real>(
+    efd: &Efd<T>,
+    samples: &[EdgeSample<f64>],
+    basis: &Basis<f64>,
+    widths: &[f64],
+) -> Result<Efd<T>, ShapeError> {
     let mut scratch = OutlineScratch::default();
     let mut lay = |rows: &[[f64; 4]], widths: &[f64]| {
         let rows = rows.iter().map(|row| row.map(|v| v * FRAME)).collect();
@@ -159,10 +195,12 @@ fn refined<T: Real>(efd: &Efd<T>, samples: &[EdgeSample<f64>], basis: &Basis<f64
         }
         Efd::new(outline.rows.into_iter().map(|row| row.map(|v| v / FRAME)).collect())
     };
-    let efd = lay(&rows(&efd.resized(MAX_HARMONICS)), &WIDTHS);
+    let stands = efd.cast::<f64>().normalize()?.rotation.abs() > STANDS;
+    let efd = lay(&rows(&efd.resized(MAX_HARMONICS)), widths);
     let mut scaled = efd.clone();
     let normal = efd.normalize()?;
-    scaled.rotate_scale(-normal.rotation, normal.scale.recip());
+    // What stands as it was learned goes on to do so.
+    scaled.rotate_scale(if stands { 0.0 } else { -normal.rotation }, normal.scale.recip());
     Ok(Efd::new(scaled.rows().iter().map(|row| row.map(T::of)).collect()))
 }
 

@@ -144,7 +144,11 @@ impl Judge<'_> {
             labels: owned.index().to_vec(),
             whole: Some(whole.into_iter().map(|coverage| coverage >= 0.5).collect()),
             ordered: true,
-            classes: scene.objects.iter().map(|object| object.prototype().and_then(|k| u32::try_from(k).ok())).collect(),
+            classes: scene
+                .objects
+                .iter()
+                .map(|object| object.prototype().and_then(|k| u32::try_from(k).ok()))
+                .collect(),
         })
     }
 }

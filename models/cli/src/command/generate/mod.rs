@@ -224,7 +224,8 @@ pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Ou
     let (name, text) = match source.bank() {
         Some(bank) => ("bank.json", bank_to_json(bank)),
         None => {
-            let objects = lines.iter().enumerate().filter_map(|(index, (_, classes))| Some((stem(index), classes.clone()?)));
+            let objects =
+                lines.iter().enumerate().filter_map(|(index, (_, classes))| Some((stem(index), classes.clone()?)));
             (CLASSES_FILE, Classes::new(objects.collect::<BTreeMap<_, _>>()).to_json()?)
         }
     };

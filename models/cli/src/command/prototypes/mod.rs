@@ -1,5 +1,6 @@
 //! `dvp prototypes`: pictures to the few shapes that their objects share.
 
+mod drawn;
 mod report;
 
 use std::path::PathBuf;
@@ -106,23 +107,23 @@ fn learn_from(
         Ok((fit.scene.objects.len(), is_drawing(&fit.scene), members(&fit, image.size(), index)?))
     })?;
     let mut found = Vec::new();
-    let mut soft = Vec::new();
+    let (mut drawn, mut soft) = (Vec::new(), Vec::new());
     let mut objects = 0;
     for (path, result) in paths.iter().zip(fitted) {
         match result {
             Ok((count, is_drawing, members)) => {
                 objects += count;
                 found.extend(members);
-                if !is_drawing {
-                    soft.push(path.clone());
-                }
+                if is_drawing { &mut drawn } else { &mut soft }.push(path.clone());
             }
             Err(error) => failures.push(format!("{}: {}", path.display(), in_words(&error))),
         }
     }
     let learned = learn(&found, options)?;
     let mut bank = learned.bank();
-    // Outlines of drawings are exact as they are.
+    if !drawn.is_empty() {
+        bank = drawn::better_bank(arguments, &drawn, bank)?;
+    }
     for _ in (1..arguments.passes).take_while(|_| !soft.is_empty()) {
         bank = better_bank(arguments, &soft, bank)?;
     }

@@ -5,14 +5,15 @@ use alloc::vec::Vec;
 
 use dvp_core::Real;
 
-use super::flat::FlatPicture;
+use super::flat::{FlatPicture, Part};
 use crate::pose::equations::{Normal, Robustness, SampleLanes};
 use crate::pose::field::OutlineField;
 use crate::pose::gauss_newton::{Frame, PosePx};
 use crate::segment::EdgeSample;
 
-/// How far inside or outside of the outline the middle of a pixel is wanted, px: a little more than what rounding of a scene file can move.
-const MARGIN_PX: f64 = 0.12;
+/// How far inside or outside of the outline the middle of a pixel is wanted, px: first so far that the outline comes between both sides, then
+/// hardly more than what rounding of a scene file can move, so that all pixels are right wherever that can be.
+const MARGINS_PX: [f64; 2] = [0.12, 0.012];
 /// Residual (px) beyond which more of it says no more.
 const WIDTH_PX: f64 = 3.0;
 /// Pixels that must not be covered count this far (px, along rows and columns) from those that may.
@@ -41,10 +42,17 @@ pub(super) struct Demand<'a> {
     pub(super) center: [f64; 2],
     /// From the middle to where the object may go on unseen, a unit vector; zero if it does not.
     pub(super) onward: [f64; 2],
-    inside: SampleLanes<f64>,
-    outside: SampleLanes<f64>,
+    /// By margins.
+    sides: [Sides; 2],
     /// How many samples there are of each.
     counts: [f64; 2],
+}
+
+/// Pixels that are to be inside and outside, each with its margin.
+#[derive(Clone, Debug)]
+struct Sides {
+    inside: SampleLanes<f64>,
+    outside: SampleLanes<f64>,
 }
 
 /// How an object meets a demand.
@@ -59,12 +67,19 @@ pub(super) struct Verdict {
 impl<'a> Demand<'a> {
     /// The pixels `inside` are to be covered, those of the ground are not, others may.
     pub(super) fn new(picture: &'a FlatPicture, inside: &[usize]) -> Self {
+        Self::beside(picture, inside, core::iter::empty())
+    }
+
+    /// As [`Self::new`], and the pixels `behind`, which show what lies behind the object, must not be covered either.
+    pub(super) fn beside(picture: &'a FlatPicture, inside: &[usize], behind: impl Iterator<Item = usize>) -> Self {
         let wish = |&color: &usize| if color == picture.ground { Wish::Outside } else { Wish::Free };
         let mut wishes: Vec<Wish> = picture.color_of.iter().map(wish).collect();
+        behind.for_each(|pixel| wishes[pixel] = Wish::Outside);
         inside.iter().for_each(|&pixel| wishes[pixel] = Wish::Inside);
         let area = f64::of_usize(inside.len());
         let mean = |pixels: &[usize]| {
-            let sum = pixels.iter().map(|&pixel| picture.middle(pixel)).fold([0.0; 2], |a, b| [a[0] + b[0], a[1] + b[1]]);
+            let sum =
+                pixels.iter().map(|&pixel| picture.middle(pixel)).fold([0.0; 2], |a, b| [a[0] + b[0], a[1] + b[1]]);
             sum.map(|v: f64| v / f64::of_usize(pixels.len().max(1)))
         };
         let center = mean(inside);
@@ -82,12 +97,16 @@ impl<'a> Demand<'a> {
         };
         let sample = |pixel: usize, distance| EdgeSample { point: picture.middle(pixel), distance, weight: 1.0 };
         let is_edge = |&&pixel: &&usize| picture.around(pixel).any(|neighbor| wishes[neighbor] != Wish::Inside);
-        let within: Vec<_> = inside.iter().filter(is_edge).map(|&pixel| sample(pixel, -MARGIN_PX)).collect();
-        let near = near_wished(picture, &wishes);
-        let without: Vec<_> = near.into_iter().map(|pixel| sample(pixel, MARGIN_PX)).collect();
+        let within: Part = inside.iter().filter(is_edge).copied().collect();
+        let without = near_wished(picture, &wishes);
         let counts = [within.len(), without.len()].map(f64::of_usize);
-        let [inside, outside] = [within, without].map(|samples| SampleLanes::new(&samples, 1, false));
-        Self { picture, wishes, area, center, onward, inside, outside, counts }
+        let lanes = |pixels: &[usize], distance| {
+            let samples: Vec<_> = pixels.iter().map(|&pixel| sample(pixel, distance)).collect();
+            SampleLanes::new(&samples, 1, false)
+        };
+        let sides =
+            MARGINS_PX.map(|margin| Sides { inside: lanes(&within, -margin), outside: lanes(&without, margin) });
+        Self { picture, wishes, area, center, onward, sides, counts }
     }
 
     /// Whether the object may go on where it is not seen.
@@ -96,16 +115,10 @@ impl<'a> Demand<'a> {
     }
 
     /// Normal equations of what is wrong at a pose: squared distances of pixels on the wrong side of the outline.
-    fn normal(&self, pose: &PosePx<f64>, field: &OutlineField<f64>) -> Normal<f64> {
-        let robustness = Robustness { width_px: WIDTH_PX, rough: false };
-        let wide = 1.0 / (WIDTH_PX * WIDTH_PX);
-        // What lies on its own side has no say.
-        let none = 1e12;
-        let inside = pose.normal_by(field, &self.inside, robustness, |r| if r > 0.0 { wide } else { none });
-        let outside = pose.normal_by(field, &self.outside, robustness, |r| if r < 0.0 { wide } else { none });
+    fn normal(&self, sides: &Sides, pose: &PosePx<f64>, field: &OutlineField<f64>) -> Normal<f64> {
+        let [inside, outside] = both(sides, pose, field, false);
         let mut sum = inside;
-        let cost = |normal: &Normal<f64>, count: f64| if count > 0.0 { normal.cost * count } else { 0.0 };
-        sum.cost = cost(&inside, self.counts[0]) + cost(&outside, self.counts[1]);
+        sum.cost = self.total([&inside, &outside]);
         for a in 0..4 {
             sum.gradient[a] += outside.gradient[a];
             for b in 0..4 {
@@ -117,20 +130,31 @@ impl<'a> Demand<'a> {
         sum
     }
 
+    /// The sum of what means count, px^2.
+    fn total(&self, normals: [&Normal<f64>; 2]) -> f64 {
+        let sums = normals.iter().zip(self.counts);
+        sums.map(|(normal, count)| if count > 0.0 { normal.cost * count } else { 0.0 }).sum()
+    }
+
     /// How wrong a pose is, px^2.
     pub(super) fn cost(&self, pose: &PosePx<f64>, field: &OutlineField<f64>) -> f64 {
-        let robustness = Robustness { width_px: WIDTH_PX, rough: true };
-        let wide = 1.0 / (WIDTH_PX * WIDTH_PX);
-        let inside = pose.normal_by(field, &self.inside, robustness, |r| if r > 0.0 { wide } else { 1e12 }).cost;
-        let outside = pose.normal_by(field, &self.outside, robustness, |r| if r < 0.0 { wide } else { 1e12 }).cost;
-        let sum = |cost: f64, count: f64| if count > 0.0 { cost * count } else { 0.0 };
-        sum(inside, self.counts[0]) + sum(outside, self.counts[1])
+        let [inside, outside] = both(&self.sides[0], pose, field, true);
+        self.total([&inside, &outside])
     }
 
     /// The pose nearby where least is wrong, and how wrong it is.
     pub(super) fn refined(&self, pose: PosePx<f64>, field: &OutlineField<f64>, steps: usize) -> (PosePx<f64>, f64) {
-        let (pose, cost, _) = pose.descend(steps, 1e-4, |pose| self.normal(pose, field));
-        (pose, cost)
+        let descend = |pose: PosePx<f64>, sides: &Sides| {
+            let (pose, cost, _) = pose.descend(steps, 1e-4, |pose| self.normal(sides, pose, field));
+            (pose, cost)
+        };
+        let (wide, cost) = descend(pose, &self.sides[0]);
+        if cost <= 0.0 {
+            return (wide, cost);
+        }
+        let (narrow, _) = descend(wide, &self.sides[1]);
+        let wrong = |pose: &PosePx<f64>| self.judge(pose, field).wrong;
+        if wrong(&narrow) < wrong(&wide) { (narrow, cost) } else { (wide, cost) }
     }
 
     /// How an outline at a pose meets the demand, pixel by pixel.
@@ -149,6 +173,17 @@ impl<'a> Demand<'a> {
         verdict.wrong += wanted - found;
         verdict
     }
+}
+
+/// Normal equations of the pixels that are to be inside, and of those that are to be outside.
+fn both(sides: &Sides, pose: &PosePx<f64>, field: &OutlineField<f64>, rough: bool) -> [Normal<f64>; 2] {
+    let robustness = Robustness { width_px: WIDTH_PX, rough };
+    // What lies on its own side has no say.
+    let (wide, none) = (1.0 / (WIDTH_PX * WIDTH_PX), 1e12);
+    [
+        pose.normal_by(field, &sides.inside, robustness, |r| if r > 0.0 { wide } else { none }),
+        pose.normal_by(field, &sides.outside, robustness, |r| if r < 0.0 { wide } else { none }),
+    ]
 }
 
 /// The pixels whose middles an outline encloses at a pose.

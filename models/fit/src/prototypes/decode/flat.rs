@@ -8,6 +8,11 @@ use dvp_core::{ImageSize, ImageView, Real};
 /// More colors than this are those of mixed pixels or of noise.
 const MOST_COLORS: usize = 24;
 
+/// Colors of more pixels are those of something.
+const MOST_MIXED: usize = 2;
+/// How far a mixture may be off: by the rounding of three colors to 8 bits.
+const ROUNDING: f64 = 1.5 / 255.0;
+
 /// A picture whose pixels each show one of few colors.
 #[derive(Clone, Debug)]
 pub(super) struct FlatPicture {
@@ -47,7 +52,36 @@ impl FlatPicture {
             color_of.push(last);
         }
         let ground = (0..colors.len()).max_by_key(|&color| counts[color])?;
-        Some(Self { size, colors, color_of, ground })
+        let mut picture = Self { size, colors, color_of, ground };
+        for color in (0..counts.len()).filter(|&color| counts[color] <= MOST_MIXED) {
+            picture.unmix(color);
+        }
+        Some(picture)
+    }
+
+    /// Gives the pixels of a rare color the nearer of two colors beside them, if it is a mixture of those: the outline passes through the middle
+    /// of the pixel as exactly as no edge is sharp.
+    fn unmix(&mut self, color: usize) {
+        for pixel in self.pixels_of(color) {
+            let beside: Vec<usize> =
+                self.around(pixel).map(|neighbor| self.color_of[neighbor]).filter(|&other| other != color).collect();
+            let pairs = beside.iter().flat_map(|&a| beside.iter().map(move |&b| (a, b)));
+            let mixed = pairs.filter_map(|(a, b)| Some((a, self.share(color, a, b)?)));
+            let nearest = mixed.min_by(|(_, a), (_, b)| a.total_cmp(b));
+            if let Some((own, _)) = nearest {
+                self.color_of[pixel] = own;
+            }
+        }
+    }
+
+    /// The share of color `b` in a mixture of `a` and `b`; none if `color` is no such mixture.
+    fn share(&self, color: usize, a: usize, b: usize) -> Option<f64> {
+        let [color, a, b] = [color, a, b].map(|index| self.colors[index].map(f64::from));
+        let step: [f64; 3] = core::array::from_fn(|c| b[c] - a[c]);
+        let length: f64 = step.iter().map(|v| v * v).sum();
+        let share = (0..3).map(|c| (color[c] - a[c]) * step[c]).sum::<f64>() / length.max(1e-12);
+        let off = (0..3).map(|c| (color[c] - a[c] - share * step[c]).abs()).fold(0.0, f64::max);
+        (length > 0.0 && (0.0..=1.0).contains(&share) && off <= ROUNDING).then_some(share)
     }
 
     /// The pixels of a color.
@@ -93,6 +127,24 @@ impl FlatPicture {
     pub(super) fn middle(&self, pixel: usize) -> [f64; 2] {
         let width = self.size.width();
         [f64::of_usize(pixel % width) + 0.5, f64::of_usize(pixel / width) + 0.5]
+    }
+
+    /// Where the outline of pixels passes: half-way from each to those beside it that are not among them. Px.
+    pub(super) fn edges_of(&self, pixels: &[usize]) -> Vec<[f64; 2]> {
+        let mut is_own = vec![false; self.color_of.len()];
+        pixels.iter().for_each(|&pixel| is_own[pixel] = true);
+        let mut edges = Vec::new();
+        for &pixel in pixels {
+            let [x, y] = self.middle(pixel);
+            for neighbor in self.around(pixel).filter(|&neighbor| !is_own[neighbor]) {
+                let [u, v] = self.middle(neighbor);
+                // Those across corners are no neighbors here.
+                if (u - x).abs() + (v - y).abs() < 1.5 {
+                    edges.push([0.5 * (x + u), 0.5 * (y + v)]);
+                }
+            }
+        }
+        edges
     }
 
     /// Whether a pixel lies at the border of the picture.

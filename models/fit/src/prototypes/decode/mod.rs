@@ -34,12 +34,19 @@ use dvp_core::{ImageView, Object, Pose, Real, Scene};
 
 use self::demand::Demand;
 use self::flat::{FlatPicture, Part};
-use self::search::{Posed, Shapes};
+use self::search::{Effort, Posed, Shapes};
 use self::split::{explains, split};
 use crate::Bank;
+use crate::pose::gauss_newton::PosePx;
 
-/// Parts of fewer pixels are what occlusion left of something.
-const LEAST_PART_PX: usize = 6;
+/// Objects of fewer pixels tell little of a shape.
+const LEAST_WHOLE_PX: f64 = 60.0;
+/// Share of the pixels of an object that may be wrong where it is to make its shape better, or where nothing explains it better.
+const ABOUT: f64 = 0.12;
+/// So many more pixels may be wrong with one object as with two.
+const MORE_WRONG_PX: usize = 8;
+/// How much sharper the edges of scenes are than those of drawings: no pixel lies so near to an outline that it is mixed.
+const SHARPER: f64 = 1e3;
 
 /// A bank made ready to find its shapes in pictures of few colors.
 #[derive(Clone, Debug)]
@@ -55,6 +62,21 @@ pub enum Undecoded {
     NotFlat,
     /// Something in the picture is none of the shapes, or hides in a way that no order of painting brings about.
     Unexplained,
+}
+
+/// An object that is seen whole.
+#[derive(Clone, Debug)]
+pub struct WholeObject {
+    /// Its shape.
+    pub prototype: usize,
+    /// Where it is.
+    pub(super) pose: PosePx<f64>,
+    /// Pixels that show it.
+    pub pixels: usize,
+    /// Pixels that the shape covers and should not, or the other way round.
+    pub wrong: usize,
+    /// Where the outline passes between the middles of two pixels, px.
+    pub(super) edges: Vec<[f64; 2]>,
 }
 
 /// An object that was found: its pixels, and what they are.
@@ -93,6 +115,7 @@ impl<T: Real> Decoder<T> {
             explain(&picture, color, shapes, &mut found).ok_or(Undecoded::Unexplained)?;
         }
         let order = order::painting(&picture, &found, shapes).ok_or(Undecoded::Unexplained)?;
+        settle(&picture, &mut found, &order, shapes);
         let unit = f64::of_usize(picture.size.unit_px());
         let object = |&at: &usize| {
             let Found { color, posed, .. } = &found[at];
@@ -106,33 +129,111 @@ impl<T: Real> Decoder<T> {
             background: picture.colors[picture.ground].map(|v| T::of(f64::from(v))),
             transparent: false,
             objects: order.iter().map(object).collect(),
-            edge: EdgeProfile::hard(T::of(unit)),
+            edge: EdgeProfile::hard(T::of(unit * SHARPER)),
             compositing: Compositing::Over,
         })
     }
 }
 
-/// The objects of a color: one, if one explains all its parts, else those of each part; none if something is left over.
+/// The objects of a color: one for all its parts, or those of each part; none if something is left over.
 fn explain(picture: &FlatPicture, color: usize, shapes: &Shapes, found: &mut Vec<Found>) -> Option<()> {
     let pixels = picture.pixels_of(color);
-    let area = f64::of_usize(pixels.len());
-    let demand = Demand::new(picture, &pixels);
-    let whole = shapes.best(&demand).filter(|posed| explains(posed, area));
-    if let Some(posed) = whole {
-        found.push(Found { color, pixels, posed });
+    if pixels.is_empty() {
         return Some(());
     }
-    for part in picture.parts_of(&pixels) {
-        let area = f64::of_usize(part.len());
-        let demand = Demand::new(picture, &part);
-        match shapes.best(&demand).filter(|posed| explains(posed, area)) {
-            Some(posed) => found.push(Found { color, pixels: part, posed }),
-            None if part.len() < LEAST_PART_PX => return None,
-            None => {
-                let pieces = split(picture, &part, shapes)?;
-                found.extend(pieces.into_iter().map(|(pixels, posed)| Found { color, pixels, posed }));
-            }
+    let best = |pixels: &[usize], effort| shapes.best(&Demand::new(picture, pixels), effort);
+    let area = f64::of_usize(pixels.len());
+    let parts = picture.parts_of(&pixels);
+    if let [part] = &parts[..] {
+        return explain_part(picture, color, part, shapes, found);
+    }
+    let mut whole = best(&pixels, Effort::Usual);
+    if !whole.is_some_and(|posed| explains(&posed, area)) {
+        // Either one object, of which something hides a piece between, or several: whichever leaves less wrong.
+        let mut apart = Vec::new();
+        let is_explained =
+            parts.iter().try_for_each(|part| explain_part(picture, color, part, shapes, &mut apart)).is_some();
+        let wrong: usize = apart.iter().map(|found| found.posed.verdict.wrong).sum();
+        let limit = wrong + MORE_WRONG_PX * (apart.len().max(1) - 1);
+        let joins = |posed: &Posed| if is_explained { posed.verdict.wrong <= limit } else { roughly(posed, area) };
+        if !whole.as_ref().is_some_and(joins) {
+            whole = best(&pixels, Effort::Wide).filter(joins);
+        }
+        if whole.is_none() {
+            is_explained.then_some(())?;
+            found.extend(apart);
+            return Some(());
         }
     }
+    found.extend(whole.map(|posed| Found { color, pixels, posed }));
     Some(())
+}
+
+/// The objects of pixels that hang together: one, or several that have run together.
+fn explain_part(
+    picture: &FlatPicture,
+    color: usize,
+    part: &[usize],
+    shapes: &Shapes,
+    found: &mut Vec<Found>,
+) -> Option<()> {
+    let area = f64::of_usize(part.len());
+    let demand = Demand::new(picture, part);
+    let mut posed = shapes.best(&demand, Effort::Usual)?;
+    if !explains(&posed, area) {
+        // What may be hidden in part is rather one object that was missed.
+        let wide = || shapes.best(&demand, Effort::Wide);
+        let missed = if demand.is_open() { wide() } else { None };
+        if !missed.is_some_and(|posed| explains(&posed, area))
+            && let Some(pieces) = split(picture, part, shapes)
+        {
+            found.extend(pieces.into_iter().map(|(pixels, posed)| Found { color, pixels, posed }));
+            return Some(());
+        }
+        posed = missed.or_else(wide).filter(|posed| roughly(posed, area))?;
+    }
+    found.push(Found { color, pixels: part.to_vec(), posed });
+    Some(())
+}
+
+/// Whether a pose explains most of its pixels.
+fn roughly(posed: &Posed, area: f64) -> bool {
+    f64::of_usize(posed.verdict.wrong) <= (ABOUT * area).max(1.0)
+}
+
+/// Poses once more, now that it is known what lies behind each object: it must not be covered.
+fn settle(picture: &FlatPicture, found: &mut [Found], order: &[usize], shapes: &Shapes) {
+    for (rank, &at) in order.iter().enumerate() {
+        let behind: Vec<usize> = order[..rank].iter().flat_map(|&other| found[other].pixels.clone()).collect();
+        let Found { pixels, posed, .. } = &found[at];
+        let demand = Demand::beside(picture, pixels, behind.into_iter());
+        let settled = shapes.settled(*posed, &demand);
+        found[at].posed = settled;
+    }
+}
+
+impl<T: Real> Decoder<T> {
+    /// The objects of a picture that are seen whole, beside nothing but ground, as well as the bank explains them: to make it better.
+    #[must_use]
+    #[inline(never)]
+    pub fn whole_objects(&self, image: &ImageView<'_, T>) -> Vec<WholeObject> {
+        let (Some(picture), Some(shapes)) = (FlatPicture::of(image), self.shapes.as_ref()) else { return Vec::new() };
+        let mut found = Vec::new();
+        for color in (0..picture.colors.len()).filter(|&color| color != picture.ground) {
+            for part in picture.parts_of(&picture.pixels_of(color)) {
+                let demand = Demand::new(&picture, &part);
+                if demand.is_open() || demand.area < LEAST_WHOLE_PX {
+                    continue;
+                }
+                let Some(posed) = shapes.best(&demand, Effort::Usual) else { continue };
+                let wrong = posed.verdict.wrong;
+                if f64::of_usize(wrong) <= ABOUT * demand.area {
+                    let Posed { prototype, pose, .. } = posed;
+                    let edges = picture.edges_of(&part);
+                    found.push(WholeObject { prototype, pose, pixels: part.len(), wrong, edges });
+                }
+            }
+        }
+        found
+    }
 }

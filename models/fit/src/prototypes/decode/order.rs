@@ -8,10 +8,8 @@ use super::demand::covered;
 use super::flat::FlatPicture;
 use super::search::Shapes;
 
-/// Pixels that an object may cover of one that lies behind it.
-const SLACK_PX: usize = 2;
-
-/// Indices of the objects in the order in which they are painted; none if two lie behind one another.
+/// Indices of the objects in the order in which they are painted: of two the one that covers more of what shows the other lies behind.
+/// None if they lie behind one another in a circle.
 pub(super) fn painting(picture: &FlatPicture, found: &[Found], shapes: &Shapes) -> Option<Vec<usize>> {
     let mut owner = vec![usize::MAX; picture.color_of.len()];
     for (at, Found { pixels, .. }) in found.iter().enumerate() {
@@ -31,12 +29,8 @@ pub(super) fn painting(picture: &FlatPicture, found: &[Found], shapes: &Shapes) 
         })
         .collect();
     let lies_behind = |a: usize, b: usize| behind[a][b] > behind[b][a] && behind[a][b] > 0;
-    let is_mixed = |a: usize, b: usize| behind[a][b].min(behind[b][a]) > SLACK_PX;
     let mut left: Vec<usize> = (0..found.len()).collect();
     let mut order = Vec::new();
-    if left.iter().any(|&a| left.iter().any(|&b| a < b && is_mixed(a, b))) {
-        return None;
-    }
     while !left.is_empty() {
         // The next one lies in front of none of those that are left.
         let next = left.iter().position(|&a| !left.iter().any(|&b| b != a && lies_behind(b, a)))?;

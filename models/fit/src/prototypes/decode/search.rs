@@ -9,7 +9,7 @@ use dvp_core::shape::{OutlineBasis, REFERENCE_VERTICES, ShapeError};
 use super::demand::{Demand, Verdict};
 use crate::Bank;
 use crate::pose::field::OutlineField;
-use crate::pose::gauss_newton::{PosePx, wrapped};
+use crate::pose::gauss_newton::{Frame, PosePx, wrapped};
 use crate::pose::search::Prototype;
 use crate::prototypes::Form;
 
@@ -19,16 +19,40 @@ const STARTS: usize = 16;
 const LEAST_STARTS: usize = 5;
 /// Sizes tried of what may go on unseen, relative to what is seen, along one side.
 const OPEN_SIZES: [f64; 6] = [1.0, 1.1, 1.22, 1.4, 1.7, 2.2];
-/// Starts of each prototype that are refined.
-const KEPT: usize = 4;
 /// Steps from a start.
 const STEPS: usize = 14;
 /// Pixels that are wrong as that many hidden ones: of two poses that explain what is seen, the one that hides less is nearer.
 const HIDDEN_PER_WRONG: f64 = 50.0;
+/// Steps from a pose to others around it: px along both axes, logarithm of the size, radians.
+const AROUND: [[f64; 4]; 8] = [
+    [0.3, 0.0, 0.0, 0.0],
+    [-0.3, 0.0, 0.0, 0.0],
+    [0.0, 0.3, 0.0, 0.0],
+    [0.0, -0.3, 0.0, 0.0],
+    [0.0, 0.0, 0.04, 0.0],
+    [0.0, 0.0, -0.04, 0.0],
+    [0.0, 0.0, 0.0, 0.06],
+    [0.0, 0.0, 0.0, -0.06],
+];
 /// Forms closer than this (root mean square, radii) are one shape turned.
 const SAME_SHAPE: f64 = 0.03;
 /// Turns (radians) of copies of one shape that are told apart.
 const UPRIGHT: f64 = 0.2;
+
+/// How hard to look.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Effort {
+    Usual,
+    /// More starts, and more of them refined.
+    Wide,
+}
+
+/// A pose to begin with.
+struct Start {
+    prototype: usize,
+    pose: PosePx<f64>,
+    cost: f64,
+}
 
 /// Prototypes ready to be searched for.
 #[derive(Clone, Debug)]
@@ -88,16 +112,64 @@ impl Shapes {
     }
 
     /// The best pose of all prototypes.
-    pub(super) fn best(&self, demand: &Demand<'_>) -> Option<Posed> {
-        let posed = (0..self.count()).flat_map(|prototype| self.posed(prototype, demand));
-        posed.reduce(|best, next| if self.is_better(&next, &best) { next } else { best })
+    pub(super) fn best(&self, demand: &Demand<'_>, effort: Effort) -> Option<Posed> {
+        let (all, each) = match effort {
+            Effort::Usual => (16, 3),
+            Effort::Wide => (240, 24),
+        };
+        let mut starts: Vec<Start> = Vec::new();
+        for prototype in 0..self.count() {
+            let mut own = self.starts(prototype, demand, effort);
+            own.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+            starts.extend(own.into_iter().take(each));
+        }
+        starts.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        let mut best: Option<Posed> = None;
+        let take = |best: &mut Option<Posed>, next: Posed| {
+            if best.as_ref().is_none_or(|best| self.is_better(&next, best)) {
+                *best = Some(next);
+            }
+        };
+        for start in starts.into_iter().take(all) {
+            take(&mut best, self.refined(start.prototype, start.pose, demand));
+            // Nothing is better than all right.
+            if best.is_some_and(|best| best.verdict == Verdict { wrong: 0, hidden: 0 }) {
+                break;
+            }
+        }
+        // Copies of the shape in other turns: one of them may explain as much without being turned.
+        let found = best?;
+        let kind = self.kinds[found.prototype];
+        for prototype in (0..self.count()).filter(|&other| self.kinds[other] == kind && other != found.prototype) {
+            let upright = self.start(prototype, demand, found.pose.log_scale, 0.0, &found);
+            take(&mut best, self.refined(prototype, upright, demand));
+        }
+        best
+    }
+
+    /// A pose of another copy of a shape that was found, with the middle of its outline where that of the other is.
+    fn start(
+        &self,
+        prototype: usize,
+        demand: &Demand<'_>,
+        log_scale: f64,
+        rotation: f64,
+        found: &Posed,
+    ) -> PosePx<f64> {
+        let [field, other] = [prototype, found.prototype].map(|prototype| &self.prototypes[prototype].field);
+        let size = log_scale.exp() * (other.area / field.area).sqrt();
+        let middle = Frame::new(&found.pose).to_pixels(other.centroid);
+        let middle = if demand.is_open() { middle } else { demand.center };
+        let (sin, cos) = rotation.sin_cos();
+        let [x, y] = field.centroid.map(|v| v * size);
+        let translation = [middle[0] - (cos * x - sin * y), middle[1] - (sin * x + cos * y)];
+        PosePx { translation, log_scale: size.ln(), rotation }
     }
 
     /// Whether `a` explains more than `b`. Of copies of one shape in several turns the one that need not be turned does.
     fn is_better(&self, a: &Posed, b: &Posed) -> bool {
-        let wrong = |posed: &Posed| {
-            f64::of_usize(posed.verdict.wrong) + f64::of_usize(posed.verdict.hidden) / HIDDEN_PER_WRONG
-        };
+        let wrong =
+            |posed: &Posed| f64::of_usize(posed.verdict.wrong) + f64::of_usize(posed.verdict.hidden) / HIDDEN_PER_WRONG;
         if self.kinds[a.prototype] == self.kinds[b.prototype] && a.prototype != b.prototype {
             let turned = |posed: &Posed| wrapped(posed.pose.rotation, self.period(posed.prototype)).abs() > UPRIGHT;
             let near = a.verdict.wrong.abs_diff(b.verdict.wrong) <= 2;
@@ -109,32 +181,65 @@ impl Shapes {
     }
 
     /// Poses of a prototype that may meet a demand.
-    fn posed(&self, prototype: usize, demand: &Demand<'_>) -> Vec<Posed> {
+    fn starts(&self, prototype: usize, demand: &Demand<'_>, effort: Effort) -> Vec<Start> {
         let Prototype { field, symmetry, .. } = &self.prototypes[prototype];
         let scale = (demand.area / field.area).sqrt();
         let radius = (demand.area / core::f64::consts::PI).sqrt();
         let sizes = if demand.is_open() { &OPEN_SIZES[..] } else { &OPEN_SIZES[..1] };
-        let angles = if *symmetry == 0 { 1 } else { (STARTS / symmetry).max(LEAST_STARTS) };
-        let mut starts: Vec<(f64, PosePx<f64>)> = Vec::new();
+        let starts = if effort == Effort::Wide { 2 * STARTS } else { STARTS };
+        let angles = if *symmetry == 0 { 1 } else { (starts / symmetry).max(LEAST_STARTS) };
+        // What is hidden lies beyond what is seen, and mostly where something else is seen beside it.
+        let ways: &[f64] = match (demand.is_open(), effort) {
+            (true, Effort::Wide) => &[0.0, 0.6, 1.0, 1.4],
+            (true, Effort::Usual) => &[1.0],
+            (false, _) => &[0.0],
+        };
+        let mut found: Vec<Start> = Vec::new();
         for &size in sizes {
             for angle in 0..angles {
                 let rotation = self.period(prototype) * f64::of_usize(angle) / f64::of_usize(angles);
                 let scale = scale * size;
                 let (sin, cos) = rotation.sin_cos();
                 let [x, y] = field.centroid.map(|v| v * scale);
-                // What is hidden lies beyond what is seen.
-                let beyond = demand.onward.map(|v| v * (size - 1.0) * radius);
-                let translation = [
-                    demand.center[0] + beyond[0] - (cos * x - sin * y),
-                    demand.center[1] + beyond[1] - (sin * x + cos * y),
-                ];
-                let pose = PosePx { translation, log_scale: scale.ln(), rotation };
-                starts.push((demand.cost(&pose, field), pose));
+                for way in ways {
+                    let beyond = demand.onward.map(|v| way * v * (size - 1.0) * radius);
+                    let translation = [
+                        demand.center[0] + beyond[0] - (cos * x - sin * y),
+                        demand.center[1] + beyond[1] - (sin * x + cos * y),
+                    ];
+                    let pose = PosePx { translation, log_scale: scale.ln(), rotation };
+                    found.push(Start { prototype, pose, cost: demand.cost(&pose, field) });
+                }
             }
         }
-        starts.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let refined = starts.into_iter().take(KEPT).map(|(_, pose)| self.refined(prototype, pose, demand));
-        refined.collect()
+        found
+    }
+
+    /// The pose near `posed` that meets a demand best, looked for from several sides: where least is wrong between the middles of pixels,
+    /// some may be wrong that need not be.
+    pub(super) fn settled(&self, posed: Posed, demand: &Demand<'_>) -> Posed {
+        let field = &self.prototypes[posed.prototype].field;
+        let mut best = Posed { verdict: demand.judge(&posed.pose, field), ..posed };
+        let next = self.refined(posed.prototype, posed.pose, demand);
+        if self.is_better(&next, &best) {
+            best = next;
+        }
+        for [x, y, size, turn] in AROUND {
+            if best.verdict.wrong == 0 {
+                break;
+            }
+            let PosePx { translation, log_scale, rotation } = best.pose;
+            let pose = PosePx {
+                translation: [translation[0] + x, translation[1] + y],
+                log_scale: log_scale + size,
+                rotation: rotation + turn,
+            };
+            let next = self.refined(best.prototype, pose, demand);
+            if self.is_better(&next, &best) {
+                best = next;
+            }
+        }
+        best
     }
 
     /// The pose near a start.

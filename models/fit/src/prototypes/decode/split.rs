@@ -10,7 +10,7 @@ use dvp_core::Real;
 
 use super::demand::{Demand, covered};
 use super::flat::{FlatPicture, Part};
-use super::search::{Posed, Shapes};
+use super::search::{Effort, Posed, Shapes};
 use crate::pose::gauss_newton::PosePx;
 
 /// Most pieces of a part.
@@ -42,7 +42,7 @@ fn taken_off(
 ) -> Option<Vec<(Part, Posed)>> {
     if pieces == 1 {
         let demand = Demand::new(picture, &part);
-        let posed = shapes.best(&demand).filter(|posed| explains(posed, area))?;
+        let posed = shapes.best(&demand, Effort::Usual).filter(|posed| explains(posed, area))?;
         return Some(vec![(part, posed)]);
     }
     let first = *part.iter().min()?;

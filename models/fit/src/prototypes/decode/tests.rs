@@ -1,0 +1,192 @@
+use alloc::string::ToString;
+use alloc::vec;
+use alloc::vec::Vec;
+
+use dvp_core::render::{Compositing, EdgeProfile};
+use dvp_core::shape::mdshr_bank;
+use dvp_core::{Efd, Image, ImageSize, Object, Pose, Real, Scene};
+
+use super::{Decoder, Undecoded};
+use crate::Bank;
+use crate::paint::Canvas;
+use crate::prototypes::Pool;
+
+fn bank() -> Bank<f32> {
+    let names = ["heart", "square", "ellipse"].map(ToString::to_string);
+    Bank { prototypes: names.into_iter().zip(mdshr_bank(31).prototypes().iter().cloned()).collect() }
+}
+
+/// An object of the bank: its shape, place and size in px, angle and color.
+type Placed = (usize, [f32; 2], f32, f32, [f32; 3]);
+
+/// A picture of 64 x 64 pixels with hard edges, rounded to 8 bits as files are.
+fn picture(bank: &Bank<f32>, objects: &[Placed]) -> Image<f32> {
+    let object = |&(k, [x, y], scale, rotation, color): &Placed| {
+        let pose = Pose { translation: [x / 64.0, y / 64.0], scale: scale / 64.0, rotation };
+        Object::of_efd(pose, color, 1.0, bank.prototypes[k].1.clone(), Some(k))
+    };
+    let scene = Scene {
+        background: [0.1, 0.2, 0.3],
+        transparent: false,
+        objects: objects.iter().map(object).collect(),
+        edge: EdgeProfile { offset: 0.0, sigma: 1e-11, cut: 5.21e-11, ..EdgeProfile::reference() },
+        compositing: Compositing::Over,
+    };
+    let size = ImageSize::new(64, 64).unwrap();
+    let mut image = Canvas::default().paint(&scene, size).unwrap().0.clone();
+    image.data_mut().iter_mut().for_each(|v| *v = num_traits::Float::round(*v * 255.0) / 255.0);
+    image
+}
+
+/// Pixels that a scene paints in another color.
+fn wrong(scene: &Scene<f32>, image: &Image<f32>) -> usize {
+    let mut canvas = Canvas::default();
+    let (painted, _) = canvas.paint(scene, image.size()).unwrap();
+    let differs = |&i: &usize| (0..3).any(|c| (painted.view().pixel(i)[c] - image.view().pixel(i)[c]).abs() > 0.02);
+    (0..image.size().pixels()).filter(differs).count()
+}
+
+const RED: [f32; 3] = [0.9, 0.1, 0.1];
+const GREEN: [f32; 3] = [0.1, 0.8, 0.2];
+const BLUE: [f32; 3] = [0.2, 0.3, 0.9];
+
+#[test]
+fn objects_that_hide_one_another_are_found_whole_and_in_order() {
+    let placed: [Placed; 3] =
+        [(0, [20.0, 22.0], 11.0, 0.4, RED), (1, [29.0, 27.0], 9.0, 1.0, GREEN), (2, [47.0, 46.0], 12.0, 2.0, BLUE)];
+    let image = picture(&bank(), &placed);
+    let scene = Decoder::new(&bank()).unwrap().scene(&image.view()).unwrap();
+    assert_eq!(wrong(&scene, &image), 0);
+    assert_eq!(scene.objects.len(), 3);
+    let at =
+        |color: [f32; 3]| scene.objects.iter().position(|o| (0..3).all(|c| (o.color()[c] - color[c]).abs() < 0.01));
+    let (heart, square) = (at(RED).unwrap(), at(GREEN).unwrap());
+    assert!(heart < square, "the heart lies behind");
+    for (k, [x, y], scale, _, color) in placed {
+        let object = &scene.objects[at(color).unwrap()];
+        assert_eq!(object.prototype(), Some(k));
+        let Pose { translation: [u, v], scale: own, .. } = object.pose;
+        let off = [u * 64.0 - x, v * 64.0 - y, own * 64.0 - scale];
+        // Pixels tell a place to some tenths of a pixel; what is hidden to more.
+        assert!(off.iter().all(|off| off.abs() < 0.6), "{k}: {off:?}");
+    }
+}
+
+#[test]
+fn parts_that_something_hides_between_are_one_object() {
+    // A bar across an ellipse: two parts of one color.
+    let placed: [Placed; 2] = [(2, [32.0, 30.0], 20.0, 0.0, RED), (1, [32.0, 30.0], 5.0, 0.0, GREEN)];
+    let mut image = picture(&bank(), &placed);
+    // The square made as high as the picture.
+    let size = image.size();
+    for pixel in (0..size.pixels()).filter(|pixel| (29..35).contains(&(pixel % 64)) && (18..42).contains(&(pixel / 64)))
+    {
+        for (c, value) in GREEN.into_iter().enumerate() {
+            image.data_mut()[c * size.pixels() + pixel] = num_traits::Float::round(value * 255.0) / 255.0;
+        }
+    }
+    let bar = |half: [f64; 2]| {
+        let corners = [[-half[0], -half[1]], [half[0], -half[1]], [half[0], half[1]], [-half[0], half[1]]];
+        Efd::from_contour(&corners, 31).unwrap().0.cast::<f32>()
+    };
+    let mut bank = bank();
+    bank.prototypes.push(("bar".to_string(), bar([0.25, 1.0])));
+    let scene = Decoder::new(&bank).unwrap().scene(&image.view()).unwrap();
+    let prototypes: Vec<_> = scene.objects.iter().map(Object::prototype).collect();
+    assert_eq!(prototypes, [Some(2), Some(3)]);
+    assert!(wrong(&scene, &image) <= 2);
+}
+
+/// A shape of cells, 5 px each, as it stands.
+fn cells(cells: &[[f64; 2]]) -> Efd<f32> {
+    Efd::from_contour(cells, 31).unwrap().0.cast()
+}
+
+/// A bank of three tetrominoes, two of them one shape turned.
+fn pieces() -> Bank<f32> {
+    let bar = cells(&[[0.0, 0.0], [4.0, 0.0], [4.0, 1.0], [0.0, 1.0]]);
+    let upright = cells(&[[0.0, 0.0], [1.0, 0.0], [1.0, 4.0], [0.0, 4.0]]);
+    let block = cells(&[[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]]);
+    Bank { prototypes: vec![("lying".into(), bar), ("standing".into(), upright), ("block".into(), block)] }
+}
+
+/// Rectangles of pixels (left, top, right, bottom) in color on black.
+fn rectangles(rectangles: &[([usize; 4], [f32; 3])]) -> Image<f32> {
+    let size = ImageSize::new(35, 35).unwrap();
+    let mut image = Image::zeros(size);
+    for &([left, top, right, bottom], color) in rectangles {
+        for pixel in (top..bottom).flat_map(|row| (left..right).map(move |column| 35 * row + column)) {
+            for (c, value) in color.into_iter().enumerate() {
+                image.data_mut()[c * size.pixels() + pixel] = value;
+            }
+        }
+    }
+    image
+}
+
+#[test]
+fn what_has_run_together_is_taken_apart_and_not_turned() {
+    let red = [1.0, 0.0, 0.0];
+    // A block below a lying bar, one color; a standing bar apart.
+    let image = rectangles(&[([3, 4, 23, 9], red), ([6, 9, 16, 19], red), ([29, 10, 34, 30], [0.0, 1.0, 1.0])]);
+    let scene = Decoder::new(&pieces()).unwrap().scene(&image.view()).unwrap();
+    assert_eq!(wrong(&scene, &image), 0);
+    let mut found: Vec<_> = scene.objects.iter().filter_map(Object::prototype).collect();
+    found.sort_unstable();
+    assert_eq!(found, [0, 1, 2]);
+    let turned = |object: &Object<f32>| {
+        // A block looks alike after a quarter of a turn.
+        let quarter = core::f32::consts::FRAC_PI_2;
+        let period = if object.prototype() == Some(2) { quarter } else { 2.0 * quarter };
+        (object.pose.rotation - period * num_traits::Float::round(object.pose.rotation / period)).abs()
+    };
+    assert!(scene.objects.iter().all(|object| turned(object) < 0.1));
+}
+
+#[test]
+fn what_is_no_such_picture_is_refused() {
+    let decoder = Decoder::new(&bank()).unwrap();
+    let size = ImageSize::new(32, 32).unwrap();
+    let ramp: Vec<f32> = (0..3 * 32 * 32).map(|i| f32::of(f64::of_usize(i % 997) / 997.0)).collect();
+    let ramp = Image::from_planar(size, ramp).unwrap();
+    assert_eq!(decoder.scene(&ramp.view()), Err(Undecoded::NotFlat));
+    assert!(decoder.whole_objects(&ramp.view()).is_empty());
+    // A long bar is none of heart, square and ellipse.
+    let image = rectangles(&[([2, 15, 33, 18], RED)]);
+    assert_eq!(decoder.scene(&image.view()), Err(Undecoded::Unexplained));
+    // Nothing but ground.
+    assert!(decoder.scene(&Image::zeros(size).view()).unwrap().objects.is_empty());
+}
+
+#[test]
+fn whole_objects_make_a_shape_better() {
+    let truth = bank();
+    // Hearts with their notch filled in.
+    let blunt = Efd::new(truth.prototypes[0].1.rows()[..2].to_vec());
+    let mut learned = truth.clone();
+    learned.prototypes[0].1 = blunt;
+    let images: Vec<Image<f32>> = (0..24)
+        .map(|i| {
+            let t = f32::of(f64::of_usize(i));
+            let angle = t * 0.7;
+            picture(
+                &truth,
+                &[(0, [20.0 + 0.37 * t, 30.0], 11.0, angle, RED), (1, [48.0, 50.0 - 0.31 * t], 7.0, angle, BLUE)],
+            )
+        })
+        .collect();
+    let share = |bank: &Bank<f32>| {
+        let decoder = Decoder::new(bank).unwrap();
+        let mut pool = Pool::new(bank).unwrap();
+        let (mut wrong, mut pixels) = (0, 0);
+        for object in images.iter().flat_map(|image| decoder.whole_objects(&image.view())) {
+            (wrong, pixels) = (wrong + object.wrong, pixels + object.pixels);
+            pool.add_whole(&object);
+        }
+        assert!(pixels > 24 * 300, "{pixels}");
+        (f64::of_usize(wrong) / f64::of_usize(pixels), pool.bank().unwrap())
+    };
+    let (before, better) = share(&learned);
+    let (after, _) = share(&better);
+    assert!(after < 0.3 * before && after < 0.01, "{before} {after}");
+}
