@@ -8,7 +8,7 @@ use dvp_core::loss::{ImagePair, Loss as _};
 use dvp_core::render::PixelLoss;
 
 use super::{Known, PictureScratch, drawing};
-use crate::prototypes::{Decoder, Undecoded};
+use crate::prototypes::{Decoded, Decoder, Undecoded};
 use crate::{Bank, Fit, FitError, Fitter, StopReason};
 
 /// Mean absolute error of a scene that paints every pixel in its color: pixels near the outline are not quite of one color.
@@ -26,14 +26,14 @@ pub(super) fn fit(
         Some(decoder) => decoder,
         None => Decoder::new(bank).map_err(FitError::Shape)?,
     };
-    let decoded = decoder.scene(&image);
+    let decoded = decoder.decode(&image);
     scratch.decoder = Some(decoder);
     let found = match decoded {
-        Ok(scene) => {
+        Ok(Decoded { scene, ambiguity }) => {
             let (painted, drawing) = scratch.canvas.paint(&scene, image.size())?;
             let loss = PixelLoss::Mae.value(ImagePair::new(painted.view(), image)?, &mut ())?;
             let fit = Fit::of_painted(scene, &drawing, &image, painted.data());
-            Fit { loss, stop: StopReason::Converged, ..fit }
+            Fit { loss, stop: StopReason::Converged, ambiguity, ..fit }
         }
         Err(Undecoded::NotFlat) => return fitter.fit(image, &mut scratch.fit),
         Err(Undecoded::Unexplained) => fitter.fit(image, &mut scratch.fit)?,

@@ -32,7 +32,7 @@ mod pool;
 #[cfg(test)]
 mod tests;
 
-pub use decode::{Decoder, Undecoded, WholeObject};
+pub use decode::{Decoded, Decoder, Undecoded, WholeObject};
 pub use form::{Alignment, Form, Freedom};
 pub use learn::{LearnError, Learned, Prototype, PrototypeOptions, learn};
 pub use medoids::{DistanceMatrix, Partition, Silhouette, k_medoids, silhouette};

@@ -42,6 +42,7 @@ pub(super) struct Demand<'a> {
     pub(super) center: [f64; 2],
     /// From the middle to where the object may go on unseen, a unit vector; zero if it does not.
     pub(super) onward: [f64; 2],
+    open: bool,
     /// By margins.
     sides: [Sides; 2],
     /// How many samples there are of each.
@@ -106,12 +107,12 @@ impl<'a> Demand<'a> {
         };
         let sides =
             MARGINS_PX.map(|margin| Sides { inside: lanes(&within, -margin), outside: lanes(&without, margin) });
-        Self { picture, wishes, area, center, onward, sides, counts }
+        Self { picture, wishes, area, center, onward, open: !open.is_empty(), sides, counts }
     }
 
     /// Whether the object may go on where it is not seen.
     pub(super) fn is_open(&self) -> bool {
-        self.onward != [0.0; 2]
+        self.open
     }
 
     /// Normal equations of what is wrong at a pose: squared distances of pixels on the wrong side of the outline.

@@ -15,10 +15,12 @@
 //! | `search` | a demand, a bank | the best prototype and pose |
 //! | `split` | objects of one color that touch | the pieces |
 //! | `order` | posed objects | which is painted first |
+//! | `doubt` | posed objects | what pixels leave open |
 //!
 //! Proved by `tests` beside it, and by `tests/report/suites.md`.
 
 mod demand;
+mod doubt;
 mod flat;
 mod order;
 mod search;
@@ -36,8 +38,8 @@ use self::demand::Demand;
 use self::flat::{FlatPicture, Part};
 use self::search::{Effort, Posed, Shapes};
 use self::split::{explains, split};
-use crate::Bank;
 use crate::pose::gauss_newton::PosePx;
+use crate::{Ambiguity, Bank};
 
 /// Objects of fewer pixels tell little of a shape.
 const LEAST_WHOLE_PX: f64 = 60.0;
@@ -53,6 +55,15 @@ const SHARPER: f64 = 1e3;
 pub struct Decoder<T> {
     bank: Bank<T>,
     shapes: Option<Shapes>,
+}
+
+/// What a picture of few colors shows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Decoded<T> {
+    /// Its objects, all of shapes of the bank.
+    pub scene: Scene<T>,
+    /// What pixels leave open of them.
+    pub ambiguity: Vec<Ambiguity>,
 }
 
 /// Why there is no scene.
@@ -107,7 +118,7 @@ impl<T: Real> Decoder<T> {
     /// # Errors
     /// [`Undecoded`] if there is no such scene.
     #[inline(never)]
-    pub fn scene(&self, image: &ImageView<'_, T>) -> Result<Scene<T>, Undecoded> {
+    pub fn decode(&self, image: &ImageView<'_, T>) -> Result<Decoded<T>, Undecoded> {
         let picture = FlatPicture::of(image).ok_or(Undecoded::NotFlat)?;
         let shapes = self.shapes.as_ref().ok_or(Undecoded::Unexplained)?;
         let mut found = Vec::new();
@@ -125,13 +136,14 @@ impl<T: Real> Decoder<T> {
             let color = picture.colors[*color].map(|v| T::of(f64::from(v)));
             Object::of_efd(pose, color, T::one(), efd, Some(posed.prototype))
         };
-        Ok(Scene {
+        let scene = Scene {
             background: picture.colors[picture.ground].map(|v| T::of(f64::from(v))),
             transparent: false,
             objects: order.iter().map(object).collect(),
             edge: EdgeProfile::hard(T::of(unit * SHARPER)),
             compositing: Compositing::Over,
-        })
+        };
+        Ok(Decoded { scene, ambiguity: doubt::doubts(&picture, &found, &order, shapes) })
     }
 }
 

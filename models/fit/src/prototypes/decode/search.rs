@@ -99,6 +99,16 @@ impl Shapes {
         &self.prototypes[prototype].field
     }
 
+    /// The symmetry order of a prototype; 0: every rotation.
+    pub(super) fn symmetry(&self, prototype: usize) -> usize {
+        self.prototypes[prototype].symmetry
+    }
+
+    /// The outline of a prototype, in its own frame.
+    pub(super) fn outline(&self, prototype: usize) -> &[[f64; 2]] {
+        &self.prototypes[prototype].outline
+    }
+
     /// The box of a prototype's outline: its least and its largest coordinates.
     pub(super) fn bounds(&self, prototype: usize) -> [[f64; 2]; 2] {
         let vertices = &self.prototypes[prototype].outline;

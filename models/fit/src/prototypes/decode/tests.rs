@@ -6,10 +6,10 @@ use dvp_core::render::{Compositing, EdgeProfile};
 use dvp_core::shape::mdshr_bank;
 use dvp_core::{Efd, Image, ImageSize, Object, Pose, Real, Scene};
 
-use super::{Decoder, Undecoded};
-use crate::Bank;
+use super::{Decoded, Decoder, Undecoded};
 use crate::paint::Canvas;
 use crate::prototypes::Pool;
+use crate::{Ambiguity, Bank, Completion};
 
 fn bank() -> Bank<f32> {
     let names = ["heart", "square", "ellipse"].map(ToString::to_string);
@@ -55,9 +55,27 @@ fn objects_that_hide_one_another_are_found_whole_and_in_order() {
     let placed: [Placed; 3] =
         [(0, [20.0, 22.0], 11.0, 0.4, RED), (1, [29.0, 27.0], 9.0, 1.0, GREEN), (2, [47.0, 46.0], 12.0, 2.0, BLUE)];
     let image = picture(&bank(), &placed);
-    let scene = Decoder::new(&bank()).unwrap().scene(&image.view()).unwrap();
-    assert_eq!(wrong(&scene, &image), 0);
+    let Decoded { scene, ambiguity } = Decoder::new(&bank()).unwrap().decode(&image.view()).unwrap();
+    assert!(wrong(&scene, &image) <= 2);
     assert_eq!(scene.objects.len(), 3);
+    // A heart has one angle, a square four, an ellipse two; the heart is hidden in part.
+    let orders = |k| {
+        ambiguity.iter().find_map(|open| match *open {
+            Ambiguity::Symmetry { object, order } if scene.objects[object].prototype() == Some(k) => Some(order),
+            _ => None,
+        })
+    };
+    assert_eq!([0, 1, 2].map(orders), [None, Some(4), Some(2)]);
+    let hidden: Vec<_> = ambiguity
+        .iter()
+        .filter_map(|open| match *open {
+            Ambiguity::Hidden { object, share, completion: Completion::Prototype } => {
+                Some((scene.objects[object].prototype(), (0.05..0.5).contains(&share)))
+            }
+            _ => None,
+        })
+        .collect();
+    assert_eq!(hidden, [(Some(0), true)]);
     let at =
         |color: [f32; 3]| scene.objects.iter().position(|o| (0..3).all(|c| (o.color()[c] - color[c]).abs() < 0.01));
     let (heart, square) = (at(RED).unwrap(), at(GREEN).unwrap());
@@ -74,26 +92,11 @@ fn objects_that_hide_one_another_are_found_whole_and_in_order() {
 
 #[test]
 fn parts_that_something_hides_between_are_one_object() {
-    // A bar across an ellipse: two parts of one color.
-    let placed: [Placed; 2] = [(2, [32.0, 30.0], 20.0, 0.0, RED), (1, [32.0, 30.0], 5.0, 0.0, GREEN)];
-    let mut image = picture(&bank(), &placed);
-    // The square made as high as the picture.
-    let size = image.size();
-    for pixel in (0..size.pixels()).filter(|pixel| (29..35).contains(&(pixel % 64)) && (18..42).contains(&(pixel / 64)))
-    {
-        for (c, value) in GREEN.into_iter().enumerate() {
-            image.data_mut()[c * size.pixels() + pixel] = num_traits::Float::round(value * 255.0) / 255.0;
-        }
-    }
-    let bar = |half: [f64; 2]| {
-        let corners = [[-half[0], -half[1]], [half[0], -half[1]], [half[0], half[1]], [-half[0], half[1]]];
-        Efd::from_contour(&corners, 31).unwrap().0.cast::<f32>()
-    };
-    let mut bank = bank();
-    bank.prototypes.push(("bar".to_string(), bar([0.25, 1.0])));
-    let scene = Decoder::new(&bank).unwrap().scene(&image.view()).unwrap();
+    // A square across an ellipse: two tips of one color.
+    let image = picture(&bank(), &[(2, [32.0, 30.0], 25.0, 0.0, RED), (1, [32.0, 30.0], 16.0, 0.1, GREEN)]);
+    let scene = Decoder::new(&bank()).unwrap().decode(&image.view()).unwrap().scene;
     let prototypes: Vec<_> = scene.objects.iter().map(Object::prototype).collect();
-    assert_eq!(prototypes, [Some(2), Some(3)]);
+    assert_eq!(prototypes, [Some(2), Some(1)]);
     assert!(wrong(&scene, &image) <= 2);
 }
 
@@ -129,7 +132,7 @@ fn what_has_run_together_is_taken_apart_and_not_turned() {
     let red = [1.0, 0.0, 0.0];
     // A block below a lying bar, one color; a standing bar apart.
     let image = rectangles(&[([3, 4, 23, 9], red), ([6, 9, 16, 19], red), ([29, 10, 34, 30], [0.0, 1.0, 1.0])]);
-    let scene = Decoder::new(&pieces()).unwrap().scene(&image.view()).unwrap();
+    let scene = Decoder::new(&pieces()).unwrap().decode(&image.view()).unwrap().scene;
     assert_eq!(wrong(&scene, &image), 0);
     let mut found: Vec<_> = scene.objects.iter().filter_map(Object::prototype).collect();
     found.sort_unstable();
@@ -149,20 +152,20 @@ fn what_is_no_such_picture_is_refused() {
     let size = ImageSize::new(32, 32).unwrap();
     let ramp: Vec<f32> = (0..3 * 32 * 32).map(|i| f32::of(f64::of_usize(i % 997) / 997.0)).collect();
     let ramp = Image::from_planar(size, ramp).unwrap();
-    assert_eq!(decoder.scene(&ramp.view()), Err(Undecoded::NotFlat));
+    assert_eq!(decoder.decode(&ramp.view()), Err(Undecoded::NotFlat));
     assert!(decoder.whole_objects(&ramp.view()).is_empty());
     // A long bar is none of heart, square and ellipse.
     let image = rectangles(&[([2, 15, 33, 18], RED)]);
-    assert_eq!(decoder.scene(&image.view()), Err(Undecoded::Unexplained));
+    assert_eq!(decoder.decode(&image.view()), Err(Undecoded::Unexplained));
     // Nothing but ground.
-    assert!(decoder.scene(&Image::zeros(size).view()).unwrap().objects.is_empty());
+    assert!(decoder.decode(&Image::zeros(size).view()).unwrap().scene.objects.is_empty());
 }
 
 #[test]
 fn whole_objects_make_a_shape_better() {
     let truth = bank();
-    // Hearts with their notch filled in.
-    let blunt = Efd::new(truth.prototypes[0].1.rows()[..2].to_vec());
+    // Hearts whose notch and tip are rounded.
+    let blunt = Efd::new(truth.prototypes[0].1.rows()[..4].to_vec());
     let mut learned = truth.clone();
     learned.prototypes[0].1 = blunt;
     let images: Vec<Image<f32>> = (0..24)
@@ -180,10 +183,12 @@ fn whole_objects_make_a_shape_better() {
         let mut pool = Pool::new(bank).unwrap();
         let (mut wrong, mut pixels) = (0, 0);
         for object in images.iter().flat_map(|image| decoder.whole_objects(&image.view())) {
-            (wrong, pixels) = (wrong + object.wrong, pixels + object.pixels);
+            if object.prototype == 0 {
+                (wrong, pixels) = (wrong + object.wrong, pixels + object.pixels);
+            }
             pool.add_whole(&object);
         }
-        assert!(pixels > 24 * 300, "{pixels}");
+        assert!(pixels > 3000, "{pixels}");
         (f64::of_usize(wrong) / f64::of_usize(pixels), pool.bank().unwrap())
     };
     let (before, better) = share(&learned);
