@@ -168,9 +168,8 @@ fn explain(picture: &FlatPicture, color: usize, shapes: &Shapes, found: &mut Vec
         let wrong: usize = apart.iter().map(|found| found.posed.verdict.wrong).sum();
         let limit = wrong + MORE_WRONG_PX * (apart.len().max(1) - 1);
         let joins = |posed: &Posed| if is_explained { posed.verdict.wrong <= limit } else { roughly(posed, area) };
-        if !whole.as_ref().is_some_and(joins) {
-            whole = best(&pixels, Effort::Wide).filter(joins);
-        }
+        let wrong = |posed: &Posed| posed.verdict.wrong;
+        whole = whole.into_iter().chain(best(&pixels, Effort::Wide)).filter(joins).min_by_key(wrong);
         if whole.is_none() {
             is_explained.then_some(())?;
             found.extend(apart);

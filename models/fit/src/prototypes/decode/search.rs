@@ -18,7 +18,7 @@ const STARTS: usize = 16;
 /// Fewest start angles.
 const LEAST_STARTS: usize = 5;
 /// Sizes tried of what may go on unseen, relative to what is seen, along one side.
-const OPEN_SIZES: [f64; 6] = [1.0, 1.1, 1.22, 1.4, 1.7, 2.2];
+const OPEN_SIZES: [f64; 7] = [1.0, 1.1, 1.22, 1.4, 1.65, 2.0, 2.5];
 /// Steps from a start.
 const STEPS: usize = 14;
 /// Pixels that are wrong as that many hidden ones: of two poses that explain what is seen, the one that hides less is nearer.
@@ -125,7 +125,7 @@ impl Shapes {
     pub(super) fn best(&self, demand: &Demand<'_>, effort: Effort) -> Option<Posed> {
         let (all, each) = match effort {
             Effort::Usual => (16, 3),
-            Effort::Wide => (240, 24),
+            Effort::Wide => (360, 40),
         };
         let mut starts: Vec<Start> = Vec::new();
         for prototype in 0..self.count() {
