@@ -10,11 +10,23 @@ fn a_bank_is_learned_and_used() {
     let [data, bank, again, chart, out] =
         ["data", "bank.json", "again.json", "silhouette.svg", "out"].map(|name| folder.path().join(name));
     dvp_done(["generate", "--count", "24", "--out", text(&data)]);
-    let table = dvp_done(["prototypes", text(&data), "-o", text(&bank), "--chart", text(&chart), "--threads", "1"]);
+    let table = dvp_done([
+        "prototypes",
+        text(&data),
+        "-o",
+        text(&bank),
+        "--chart",
+        text(&chart),
+        "--max-shapes",
+        "8",
+        "--threads",
+        "1",
+    ]);
     assert!(table.contains("shape 3") && table.contains("24 pictures") && !table.contains("shape 4"), "{table}");
     let svg = fs::read_to_string(&chart).unwrap();
     assert!(svg.contains("</svg>") && svg.contains("mean silhouette") && svg.matches("<circle").count() == 7, "{svg}");
-    let json = dvp_done(["prototypes", text(&data), "-o", text(&again), "--json", "--threads", "2"]);
+    let json =
+        dvp_done(["prototypes", text(&data), "-o", text(&again), "--max-shapes", "8", "--json", "--threads", "2"]);
     let report: serde_json::Value = serde_json::from_str(&json).unwrap();
     assert_eq!(report["shapes"].as_array().unwrap().len(), 3);
     assert_eq!(report["silhouettes"].as_array().unwrap().len(), 7);

@@ -6,6 +6,9 @@ use core::f64::consts::TAU;
 use dvp_core::Real;
 use dvp_core::shape::{OutlineBasis, REFERENCE_VERTICES, ShapeError};
 
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
+
 use super::demand::{Demand, Verdict};
 use crate::Bank;
 use crate::pose::field::OutlineField;

@@ -8,6 +8,9 @@ use alloc::vec::Vec;
 
 use dvp_core::Real;
 
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
+
 use super::demand::{Demand, covered};
 use super::flat::{FlatPicture, Part};
 use super::search::{Effort, Posed, Shapes};
