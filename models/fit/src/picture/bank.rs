@@ -42,6 +42,6 @@ pub(super) fn fit(
         return Ok(found);
     }
     let Ok(traced) = dvp_trace::trace(&image, known) else { return Ok(found) };
-    let drawn = drawing(fitter, traced, image, known, scratch)?;
+    let drawn = drawing(fitter, traced, image, scratch)?;
     Ok(if drawn.loss < found.loss { drawn } else { found })
 }

@@ -117,7 +117,7 @@ fn drawing_or_segments(
         return bank::fit(fitter, bank, image, known, scratch);
     }
     match dvp_trace::trace(&image, known) {
-        Ok(traced) => drawing(fitter, traced, image, known, scratch),
+        Ok(traced) => drawing(fitter, traced, image, scratch),
         Err(_) => fitter.fit(image, &mut scratch.fit),
     }
 }
@@ -127,7 +127,6 @@ fn drawing(
     fitter: &Fitter<f32>,
     traced: Traced,
     image: ImageView<'_, f32>,
-    known: &Known,
     scratch: &mut PictureScratch,
 ) -> Result<Fit<f32>, FitError> {
     let (painted, drawing) = scratch.canvas.paint(&traced.scene, image.size())?;

@@ -37,7 +37,7 @@ pub(super) fn better_bank(arguments: &Arguments, paths: &[PathBuf], bank: Bank<f
         }
         tried = next;
     }
-    Ok(Bank { prototypes: best.into_iter().flatten().map(|(_, prototype)| prototype).collect() })
+    Ok(Bank::new(best.into_iter().flatten().map(|(_, prototype)| prototype).collect()))
 }
 
 /// How well a bank explains the objects, and what they make of it.
