@@ -109,7 +109,7 @@ fn what_does_not_go_together_is_said() {
     refused(&["generate", "--preset", "tetrominoes", "--from", from, "--out", out], &["record 1", "set.tfrecords"]);
     refused(&["generate", "--preset", "csr", "--from", from, "--width", "9", "--out", out], &["as they are"]);
     assert!(!data.exists(), "nothing is half-written");
-    refused(&["evaluate", out, "--suite", "csr"], &["data"]);
+    refused(&["evaluate", out, "--suite", "csr"], &["DATA"]);
     dvp_done(["generate", "--preset", "csr", "--count", "2", "--out", out]);
     assert_eq!(names(&data), ["00000.png", "00001.png", "classes.json", "scenes.jsonl"]);
     let predictions = folder.path().join("predictions");
