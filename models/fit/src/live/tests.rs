@@ -30,7 +30,7 @@ fn crossing(objects: &[Object<f64>]) -> (f64, Vec<Vec<f64>>) {
 fn cubics_that_turn_back_are_priced() {
     // AB along +x, BC along +y: it turns from +x to +y. CD back along -x is half a turn: no price, no gradient beyond.
     let free = object([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.5, 1.5]]);
-    let (price, numbers) = crossing(&[free.clone()]);
+    let (price, numbers) = crossing(core::slice::from_ref(&free));
     assert!(price.abs() < 1e-15 && numbers[0].iter().all(|slope| slope.abs() < 1e-15), "{price} {numbers:?}");
     // CD along -y: the sine is -1, the price 1, of two cubics half, times the weight 2.
     let priced = object([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [1.0, 0.5]]);
