@@ -57,9 +57,9 @@ pub struct PictureScratch {
 
 /// The scene of a picture, with the openings of a transparent one cut out.
 ///
-/// The picture is taken as a drawing if it is one (flat colors with clear edges) and the options of `fitter` know nothing of its
-/// objects beforehand: neither a bank nor how they mix. Else, and where edges leave a doubt and it is nearer to the picture, as
-/// segments.
+/// The picture is taken as a drawing if it is one (flat colors with clear edges), else as segments; where edges leave a doubt as what
+/// their profile says. If the options of `fitter` know the shapes, these are laid on it, unless a drawing without them is nearer; if they
+/// say how objects mix, it is taken as segments.
 ///
 /// A transparent picture comes over its matte ([`Ground`]), and [`Known::matte`] says which color that is; of an opaque one it
 /// is none.

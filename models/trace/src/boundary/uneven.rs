@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use num_traits::Float as _;
 
 use super::window::{beside, sample};
-use super::{Ring, profile};
+use super::{Ring, Step, profile};
 use crate::partition::Partition;
 
 /// Change of the position over five windows from which on an edge is slanted: upright ones are off by the same everywhere.
@@ -25,9 +25,14 @@ pub(super) fn unevenness(partition: &Partition, rings: &[Vec<Ring>]) -> f64 {
     let mut off: Vec<f64> = Vec::new();
     for ring in rings.iter().flatten() {
         // The rings of both sides of a boundary tell the same.
-        for first in (0..ring.steps.len()).filter(|&k| ring.steps[k].inner < ring.steps[k].other) {
-            off.extend(five(partition, ring, first).map(|at| profile::fourth_difference(at).abs()));
-        }
+        let position = |step: &Step| {
+            let sample = (step.inner < step.other).then(|| sample(partition, step))??;
+            Some(sample.point.dot(sample.axis))
+        };
+        let positions: Vec<Option<f64>> = ring.steps.iter().map(position).collect();
+        off.extend(
+            (0..positions.len()).filter_map(|k| Some(profile::fourth_difference(five(ring, &positions, k)?).abs())),
+        );
     }
     if off.len() < LEAST_COUNT {
         return 0.0;
@@ -39,15 +44,12 @@ pub(super) fn unevenness(partition: &Partition, rings: &[Vec<Ring>]) -> f64 {
 }
 
 /// Positions in five windows side by side from step `first` on, along their axis; none if the boundary is not slanted or not straight there.
-fn five(partition: &Partition, ring: &Ring, first: usize) -> Option<[f64; 5]> {
-    let mut at = [0.0; 5];
+fn five(ring: &Ring, positions: &[Option<f64>], first: usize) -> Option<[f64; 5]> {
+    let mut at = [positions[first]?; 5];
     let mut k = first;
-    for (n, value) in at.iter_mut().enumerate() {
-        if n > 0 {
-            k = beside(ring, k, true)?;
-        }
-        let sample = sample(partition, &ring.steps[k])?;
-        *value = sample.point.dot(sample.axis);
+    for value in &mut at[1..] {
+        k = beside(ring, k, true)?;
+        *value = positions[k]?;
     }
     let slope = 0.1 * (at[3] - at[1] + 2.0 * (at[4] - at[0]));
     let mean = at.iter().sum::<f64>() / 5.0;

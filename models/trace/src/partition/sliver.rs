@@ -37,6 +37,9 @@ impl Partition {
     /// no line is such.
     #[must_use]
     pub fn with_slivers(&self) -> Option<Self> {
+        if !self.lines.iter().any(|line| self.color_of_sliver(line).is_some()) {
+            return None;
+        }
         let mut cut = self.clone();
         cut.lines.clear();
         for line in &self.lines {
@@ -60,48 +63,68 @@ impl Partition {
         Some(sliver.sample(crack))
     }
 
-    /// Makes a face of a line; whether it may be a sliver.
-    fn insert(&mut self, line: &ThinLine) -> bool {
-        let color = (0..self.palette.len()).find(|&k| distance(self.palette[k], line.color) <= self.mix_noise);
-        let Some(color) = color.filter(|&color| self.faces.iter().any(|face| face.color == color && face.flat > 0))
-        else {
-            return false;
-        };
+    /// The color, of the palette, of a line between two faces that has the color of another face.
+    fn color_of_sliver(&self, line: &ThinLine) -> Option<usize> {
         let windows = &line.chain.samples;
         let between = windows.iter().filter(|window| self.is_between(window)).count();
         if line.chain.is_closed || (between as f64) < MOSTLY * windows.len() as f64 {
+            return None;
+        }
+        let color = (0..self.palette.len()).find(|&k| distance(self.palette[k], line.color) <= self.mix_noise)?;
+        self.faces.iter().any(|face| face.color == color && face.flat > 0).then_some(color)
+    }
+
+    /// Makes a face of a line; whether it may be a sliver.
+    fn insert(&mut self, line: &ThinLine) -> bool {
+        let Some(color) = self.color_of_sliver(line) else { return false };
+        let covered = self.covered(line);
+        if covered.is_empty() {
             return false;
         }
-        let covered = self.covered(line);
-        let mut after = self.clone();
-        let face = after.faces.len() as u32;
-        after.faces.push(Face { color, area: 0, flat: 0, bounds: [usize::MAX, usize::MAX, 0, 0] });
-        for (&i, &share) in &covered {
-            after.faces[after.labels[i] as usize].area -= 1;
-            after.faces[face as usize].take(1, 0, [i % self.size[0], i / self.size[0]].map(|at| [at, at + 1]));
-            (after.labels[i], after.shares[i]) = (face, share);
-        }
+        let mut sliver = Face { color, area: 0, flat: 0, bounds: [usize::MAX, usize::MAX, 0, 0] };
+        covered.keys().for_each(|&i| sliver.take(1, 0, self.at(i).map(|at| [at, at + 1])));
+        let [left, top, right, bottom] = sliver.bounds;
+        let around = [
+            left.saturating_sub(1),
+            top.saturating_sub(1),
+            (right + 1).min(self.size[0]),
+            (bottom + 1).min(self.size[1]),
+        ];
         // A line that cuts a face in two, or is itself in pieces, is none that separates two faces.
-        let mut touched: Vec<u32> = covered.keys().map(|&i| self.labels[i]).chain([face]).collect();
+        let mut touched: Vec<u32> = covered.keys().map(|&i| self.labels[i]).collect();
         touched.sort_unstable();
         touched.dedup();
-        if !touched.into_iter().all(|face| after.is_in_one_piece(face)) {
+        let is_cut = |&face: &u32| {
+            let is_own = |i: usize| self.labels[i] == face;
+            self.pieces(around, |i| is_own(i) && !covered.contains_key(&i)) > self.pieces(around, is_own)
+        };
+        if touched.iter().any(is_cut) || self.pieces(around, |i| covered.contains_key(&i)) != 1 {
             return false;
         }
-        after.slivers.push(Sliver { pixels: covered.keys().copied().collect(), windows: windows.clone() });
-        while let Some(other) = after.alike_beside(&covered) {
-            let keep = after.labels[*covered.keys().next().unwrap_or(&0)];
-            after.unite(keep, other);
+        let face = self.faces.len() as u32;
+        for (&i, &share) in &covered {
+            self.faces[self.labels[i] as usize].area -= 1;
+            (self.labels[i], self.shares[i]) = (face, share);
         }
-        *self = after;
+        self.faces.push(sliver);
+        self.slivers.push(Sliver { pixels: covered.keys().copied().collect(), windows: line.chain.samples.clone() });
+        while let Some(other) = self.alike_beside(&covered) {
+            let keep = covered.keys().next().map_or(face, |&i| self.labels[i]);
+            self.unite(keep, other);
+        }
         true
+    }
+
+    /// Column and row of a pixel.
+    fn at(&self, i: usize) -> [usize; 2] {
+        [i % self.size[0], i / self.size[0]]
     }
 
     /// Another face of the same color that touches the side of a pixel.
     fn alike_beside(&self, pixels: &BTreeMap<usize, f32>) -> Option<u32> {
         let color = |face: u32| self.faces[face as usize].color;
         pixels.keys().find_map(|&i| {
-            let (own, [x, y]) = (self.labels[i], [i % self.size[0], i / self.size[0]]);
+            let (own, [x, y]) = (self.labels[i], self.at(i));
             let beside = [[x + 1, y], [x.wrapping_sub(1), y], [x, y + 1], [x, y.wrapping_sub(1)]];
             beside
                 .into_iter()
@@ -130,7 +153,7 @@ impl Partition {
     fn is_between(&self, window: &ThinSample) -> bool {
         let reach = window.axis * (0.5 * window.width + 1.0);
         let [before, behind] = [window.point - reach, window.point + reach].map(|at| self.face_at(pixel(at)));
-        before != behind
+        before != behind && before != OUTSIDE && behind != OUTSIDE
     }
 
     /// The pixels that a line covers, those in which most of it lies where it covers no center, with its share.
@@ -174,27 +197,29 @@ impl Partition {
         pixels
     }
 
-    /// Whether all pixels of a face touch, be it at corners.
-    fn is_in_one_piece(&self, face: u32) -> bool {
-        let [left, top, right, bottom] = self.faces[face as usize].bounds;
-        let is_own = |[x, y]: [usize; 2]| {
-            (left..right).contains(&x) && (top..bottom).contains(&y) && self.face_at([x, y]) == face
-        };
-        let columns = right.saturating_sub(left);
-        let mut is_seen = alloc::vec![false; columns * bottom.saturating_sub(top)];
-        let mut open: Vec<[usize; 2]> =
-            (top..bottom).flat_map(|y| (left..right).map(move |x| [x, y])).find(|&at| is_own(at)).into_iter().collect();
+    /// Pieces that some pixels between the first column and row and those after the last make, where touching at corners is touching.
+    fn pieces(&self, [left, top, right, bottom]: [usize; 4], is_own: impl Fn(usize) -> bool) -> usize {
+        let columns = right - left;
+        let mut is_seen = alloc::vec![false; columns * (bottom - top)];
+        let mut open: Vec<[usize; 2]> = Vec::new();
         let mut count = 0;
-        while let Some([x, y]) = open.pop() {
-            let k = (y - top) * columns + x - left;
-            if core::mem::replace(&mut is_seen[k], true) {
-                continue;
+        for (x, y) in (top..bottom).flat_map(|y| (left..right).map(move |x| (x, y))) {
+            open.push([x, y]);
+            let mut is_new = false;
+            while let Some([x, y]) = open.pop() {
+                let is_within = (left..right).contains(&x) && (top..bottom).contains(&y);
+                if !is_within || !is_own(y * self.size[0] + x) {
+                    continue;
+                }
+                if core::mem::replace(&mut is_seen[(y - top) * columns + x - left], true) {
+                    continue;
+                }
+                is_new = true;
+                open.extend((0..9).map(|k| [(x + k % 3).wrapping_sub(1), (y + k / 3).wrapping_sub(1)]));
             }
-            count += 1;
-            let around = (0..9).map(|k| [(x + k % 3).wrapping_sub(1), (y + k / 3).wrapping_sub(1)]);
-            open.extend(around.filter(|&at| is_own(at)));
+            count += usize::from(is_new);
         }
-        count > 0 && count == self.faces[face as usize].area
+        count
     }
 }
 
