@@ -7,7 +7,7 @@ use dvp_core::ImageView;
 use dvp_core::loss::{ImagePair, Loss as _};
 use dvp_core::render::PixelLoss;
 
-use super::{Known, PictureScratch, drawing};
+use super::{Known, PictureScratch, drawing, leaves_doubt};
 use crate::prototypes::{Decoded, Decoder, Undecoded};
 use crate::{Bank, Fit, FitError, Fitter, StopReason};
 
@@ -41,7 +41,9 @@ pub(super) fn fit(
     if found.loss <= RIGHT {
         return Ok(found);
     }
-    let Ok(traced) = dvp_trace::trace(&image, known) else { return Ok(found) };
+    // Where edges leave a doubt, shapes that are known tell more than shapes that are not.
+    let traced = dvp_trace::trace(&image, known).ok().filter(|traced| !leaves_doubt(traced));
+    let Some(traced) = traced else { return Ok(found) };
     let drawn = drawing(fitter, traced, image, scratch)?;
     Ok(if drawn.loss < found.loss { drawn } else { found })
 }

@@ -129,13 +129,12 @@ fn drawing(
     image: ImageView<'_, f32>,
     scratch: &mut PictureScratch,
 ) -> Result<Fit<f32>, FitError> {
+    let is_doubtful = leaves_doubt(&traced);
     let (painted, drawing) = scratch.canvas.paint(&traced.scene, image.size())?;
     let loss = PixelLoss::Mae.value(ImagePair::new(painted.view(), image)?, &mut ())?;
     let fit = Fit::of_painted(traced.scene, &drawing, &image, painted.data());
     let (covariance, ambiguity) = doubt_of_poses(&traced.deviations);
     let drawn = Fit { loss, bits: traced.bits, stop: StopReason::Converged, covariance, ambiguity, ..fit };
-    // Stains of either sign: blur and profiles of their own leave too much of the other side beyond edges, filters that sharpen too little.
-    let is_doubtful = traced.stained.abs() > tuning::DOUBTFUL_STAINED;
     if !is_doubtful {
         return Ok(drawn);
     }
@@ -146,6 +145,12 @@ fn drawing(
     let is_drawing = is_area && drawn.scene.objects.len() <= segments.scene.objects.len();
     let (likely, other) = if is_drawing { (drawn, segments) } else { (segments, drawn) };
     Ok(if CLEARLY_WORSE * other.loss < likely.loss { other } else { likely })
+}
+
+/// Whether edges leave a doubt that a picture is a drawing. Stains of either sign: blur and profiles of their own leave too much of the other
+/// side beyond edges, filters that sharpen too little.
+fn leaves_doubt(traced: &Traced) -> bool {
+    traced.stained.abs() > tuning::DOUBTFUL_STAINED
 }
 
 /// What is known of poses as a fit says it: covariances of (x, y, log scale, rotation), NaN where nothing is known, and which objects
