@@ -86,7 +86,7 @@ fn inputs_are_not_replaced() {
 fn every_method_runs_and_the_number_of_threads_changes_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let [data, start] = ["data", "start"].map(|name| folder.path().join(name));
-    dvp_done(["generate", "--count", "2", "--width", "64", "--visible", "1", "--out", text(&data)]);
+    dvp_done(["generate", "--count", "2", "--width", "32", "--visible", "1", "--out", text(&data)]);
     dvp_done(["fit", text(&data), "--bank", "mdshr", "--out", text(&start), "--no-png", "--no-svg"]);
     for method in ["segment", "opt-iter", "live", "live-published", "opt-p", "rand-opt-p"] {
         let mut texts = Vec::new();

@@ -84,7 +84,7 @@ macro_rules! known_failures {
 
 known_failures! { SHORT:
     twins: "twins", ari 0.8753, right 0, "two crossed bars are one outline";
-    occlusion_scaled_down: "occlusion, scaled down", ari 0.9910, right 11,
+    occlusion_scaled_down: "occlusion, scaled down", ari 0.9949, right 11,
         "rims along edges are read as objects, or hide some";
     flat_blur_08: "flat, blur 0.8 px", ari 0.9865, right 12, "two objects of one color side by side are read as one";
     flat_blur_15: "flat, blur 1.5 px", ari 0.9746, right 13, "corners that the blur rounds";

@@ -211,3 +211,16 @@ pub const CLEAR_VOTE: f64 = 7.0;
 pub const MOST_TRIED: usize = 4;
 /// The same for pictures with long boundaries, samples: a few tenths of a second.
 pub const MOST_TRIED_SAMPLES: usize = 14_000;
+/// Share of the windows of a thin line that must lie between two faces for it to be a sliver of a third one: windows at its ends see more.
+pub const SLIVER_MOSTLY: f64 = 0.8;
+/// Longest gap between windows (pixels) that a sliver is supposed to go on in.
+pub const SLIVER_GAP: f64 = 4.0;
+/// How far from a window's reading of an edge (pixels) a crack may be that the reading is of: slivers are narrower than two.
+pub const SLIVER_NEAR: f64 = 1.5;
+/// Change of the position per window of edges that tell how uneven they are: upright ones are off by the same everywhere, steep ones are read by
+/// windows of the other axis.
+pub const UNEVEN_SLOPES: [f64; 2] = [0.1, 1.5];
+/// Residual (pixels) of five positions in a row from a straight line up to which there is no corner between them, however uneven they are.
+pub const UNEVEN_BENT: f64 = 0.7;
+/// Fewest stretches of five windows that tell how uneven edges are.
+pub const UNEVEN_LEAST: usize = 6;

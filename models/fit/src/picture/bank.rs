@@ -1,13 +1,13 @@
 //! Pictures whose shapes are known.
 //!
 //! Where no pixel is mixed, the shapes are laid on the pixels one by one ([`Decoder`]); everywhere else edges tell poses better
-//! ([`Fitter`]). Of a picture of few colors whose shapes are others, the nearer fit is taken: a bank never makes a fit worse.
+//! ([`Fitter`]). A picture of few colors to which a drawing of any shapes comes much nearer has other shapes.
 
 use dvp_core::ImageView;
 use dvp_core::loss::{ImagePair, Loss as _};
 use dvp_core::render::PixelLoss;
 
-use super::{Known, PictureScratch, drawing, leaves_doubt};
+use super::{Known, PictureScratch, drawing, leaves_doubt, likelier};
 use crate::prototypes::{Decoded, Decoder, Undecoded};
 use crate::{Bank, Fit, FitError, Fitter, StopReason};
 
@@ -45,5 +45,5 @@ pub(super) fn fit(
     let traced = dvp_trace::trace(&image, known).ok().filter(|traced| !leaves_doubt(traced));
     let Some(traced) = traced else { return Ok(found) };
     let drawn = drawing(fitter, traced, image, scratch)?;
-    Ok(if drawn.loss < found.loss { drawn } else { found })
+    Ok(likelier(found, drawn))
 }

@@ -23,6 +23,7 @@ mod openings;
 mod tests;
 
 use alloc::vec::Vec;
+use core::cmp::Ordering;
 
 use dvp_core::loss::{ImagePair, Loss as _};
 use dvp_core::render::{EdgeLaw, PixelLoss};
@@ -39,8 +40,8 @@ pub use openings::cut_openings;
 
 use most::at_most;
 
-/// Where edges leave a doubt, the fit of their kind is taken, unless it misses the picture by so many times as much as the other one: ringing
-/// is read as faces, which come nearer to it but are none, and segments under soft edges come nearer to stains.
+/// Where two fits are of different kinds, the likelier one is taken, unless it misses the picture by so many times as much as the other one:
+/// ringing is read as faces, which come nearer to it but are none, and outlines that are free come nearer than shapes that are known.
 const CLEARLY_WORSE: f32 = 2.0;
 
 /// Memory of [`fit_picture`], one per thread, kept between pictures.
@@ -58,7 +59,7 @@ pub struct PictureScratch {
 /// The scene of a picture, with the openings of a transparent one cut out.
 ///
 /// The picture is taken as a drawing if it is one (flat colors with clear edges), else as segments; where edges leave a doubt as what
-/// their profile says. If the options of `fitter` know the shapes, these are laid on it, unless a drawing without them is nearer; if they
+/// their profile says. If the options of `fitter` know the shapes, these are laid on it, unless a drawing without them is much nearer; if they
 /// say how objects mix, it is taken as segments.
 ///
 /// A transparent picture comes over its matte ([`Ground`]), and [`Known::matte`] says which color that is; of an opaque one it
@@ -140,11 +141,19 @@ fn drawing(
     }
     let segments = fitter.fit(image, &mut scratch.fit)?;
     // Segments measure the profile of all edges at once: drawings have that of area coverage. Ringing hides it, but makes things of its own,
-    // and a scene is not more than it needs to be.
-    let is_area = segments.scene.edge.law == EdgeLaw::Area;
-    let is_drawing = is_area && drawn.scene.objects.len() <= segments.scene.objects.len();
-    let (likely, other) = if is_drawing { (drawn, segments) } else { (segments, drawn) };
-    Ok(if CLEARLY_WORSE * other.loss < likely.loss { other } else { likely })
+    // and a scene is not more than it needs to be; of as many things the nearer ones.
+    let fewer = match drawn.scene.objects.len().cmp(&segments.scene.objects.len()) {
+        Ordering::Less => true,
+        Ordering::Equal => drawn.loss <= segments.loss,
+        Ordering::Greater => false,
+    };
+    let is_drawing = segments.scene.edge.law == EdgeLaw::Area && fewer;
+    Ok(if is_drawing { likelier(drawn, segments) } else { likelier(segments, drawn) })
+}
+
+/// The first of two fits, or the second if that is much nearer.
+fn likelier(first: Fit<f32>, second: Fit<f32>) -> Fit<f32> {
+    if CLEARLY_WORSE * second.loss < first.loss { second } else { first }
 }
 
 /// Whether edges leave a doubt that a picture is a drawing. Stains of either sign: blur and profiles of their own leave too much of the other

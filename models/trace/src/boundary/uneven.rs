@@ -8,15 +8,7 @@ use num_traits::Float as _;
 use super::window::{beside, sample};
 use super::{Ring, Step, profile};
 use crate::partition::Partition;
-
-/// Change of the position over five windows from which on an edge is slanted: upright ones are off by the same everywhere.
-const LEAST_SLANT: f64 = 0.4;
-/// Most change of the position per window.
-const MOST_SLOPE: f64 = 1.5;
-/// Residual (pixels) of five positions in a row from a straight line up to which there is no corner between them.
-const MOST_BENT: f64 = 0.7;
-/// Fewest stretches of five windows that tell.
-const LEAST_COUNT: usize = 6;
+use crate::tuning;
 
 /// Standard deviation of the positions along slanted edges, pixels; 0 if too few tell.
 ///
@@ -34,7 +26,7 @@ pub(super) fn unevenness(partition: &Partition, rings: &[Vec<Ring>]) -> f64 {
             (0..positions.len()).filter_map(|k| Some(profile::fourth_difference(five(ring, &positions, k)?).abs())),
         );
     }
-    if off.len() < LEAST_COUNT {
+    if off.len() < tuning::UNEVEN_LEAST {
         return 0.0;
     }
     let middle = off.len() / 2;
@@ -53,6 +45,6 @@ fn five(ring: &Ring, positions: &[Option<f64>], first: usize) -> Option<[f64; 5]
     }
     let slope = 0.1 * (at[3] - at[1] + 2.0 * (at[4] - at[0]));
     let mean = at.iter().sum::<f64>() / 5.0;
-    let is_straight = (0..5).all(|k| (at[k] - mean - slope * (k as f64 - 2.0)).abs() < MOST_BENT);
-    (is_straight && 4.0 * slope.abs() > LEAST_SLANT && slope.abs() < MOST_SLOPE).then_some(at)
+    let is_straight = (0..5).all(|k| (at[k] - mean - slope * (k as f64 - 2.0)).abs() < tuning::UNEVEN_BENT);
+    (is_straight && (tuning::UNEVEN_SLOPES[0]..tuning::UNEVEN_SLOPES[1]).contains(&slope.abs())).then_some(at)
 }

@@ -17,13 +17,7 @@ use super::thin::ThinLine;
 use super::{Face, OUTSIDE, Partition};
 use crate::sample::Sample;
 use crate::stroke::ThinSample;
-
-/// Share of the windows of a line that must lie between two faces.
-const MOSTLY: f64 = 0.8;
-/// Longest gap between windows (pixels) that a line is supposed to go on in.
-const LONGEST_GAP: f64 = 4.0;
-/// How far from a window's reading of an edge (pixels) a crack may be that the reading is of.
-const NEAR: f64 = 1.5;
+use crate::tuning;
 
 /// A part of a face that is thinner than two pixels, both sides of whose boundary the same windows tell.
 #[derive(Clone, Debug)]
@@ -67,7 +61,7 @@ impl Partition {
     fn color_of_sliver(&self, line: &ThinLine) -> Option<usize> {
         let windows = &line.chain.samples;
         let between = windows.iter().filter(|window| self.is_between(window)).count();
-        if line.chain.is_closed || (between as f64) < MOSTLY * windows.len() as f64 {
+        if line.chain.is_closed || (between as f64) < tuning::SLIVER_MOSTLY * windows.len() as f64 {
             return None;
         }
         let color = (0..self.palette.len()).find(|&k| distance(self.palette[k], line.color) <= self.mix_noise)?;
@@ -163,7 +157,7 @@ impl Partition {
         for pair in windows.windows(2) {
             all.push(pair[0]);
             let steps = (pair[1].point - pair[0].point).length().round();
-            if pair[0].axis == pair[1].axis && steps > 1.0 && steps <= LONGEST_GAP {
+            if pair[0].axis == pair[1].axis && steps > 1.0 && steps <= tuning::SLIVER_GAP {
                 let between = |k: usize| pair[0].point.lerp(pair[1].point, k as f64 / steps);
                 all.extend((1..steps as usize).map(|k| ThinSample { point: between(k), ..pair[0] }));
             }
@@ -237,7 +231,7 @@ impl Sliver {
         let window = self.windows.iter().filter(is_here).min_by(|a, b| off(a).abs().total_cmp(&off(b).abs()))?;
         let side = if off(window) > 0.0 { -0.5 } else { 0.5 };
         let point = window.point + axis * (side * window.width);
-        ((point - middle).dot(axis).abs() < NEAR).then_some(Sample { point, axis, sigma: window.sigma })
+        ((point - middle).dot(axis).abs() < tuning::SLIVER_NEAR).then_some(Sample { point, axis, sigma: window.sigma })
     }
 }
 

@@ -1,9 +1,10 @@
-//! Pictures of few colors without a mixed pixel.
+//! Pictures of few colors without mixed pixels, but for the few that an outline passes through the middle of.
 
 use alloc::vec;
 use alloc::vec::Vec;
 
 use dvp_core::{ImageSize, ImageView, Real};
+use dvp_trace::tuning::MOST_HARD;
 
 /// More colors than this are those of mixed pixels or of noise.
 const MOST_COLORS: usize = 24;
@@ -29,7 +30,7 @@ pub(super) struct FlatPicture {
 pub(super) type Part = Vec<usize>;
 
 impl FlatPicture {
-    /// The colors of a picture; none if there are many.
+    /// The colors of a picture; none if there are many, or more of its pixels at edges are mixed than those of hard edges are.
     pub(super) fn of<T: Real>(image: &ImageView<'_, T>) -> Option<Self> {
         let size = image.size();
         let (mut colors, mut counts): (Vec<[f32; 3]>, Vec<usize>) = (Vec::new(), Vec::new());
@@ -53,15 +54,26 @@ impl FlatPicture {
         }
         let ground = (0..colors.len()).max_by_key(|&color| counts[color])?;
         let mut picture = Self { size, colors, color_of, ground };
-        for color in (0..counts.len()).filter(|&color| counts[color] <= MOST_MIXED) {
-            picture.unmix(color);
-        }
-        Some(picture)
+        let edges = picture.edge_count();
+        let rare = (0..counts.len()).filter(|&color| counts[color] <= MOST_MIXED);
+        let mixed: usize = rare.map(|color| picture.unmix(color)).sum();
+        (f64::of_usize(mixed) <= MOST_HARD * f64::of_usize(edges)).then_some(picture)
+    }
+
+    /// Pixels beside or above one of another color.
+    fn edge_count(&self) -> usize {
+        let width = self.size.width();
+        let differs = |pixel: usize, other: usize| self.color_of[pixel] != self.color_of[other];
+        let is_edge = |&pixel: &usize| {
+            pixel % width > 0 && differs(pixel, pixel - 1) || pixel >= width && differs(pixel, pixel - width)
+        };
+        (0..self.color_of.len()).filter(is_edge).count()
     }
 
     /// Gives the pixels of a rare color the nearer of two colors beside them, if it is a mixture of those: the outline passes through the middle
-    /// of the pixel as exactly as no edge is sharp.
-    fn unmix(&mut self, color: usize) {
+    /// of the pixel as exactly as no edge is sharp. How many there were.
+    fn unmix(&mut self, color: usize) -> usize {
+        let mut count = 0;
         for pixel in self.pixels_of(color) {
             let beside: Vec<usize> =
                 self.around(pixel).map(|neighbor| self.color_of[neighbor]).filter(|&other| other != color).collect();
@@ -70,8 +82,10 @@ impl FlatPicture {
             let nearest = mixed.min_by(|(_, a), (_, b)| a.total_cmp(b));
             if let Some((own, _)) = nearest {
                 self.color_of[pixel] = own;
+                count += 1;
             }
         }
+        count
     }
 
     /// The share of color `b` in a mixture of `a` and `b`; none if `color` is no such mixture.
