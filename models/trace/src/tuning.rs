@@ -143,8 +143,8 @@ pub const DOUBTFUL_STAINED: f64 = 0.02;
 /// Wobble (share of that of pixels that show what is at their center) from which on edges that leave a doubt are steeper than area coverage: half of
 /// what the reference renderer has at 128 pixels (.28, with a standard deviation of .04); drawings have .05 and, with a lattice of sub-pixels, .18.
 pub const STEEP_WOBBLE: f64 = 0.12;
-/// Wobble from which on edges without a stain leave a doubt: the reference renderer has .66 at 64 pixels, drawings .35 and, with a lattice of two by
-/// two places in a pixel, .5.
+/// Wobble from which on edges without a stain leave a doubt: the reference renderer has .66 at 64 pixels, drawings .35 at most, but .6 to .9 with two by
+/// two places in a pixel and slopes near 1.
 pub const SURE_WOBBLE: f64 = 0.4;
 /// So many times as many blocks that differ a little as blocks that differ much make a picture a noisy one: 384 pictures of the paper's renderer
 /// have up to 1.1 times as many, noise of a standard deviation of .01 gives a hundred times.
