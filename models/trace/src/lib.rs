@@ -127,8 +127,11 @@ pub fn trace(image: &ImageView<'_, f32>, known: &Known) -> Result<Traced, NoDraw
     let stained = if wobble < -tuning::SURE_WOBBLE { stained.max(tuning::UNKNOWN_STAINED) } else { stained };
     let matte = known.matte.map(|matte| matte.map(f64::from));
     let mut layers = layers::layers(&partition, &rings, matte);
-    if let Some(partition) = partition.with_slivers() {
-        let others = layers::layers(&partition, &boundary::rings(&partition), matte);
+    // What slivers are, and lines that cross, the shorter description tells.
+    let faces = partition.without_crossings(image);
+    let others = [Some(&partition), faces.as_ref()].into_iter().flatten().filter_map(Partition::with_slivers);
+    for other in others.chain(faces.clone()) {
+        let others = layers::layers(&other, &boundary::rings(&other), matte);
         if others.bits_with_colors() < layers.bits_with_colors() {
             layers = others;
         }

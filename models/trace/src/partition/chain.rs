@@ -6,6 +6,7 @@ use alloc::vec::Vec;
 use num_traits::Float as _;
 
 use dvp_core::Vec2;
+use dvp_core::geometry::LineSegment;
 
 use super::cross::{Along, Canvas, Cross};
 use crate::tuning;
@@ -19,6 +20,8 @@ pub(super) struct Mark {
     pub(super) point: Vec2<f64>,
     /// Width along the window, pixels.
     pub(super) width: f64,
+    /// Whether another line is in the window, too.
+    pub(super) is_shared: bool,
 }
 
 impl Mark {
@@ -60,7 +63,7 @@ impl Chain {
     }
 
     pub(super) fn push(&mut self, along: Along, cross: Cross, center: f64, width: f64) {
-        let mut mark = Mark { along, cross, point: Vec2::default(), width };
+        let mut mark = Mark { along, cross, point: Vec2::default(), width, is_shared: false };
         mark.place(center, width);
         self.colors &= cross.colors;
         self.marks.push(mark);
@@ -77,12 +80,18 @@ impl Chain {
         })
     }
 
-    /// Where windows are missing between two of them.
-    pub(super) fn gaps(&self) -> impl Iterator<Item = [Vec2<f64>; 2]> {
-        self.marks
-            .windows(2)
-            .map(|pair| [pair[0].point, pair[1].point])
-            .filter(|[from, to]| (*to - *from).length() > 2.5)
+    /// The way from each of its windows to the next.
+    fn steps(&self) -> impl Iterator<Item = [Vec2<f64>; 2]> + Clone {
+        self.marks.windows(2).map(|pair| [pair[0].point, pair[1].point])
+    }
+
+    /// Least and greatest coordinates of its windows' middles.
+    fn bounds(&self) -> [Vec2<f64>; 2] {
+        let points = || self.marks.iter().map(|mark| mark.point);
+        let least =
+            points().fold(Vec2::new(f64::INFINITY, f64::INFINITY), |a, b| Vec2::new(a.x.min(b.x), a.y.min(b.y)));
+        let most = points().fold(-least, |a, b| Vec2::new(a.x.max(b.x), a.y.max(b.y)));
+        [least, most]
     }
 
     /// The first or last point, and the direction out of the line there.
@@ -182,6 +191,60 @@ pub(super) fn join(canvas: &Canvas<'_>, chains: Vec<Chain>) -> Vec<Chain> {
     }
     joined
 }
+
+/// Whether two boxes are within `margin` of one another.
+fn are_near([low, high]: [Vec2<f64>; 2], [other_low, other_high]: [Vec2<f64>; 2], margin: f64) -> bool {
+    let is_near =
+        |low: f64, high: f64, other_low: f64, other_high: f64| low <= other_high + margin && other_low <= high + margin;
+    is_near(low.x, high.x, other_low.x, other_high.x) && is_near(low.y, high.y, other_low.y, other_high.y)
+}
+
+/// Where two chains cross.
+pub(super) fn crossings(one: &Chain, other: &Chain) -> Vec<Vec2<f64>> {
+    if !are_near(one.bounds(), other.bounds(), 0.0) {
+        return Vec::new();
+    }
+    let bounds = other.bounds();
+    let sorted =
+        |[a, b]: [Vec2<f64>; 2]| [Vec2::new(a.x.min(b.x), a.y.min(b.y)), Vec2::new(a.x.max(b.x), a.y.max(b.y))];
+    let near = one.steps().filter(|&step| are_near(sorted(step), bounds, 0.0));
+    near.flat_map(|step| other.steps().filter_map(move |next| crossing(step, next))).collect()
+}
+
+/// Where two segments cross.
+fn crossing([a, b]: [Vec2<f64>; 2], [c, d]: [Vec2<f64>; 2]) -> Option<Vec2<f64>> {
+    let (u, v, w) = (b - a, d - c, c - a);
+    let cross = u.cross(v);
+    let [s, t] = [w.cross(v) / cross, w.cross(u) / cross];
+    ((0.0..=1.0).contains(&s) && (0.0..=1.0).contains(&t)).then(|| a.lerp(b, s))
+}
+
+/// Without chains that lie on longer ones: where a line lies at 45 degrees windows along both axes read it.
+pub(super) fn read_once(chains: Vec<Chain>) -> Vec<Chain> {
+    let bounds: Vec<_> = chains.iter().map(Chain::bounds).collect();
+    let is_on = |mark: &Mark, other: &Chain| {
+        // Where windows are missing something else may lie.
+        other.steps().filter(|[from, to]| (*to - *from).length() <= NEXT).any(|[from, to]| {
+            let foot = from.lerp(to, LineSegment::new(from, to).nearest(mark.point).share);
+            (mark.point - foot).length() < 0.25 * mark.width
+        })
+    };
+    let is_read = |k: usize| {
+        let (chain, count) = (&chains[k], chains[k].marks.len());
+        (0..chains.len()).filter(|&j| chains[j].marks.len() > count || chains[j].marks.len() == count && j < k).any(
+            |j| {
+                chains[j].colors & chain.colors != 0
+                    && are_near(bounds[k], bounds[j], 1.0)
+                    && 5 * chain.marks.iter().filter(|mark| is_on(mark, &chains[j])).count() > 4 * count
+            },
+        )
+    };
+    let keep: Vec<bool> = (0..chains.len()).map(|k| !is_read(k)).collect();
+    chains.into_iter().zip(keep).filter_map(|(chain, keep)| keep.then_some(chain)).collect()
+}
+
+/// Windows further apart than this (pixels) are not next to one another.
+const NEXT: f64 = 2.5;
 
 /// Appends marks; those that go back behind where the line has come are left out.
 fn append<'a>(marks: &mut Vec<Mark>, more: impl Iterator<Item = &'a Mark>) {

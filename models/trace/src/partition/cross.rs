@@ -12,7 +12,7 @@ use super::mix::coverage;
 use super::palette::distance;
 
 /// The longest run, pixels: the widest line that is asked for at 45 degrees, and a mixed pixel on both sides.
-const LONGEST: usize = 16;
+pub(super) const LONGEST: usize = 16;
 
 /// A window across something thin.
 #[derive(Clone, Copy, Debug)]

@@ -60,7 +60,8 @@ fn partition(size: [usize; 2], pixels: Vec<[f32; 3]>, mixed: Mixed, labels: Vec<
     };
     let edges = (0..labels.len()).filter(is_edge).count();
     let mixed = (0..labels.len()).filter(is_edge).filter(is_mixed).count();
-    let is_hard = (mixed as f64) < tuning::MOST_HARD * edges as f64;
+    let is_hard = (mixed as f64) < tuning::MOST_HARD * edges as f64
+        && corners(&labels, size) as f64 > tuning::LEAST_STAIRS * edges as f64;
     Partition {
         size,
         pixels,
@@ -75,7 +76,20 @@ fn partition(size: [usize; 2], pixels: Vec<[f32; 3]>, mixed: Mixed, labels: Vec<
         sigma: tuning::ROUNDING,
         is_hard,
         unexplained,
+        has_crossings: false,
     }
+}
+
+/// Places where one pixel of four is of another face than the other three.
+fn corners(labels: &[u32], [width, height]: [usize; 2]) -> usize {
+    let is_corner = |i: usize| {
+        let four = [i, i + 1, i + width, i + width + 1].map(|i| labels[i]);
+        (0..4).any(|k| {
+            let rest = [four[(k + 1) % 4], four[(k + 2) % 4], four[(k + 3) % 4]];
+            rest[0] == rest[1] && rest[1] == rest[2] && rest[0] != four[k]
+        })
+    };
+    (1..height).flat_map(|y| (1..width).map(move |x| (y - 1) * width + x - 1)).filter(|&i| is_corner(i)).count()
 }
 
 /// Whether, of four pixels around a corner whose diagonals are of two colors, the diagonal from upper left to lower right is

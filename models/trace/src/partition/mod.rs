@@ -14,6 +14,7 @@ mod faces;
 mod flat;
 mod ink;
 mod mix;
+mod pair;
 mod palette;
 mod seam;
 mod sliver;
@@ -66,6 +67,8 @@ pub struct Partition {
     pub is_hard: bool,
     /// Share of the pixels that no mixture of the palette explains, [0, 1].
     pub unexplained: f64,
+    /// Whether lines that have pixels of their own were taken out because they cross or touch.
+    pub has_crossings: bool,
 }
 
 /// Why a picture was not cut into faces.
@@ -89,6 +92,17 @@ impl Partition {
     /// # Errors
     /// [`NoPartition`] if it is no drawing of flat colors.
     pub fn of(image: &ImageView<'_, f32>, coded: bool) -> Result<Self, NoPartition> {
+        Self::with_lines(image, coded, &[tuning::THIN_WIDTH, tuning::CROSSING_WIDTH])
+    }
+
+    /// The same with lines that cross or touch as faces, if they have pixels of their own; none if there are no such lines.
+    #[must_use]
+    pub fn without_crossings(&self, image: &ImageView<'_, f32>) -> Option<Self> {
+        self.has_crossings.then(|| Self::with_lines(image, self.coded, &[tuning::THIN_WIDTH]).ok()).flatten()
+    }
+
+    /// Cuts a picture into faces, after lines up to each of some widths (pixels) were taken out of it.
+    fn with_lines(image: &ImageView<'_, f32>, coded: bool, widths: &[f64]) -> Result<Self, NoPartition> {
         let size = [image.size().width(), image.size().height()];
         let mut pixels: Vec<[f32; 3]> = (0..image.size().pixels()).map(|i| image.pixel(i)).collect();
         let noise = flat::Noise::of(&pixels, size, coded)?;
@@ -110,12 +124,14 @@ impl Partition {
         }
         let mut colors = palette::Palette::of(&flats, &noise)?;
         let mut lines = Vec::new();
-        for widest in [tuning::THIN_WIDTH, tuning::CROSSING_WIDTH] {
+        let mut has_crossings = false;
+        for &widest in widths {
             // Lines that cross have two colors, and lie on a third.
             if widest > tuning::THIN_WIDTH && colors.colors.len() < 3 {
                 continue;
             }
             let (taken, is_changed) = take_lines(&mut pixels, size, &flats, &colors, &noise, widest);
+            has_crossings |= widest > tuning::THIN_WIDTH && !taken.is_empty();
             // Wide lines may pass under thin ones.
             lines.splice(0..0, taken);
             if is_changed {
@@ -124,7 +140,13 @@ impl Partition {
             }
         }
         let mixed = mix::explain(&pixels, size, &flats, colors, &noise);
-        Ok(Self { coded: noise.is_coded(), sigma: noise.sigma, lines, ..faces::cut(size, pixels, mixed) })
+        Ok(Self {
+            coded: noise.is_coded(),
+            sigma: noise.sigma,
+            lines,
+            has_crossings,
+            ..faces::cut(size, pixels, mixed)
+        })
     }
 
     /// Color of a face.

@@ -6,13 +6,11 @@ use alloc::vec::Vec;
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
-use dvp_core::Vec2;
-
-use super::chain::{Chain, Mark, join};
+use super::chain::{Chain, Mark, crossings, join, read_once};
 use super::cross::{Along, Canvas, Cross};
 use super::mix::coverage;
 use super::palette::distance;
-use super::{Color, ink};
+use super::{Color, ink, pair};
 use crate::stroke::{ThinChain, ThinSample};
 use crate::tuning;
 
@@ -34,11 +32,11 @@ pub(super) fn find(canvas: &Canvas<'_>, palette: &[Color]) -> Vec<(ThinLine, Cha
     let colors = ink::colors(canvas, &mut crosses, palette);
     let mut chains = Vec::new();
     for (along, crosses) in [Along::Columns, Along::Rows].into_iter().zip(&crosses) {
-        for chain in link(canvas, along, crosses, &colors, palette) {
-            chains.extend(level_parts(chain));
-        }
+        let mut linked = link(canvas, along, crosses, &colors, palette);
+        pair::grow(canvas, along, &mut linked, crosses, [palette, &colors]);
+        chains.extend(linked.into_iter().flat_map(level_parts));
     }
-    let chains = join(canvas, chains);
+    let chains = read_once(join(canvas, chains));
     let mut lines = Vec::new();
     for mut chain in chains {
         let color = colors[chain.colors.trailing_zeros() as usize];
@@ -52,12 +50,10 @@ pub(super) fn find(canvas: &Canvas<'_>, palette: &[Color]) -> Vec<(ThinLine, Cha
 
 /// Lines from back to front: where two cross the one in front shows its color.
 fn in_order(canvas: &Canvas<'_>, mut lines: Vec<(ThinLine, Chain)>) -> Vec<(ThinLine, Chain)> {
-    let gaps: Vec<Vec<[Vec2<f64>; 2]>> = lines.iter().map(|(_, chain)| chain.gaps().collect()).collect();
     let mut is_behind = alloc::vec![alloc::vec![false; lines.len()]; lines.len()];
     for a in 0..lines.len() {
         for b in 0..a {
-            for (one, other) in gaps[a].iter().flat_map(|one| gaps[b].iter().map(move |other| (one, other))) {
-                let Some(at) = crossing(*one, *other) else { continue };
+            for at in crossings(&lines[a].1, &lines[b].1) {
                 let [x, y] = [at.x, at.y].map(|value| value.max(0.0) as usize);
                 let i = y.min(canvas.size[1] - 1) * canvas.size[0] + x.min(canvas.size[0] - 1);
                 let away = [a, b].map(|k| distance(lines[k].0.color, canvas.pixels[i].map(f64::from)));
@@ -79,28 +75,14 @@ fn in_order(canvas: &Canvas<'_>, mut lines: Vec<(ThinLine, Chain)>) -> Vec<(Thin
     numbered.into_iter().map(|(_, line)| line).collect()
 }
 
-/// Where two segments cross.
-fn crossing([a, b]: [Vec2<f64>; 2], [c, d]: [Vec2<f64>; 2]) -> Option<Vec2<f64>> {
-    let (u, v, w) = (b - a, d - c, c - a);
-    let cross = u.cross(v);
-    let [s, t] = [w.cross(v) / cross, w.cross(u) / cross];
-    ((0.0..=1.0).contains(&s) && (0.0..=1.0).contains(&t)).then(|| a.lerp(b, s))
-}
-
-/// Of lines that may be wider than what is thin: those that cross one another, or cut in two what they lie on with the color of
+/// Of lines that may be wider than what is thin: those that cross or touch one another, or cut in two what they lie on with the color of
 /// what lies behind all, `back`: they would be holes. A pen draws what else is alone.
 pub(super) fn crossing_lines(lines: Vec<(ThinLine, Chain)>, back: Color) -> Vec<(ThinLine, Chain)> {
-    let gaps: Vec<Vec<[Vec2<f64>; 2]>> = lines.iter().map(|(_, chain)| chain.gaps().collect()).collect();
-    let crosses = |a: usize, b: usize| {
-        let of_marks = lines[b].1.marks.windows(2).map(|pair| [pair[0].point, pair[1].point]).collect::<Vec<_>>();
-        lines[a].0.color != lines[b].0.color
-            && gaps[a].iter().any(|one| of_marks.iter().any(|other| crossing(*one, *other).is_some()))
-    };
-    let n = lines.len();
-    let mut keep = alloc::vec![false; n];
-    for a in (0..n).filter(|&a| !gaps[a].is_empty()) {
-        for b in (0..n).filter(|&b| b != a) {
-            if crosses(a, b) {
+    let mut keep: Vec<bool> = lines.iter().map(|(_, chain)| chain.marks.iter().any(|mark| mark.is_shared)).collect();
+    for a in 0..lines.len() {
+        for b in 0..a {
+            let [one, other] = [&lines[a], &lines[b]];
+            if one.0.color != other.0.color && !crossings(&one.1, &other.1).is_empty() {
                 (keep[a], keep[b]) = (true, true);
             }
         }

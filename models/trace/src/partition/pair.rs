@@ -1,0 +1,253 @@
+//! Windows across two lines side by side, which meet or cross at a small angle: what is seen of each.
+//!
+//! No single line explains such a window, but both together do: every pixel is a mixture of the two and of what lies behind them. The one
+//! behind shows its free side alone; how wide it is its own chain says, and so where its middle is.
+
+use alloc::collections::BTreeSet;
+use alloc::vec::Vec;
+
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
+
+use super::Color;
+use super::chain::{Chain, Mark};
+use super::cross::{Along, Canvas, Cross, LONGEST, shares_of_three};
+use super::mix::coverage;
+use super::palette::distance;
+use crate::tuning;
+
+/// Least that is seen of a line that another one hides in part, pixels: half a pixel is more than mixtures are off.
+const LEAST_SEEN: f64 = 0.5;
+/// How far a window's line may be from where its chain goes on, pixels: half of the step from which windows side by side are one chain. And
+/// how much further after every window that is missing.
+const MOST_ASIDE: [f64; 2] = [0.75, 0.05];
+/// Chains of fewer windows do not tell where they go on.
+const LEAST_MARKS: usize = 4;
+/// So many windows at the end of a chain do.
+const REACH: usize = 7;
+
+/// What is seen of a line that shares its window.
+struct Seen {
+    /// Where it begins and ends along the window, pixels.
+    range: [f64; 2],
+    /// Whether the other line lies behind its end rather than before its beginning.
+    is_first: bool,
+    /// How much of what lies behind both is seen between them, pixels.
+    gap: f64,
+}
+
+/// Lets chains go on where another line runs beside them. `crosses`: the windows that single lines explain; `palette`: colors of the flat
+/// pixels beside windows; `colors`: those that lines have.
+pub(super) fn grow(
+    canvas: &Canvas<'_>,
+    along: Along,
+    chains: &mut [Chain],
+    crosses: &[Vec<Cross>],
+    [palette, colors]: [&[Color]; 2],
+) {
+    let color_of = |chain: &Chain| chain.colors.trailing_zeros() as usize;
+    let mut pens: Vec<usize> =
+        chains.iter().filter(|chain| chain.marks.len() >= tuning::THIN_LEAST_LENGTH).map(color_of).collect();
+    pens.sort_unstable();
+    pens.dedup();
+    if pens.len() < 2 {
+        return;
+    }
+    let mut taken = BTreeSet::new();
+    let mut order: Vec<usize> = (0..chains.len()).filter(|&k| chains[k].marks.len() >= LEAST_MARKS).collect();
+    order.sort_by_key(|&k| core::cmp::Reverse(chains[k].marks.len()));
+    for k in order {
+        let own = color_of(&chains[k]);
+        for at_finish in [true, false] {
+            let Some(mut tip) = Tip::of(&chains[k], at_finish) else { continue };
+            let ground = palette[tip.ground as usize];
+            let center = |cross: &Cross, width: f64| {
+                let is_short = cross.run[1] - cross.run[0] <= LONGEST;
+                let alone = if is_short { canvas.measure(along, cross, colors[own], palette) } else { None };
+                if let Some([center, seen, misfit]) = alone
+                    && misfit <= canvas.noise
+                {
+                    return ((seen - width).abs() <= tolerance(width)).then_some(center);
+                }
+                let others = pens.iter().filter(|&&other| other != own);
+                let pairs = others.filter_map(|&other| canvas.pair(along, cross, [ground, colors[own], colors[other]]));
+                pairs.min_by(|a, b| a.1.total_cmp(&b.1)).and_then(|(seen, _)| seen.center(width))
+            };
+            while let Some(mark) = tip.next(canvas, along, crosses, (chains[k].colors, ground), center) {
+                if !taken.insert((mark.cross.line, mark.cross.run[0], own)) {
+                    break;
+                }
+                tip.push(&mark);
+                let at = if at_finish { chains[k].marks.len() } else { 0 };
+                chains[k].marks.insert(at, mark);
+            }
+        }
+    }
+}
+
+/// The end of a chain: where it goes on.
+struct Tip {
+    /// Windows (their line, and the middle in them) at the end, the last one last.
+    last: Vec<[f64; 2]>,
+    /// Width of the line, pixels: across it, not along windows.
+    width: f64,
+    /// The palette's color of what it lies on.
+    ground: u16,
+    /// +1 if windows beyond the end have greater lines, else -1.
+    step: f64,
+}
+
+impl Tip {
+    fn of(chain: &Chain, at_finish: bool) -> Option<Self> {
+        let place = |mark: &Mark| [mark.cross.line as f64, mark.point.dot(mark.axis())];
+        let n = chain.marks.len();
+        let [ground, other] = chain.marks[if at_finish { n - 1 } else { 0 }].cross.sides;
+        if ground != other {
+            return None;
+        }
+        let of_end: Vec<&Mark> = if at_finish {
+            chain.marks[n - REACH.min(n)..].iter().collect()
+        } else {
+            chain.marks[..REACH.min(n)].iter().rev().collect()
+        };
+        let last: Vec<[f64; 2]> = of_end.iter().map(|mark| place(mark)).collect();
+        let slope = slope(&last)?;
+        let mut widths: Vec<f64> = of_end.iter().map(|mark| mark.width / (1.0 + slope * slope).sqrt()).collect();
+        widths.sort_by(f64::total_cmp);
+        let step = (last.last()?[0] - last.first()?[0]).signum();
+        Some(Self { width: widths[widths.len() / 2], last, ground, step })
+    }
+
+    fn push(&mut self, mark: &Mark) {
+        self.last.remove(0);
+        self.last.push([mark.cross.line as f64, mark.point.dot(mark.axis())]);
+    }
+
+    /// The next window that the line shares with another one.
+    fn next(
+        &self,
+        canvas: &Canvas<'_>,
+        along: Along,
+        crosses: &[Vec<Cross>],
+        (own, ground): (u128, Color),
+        center_of: impl Fn(&Cross, f64) -> Option<f64>,
+    ) -> Option<Mark> {
+        let slope = slope(&self.last)?;
+        // Where it is steeper windows along the other axis read it.
+        if slope.abs() > 1.1 {
+            return None;
+        }
+        let width = self.width * (1.0 + slope * slope).sqrt();
+        let [last, center] = *self.last.last()?;
+        for missing in 0..(2.0 * canvas.widest) as usize {
+            let line = last + self.step * (1 + missing) as f64;
+            if line < 0.0 {
+                return None;
+            }
+            let predicted = center + slope * (line - last).abs();
+            let line = line as usize;
+            let run = canvas.run_around(along, line, predicted, (self.ground, ground))?;
+            let cross = Cross { line, run, sides: [self.ground; 2], colors: 0 };
+            if crosses[line].iter().any(|single| single.run == cross.run && single.colors & own != 0) {
+                return None;
+            }
+            let Some(center) = center_of(&cross, width) else { continue };
+            if (center - predicted).abs() <= MOST_ASIDE[0] + MOST_ASIDE[1] * missing as f64 {
+                let mut mark = Mark { along, cross, point: dvp_core::Vec2::default(), width, is_shared: true };
+                mark.place(center, width);
+                return Some(mark);
+            }
+        }
+        None
+    }
+}
+
+/// By how much the middle moves from window to window.
+fn slope(last: &[[f64; 2]]) -> Option<f64> {
+    let ([line, center], [other_line, other]) = (*last.first()?, *last.last()?);
+    (line != other_line).then(|| (other - center) / (other_line - line).abs())
+}
+
+/// By how much the width of a line may differ from window to window, pixels.
+fn tolerance(width: f64) -> f64 {
+    tuning::THIN_TOLERANCE * width + 0.08
+}
+
+impl Seen {
+    /// The middle of a line of this width, if that is what is seen.
+    fn center(&self, width: f64) -> Option<f64> {
+        let [low, high] = self.range;
+        let seen = high - low;
+        if self.gap > LEAST_SEEN {
+            return ((seen - width).abs() <= tolerance(width)).then_some(0.5 * (low + high));
+        }
+        // What is hidden of it lies under the other one.
+        (LEAST_SEEN..width + tolerance(width)).contains(&seen).then_some(if self.is_first {
+            low + 0.5 * width
+        } else {
+            high - 0.5 * width
+        })
+    }
+}
+
+impl Canvas<'_> {
+    /// The pixels around a place up to those that show the ground on which lines lie, if two lines can fill them.
+    fn run_around(&self, along: Along, line: usize, at: f64, (ground, color): (u16, Color)) -> Option<[usize; 2]> {
+        let [lines, length] = self.extent(along);
+        let at = at.max(0.0) as usize;
+        if line >= lines || at >= length {
+            return None;
+        }
+        let is_ground = |at: usize| distance(self.color(along, line, at), color) <= self.noise;
+        let is_end = |at: usize| self.flat[self.index(along, line, at)] != u16::MAX || is_ground(at);
+        if is_end(at) {
+            return None;
+        }
+        let longest = (2.0 * self.widest * core::f64::consts::SQRT_2).ceil() as usize + 3;
+        let before = (at.saturating_sub(longest)..at).rev().find(|&k| is_end(k))?;
+        let behind = (at + 1..length.min(at + longest)).find(|&k| is_end(k))?;
+        let is_on = [before, behind].map(|k| self.flat[self.index(along, line, k)] == ground || is_ground(k));
+        (is_on == [true; 2] && behind - before <= longest).then_some([before + 1, behind])
+    }
+
+    /// What is seen of a line beside another one, and the most that a channel differs from their mixture. Colors: what lies behind both, the
+    /// line's, the other one's. None if they do not explain the window.
+    fn pair(&self, along: Along, cross: &Cross, [side, own, other]: [Color; 3]) -> Option<(Seen, f64)> {
+        if distance(own, other) < self.contrast || distance(own, side) < self.contrast {
+            return None;
+        }
+        let [from, to] = cross.run;
+        let mut shares: Vec<[f64; 3]> = Vec::with_capacity(to - from);
+        let mut worst = 0.0_f64;
+        for at in from..to {
+            let pixel = self.color(along, cross.line, at);
+            let [mut a, mut b] = shares_of_three(pixel, [side, own, other])?;
+            if a < 0.0 {
+                (a, b) = (0.0, coverage(pixel, side, other).clamp(0.0, 1.0));
+            } else if b < 0.0 {
+                (a, b) = (coverage(pixel, side, own).clamp(0.0, 1.0), 0.0);
+            } else if a + b > 1.0 {
+                b = coverage(pixel, own, other).clamp(0.0, 1.0);
+                a = 1.0 - b;
+            }
+            let misfit = |c: usize| (pixel[c] - side[c] - a * (own[c] - side[c]) - b * (other[c] - side[c])).abs();
+            worst = (0..3).map(misfit).fold(worst, f64::max);
+            shares.push([1.0 - a - b, a, b]);
+        }
+        let total = |of: usize| shares.iter().map(|share| share[of]).sum::<f64>();
+        if worst > self.noise || total(1) < LEAST_SEEN || total(2) < LEAST_SEEN {
+            return None;
+        }
+        let fullest = |of: usize| (0..shares.len()).max_by(|&a, &b| shares[a][of].total_cmp(&shares[b][of]));
+        let (own, other) = (fullest(1)?, fullest(2)?);
+        let behind = |range: core::ops::Range<usize>| shares[range].iter().map(|share| share[0]).sum::<f64>();
+        let (range, gap) = if own < other {
+            let low = from as f64 + behind(0..own + 1);
+            ([low, low + total(1)], behind(own + 1..other))
+        } else {
+            let high = to as f64 - behind(own..shares.len());
+            ([high - total(1), high], behind(other + 1..own.max(other + 1)))
+        };
+        (own != other).then_some((Seen { range, is_first: own < other, gap }, worst))
+    }
+}

@@ -1,0 +1,73 @@
+//! Lines that meet, cross and lie side by side, as in charts.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use dvp_core::shape::{AnyShape, Cap, Join, PathRing, Stroke};
+
+use super::{BLUE, RED, WHITE, error, found, object, paint, rectangle, scene};
+
+/// A line of a pen with flat ends, points in pixels.
+fn line(points: &[[f64; 2]], width: f64, color: [f32; 3]) -> dvp_core::Object<f32> {
+    let rings = vec![PathRing::polyline(points.to_vec())];
+    let stroke = Stroke { rings, width, cap: Cap::Butt, join: Join::Miter { limit: 4.0 } };
+    object(AnyShape::Stroke(stroke), [0.0; 2], 0.0, color)
+}
+
+/// Finds a scene of lines again: as many strokes, of the same colors from back to front, and of the same width.
+fn are_found(lines: Vec<dvp_core::Object<f32>>, width: f64) {
+    let picture = paint(&scene(WHITE, lines.clone()));
+    let found = found(&picture);
+    assert_eq!(found.objects.len(), lines.len(), "{:?}", found.objects);
+    for line in &lines {
+        let near = |color: [f32; 3]| color.iter().zip(line.color()).all(|(a, b)| (a - b).abs() < 0.01);
+        let again = found.objects.iter().find(|object| near(object.color())).unwrap();
+        // A straight one is a rectangle as well.
+        let across = match &again.shape {
+            AnyShape::Stroke(stroke) => stroke.width,
+            AnyShape::Rectangle(rectangle) => rectangle.size[0].min(rectangle.size[1]),
+            other => panic!("{other:?}"),
+        };
+        let pixels = f64::from(across) * f64::from(again.pose.scale) * super::SIZE as f64;
+        assert!((pixels - width).abs() < 0.2, "{pixels}");
+    }
+    assert!(error(&picture, &found) < 4e-3, "{}", error(&picture, &found));
+}
+
+const GREEN: [f32; 3] = [0.2, 0.6, 0.3];
+
+#[test]
+fn lines_that_touch_along_the_way_stay_whole() {
+    // In the middle no window across one is free of the other.
+    let red = [[12.0, 30.0], [24.0, 48.0], [36.0, 58.0], [48.0, 61.0], [62.0, 59.0], [86.0, 40.0]];
+    let blue = [[12.0, 46.0], [30.0, 56.0], [44.0, 63.0], [60.0, 64.5], [86.0, 62.0]];
+    are_found(vec![line(&red, 3.4, RED), line(&blue, 3.4, BLUE)], 3.4);
+}
+
+#[test]
+fn lines_that_start_side_by_side_are_found_to_their_ends() {
+    // What is seen of the first one's start is its lower side.
+    let red = [[12.0, 41.0], [40.0, 47.0], [86.0, 66.0]];
+    let blue = [[12.0, 38.0], [30.0, 36.0], [86.0, 14.0]];
+    let green = [[12.0, 62.0], [50.0, 30.0], [86.0, 34.0]];
+    are_found(vec![line(&red, 4.0, RED), line(&green, 4.0, GREEN), line(&blue, 4.0, BLUE)], 4.0);
+}
+
+#[test]
+fn a_line_that_columns_and_rows_read_is_one() {
+    // At 45 degrees for a while, and less steep beyond: columns read all of it, rows its middle.
+    let red = [[10.0, 30.0], [24.0, 36.0], [62.0, 74.0], [86.0, 82.0]];
+    let blue = [[12.0, 70.0], [84.0, 30.0]];
+    are_found(vec![line(&red, 4.0, RED), line(&blue, 4.0, BLUE)], 4.0);
+}
+
+#[test]
+fn upright_edges_on_whole_pixels_are_known_as_well_as_others() {
+    // No mixed pixel at all, but no stairs either: what renderers without mixtures make of such a picture says nothing of its edges.
+    let field = |k: usize, color| object(rectangle(40.0, 40.0), [28.0 + 40.0 * k as f64, 48.0], 0.0, color);
+    let picture = paint(&scene(WHITE, vec![field(0, RED), field(1, BLUE)]));
+    let found = found(&picture);
+    assert_eq!(found.objects.len(), 2);
+    assert!(found.edge.law == dvp_core::render::EdgeLaw::Area && found.edge == dvp_core::render::EdgeProfile::area());
+    assert!(error(&picture, &found) < 1e-4, "{}", error(&picture, &found));
+}
