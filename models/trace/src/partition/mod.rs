@@ -131,7 +131,9 @@ impl Partition {
                 continue;
             }
             let (taken, is_changed) = take_lines(&mut pixels, size, &flats, &colors, &noise, widest);
-            has_crossings |= widest > tuning::THIN_WIDTH && !taken.is_empty();
+            // What shows the ground through something is a part of it either way.
+            let is_on_ground = |line: &ThinLine| line.color != colors.colors[0];
+            has_crossings |= widest > tuning::THIN_WIDTH && taken.iter().any(is_on_ground);
             // Wide lines may pass under thin ones.
             lines.splice(0..0, taken);
             if is_changed {
