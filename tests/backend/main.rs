@@ -18,6 +18,7 @@
 //! | `network`, `training` | 50 steps of Adam from the same weights; replicas on threads |
 //! | `modes` | a step of training in every mode |
 //! | `published` | DINOv2 and Conditional DETR against their public implementations; their gradients |
+//! | `decompose` | MONet: 50 steps, gradients, files |
 //! | `weights` | files written on one backend and read on another |
 #![expect(clippy::unwrap_used, clippy::panic, reason = "a failed test with a line number")]
 #![expect(clippy::cast_possible_truncation, reason = "rounding to f32 is what is checked")]
@@ -27,6 +28,7 @@ extern crate alloc;
 mod check;
 mod compose;
 mod convolution;
+mod decompose;
 mod dense;
 mod elementwise;
 mod input;

@@ -6,6 +6,7 @@ extern crate alloc;
 mod bad_input;
 mod chart;
 mod coded;
+mod decompose;
 mod edges;
 mod evaluate;
 mod exports;

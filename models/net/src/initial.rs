@@ -1,5 +1,7 @@
 //! Weights of a model that has learned nothing.
 
+use core::f64::consts::TAU;
+
 use dvp_core::dims::Dims;
 use dvp_core::real::{DType, Values};
 use dvp_core::tensor::{Backend, Parameters, ParametersError, Tensor};
@@ -61,6 +63,15 @@ fn start(name: &str, dims: &Dims) -> Start {
         [_, channels, rows, columns] => Start::Uniform { deviation: (2.0 / (channels * rows * columns) as f64).sqrt() },
         _ => Start::Uniform { deviation: TOKEN_DEVIATION },
     }
+}
+
+/// A number from the standard normal distribution.
+///
+/// *Source*: Box and Muller: A note on the generation of random normal deviates (1958).
+pub(crate) fn normal(rng: &mut ChaCha8Rng) -> f64 {
+    // In (0, 1]: the logarithm is finite.
+    let radius = (-2.0 * (1.0 - rng.random_range(0.0..1.0_f64)).ln()).sqrt();
+    radius * rng.random_range(0.0..TAU).cos()
 }
 
 #[cfg(test)]

@@ -18,9 +18,11 @@
 //! | [`layers`] | linear maps, norms, perceptrons, attention |
 //! | [`dinov2`] | [`Dinov2`](dinov2::Dinov2): image to tokens; loads the published weights by their names |
 //! | [`encoder`] | [`Encoder`](encoder::Encoder): image to features, by DINOv2 or strided convolutions |
+//! | [`decompose`] | [`Decomposer`](decompose::Decomposer): images to masks and what they show, MONet; knows no shapes |
 //! | [`detr`] | [`ConditionalDetr`](detr::ConditionalDetr): features to one latent per object slot |
 //! | [`model`] | [`Model`](model::Model): the whole, with its seven heads |
 //! | [`scene_steps`] | predicted scenes painted and judged by the core's differentiable steps |
+//! | `square` | pictures of any size on the squares that models take, and back |
 //! | `there` | which slots of a predicted scene are objects: where the model is in doubt, the picture decides |
 //! | [`optimize`] | OptZ and Rand-OptZ: scenes sought in the space of latents |
 //! | [`propose`] | [`Proposer`](propose::Proposer): a trained model that reads pictures of any size, on the host |
@@ -32,6 +34,7 @@
 
 extern crate alloc;
 
+pub mod decompose;
 pub mod detr;
 pub mod dinov2;
 pub mod encoder;
@@ -44,6 +47,7 @@ pub mod model;
 pub mod optimize;
 pub mod propose;
 pub mod scene_steps;
+mod square;
 mod there;
 pub mod train;
 pub mod weights;

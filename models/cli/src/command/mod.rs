@@ -8,6 +8,7 @@
 //!
 //! Proved by `tests/command`, which runs the program.
 
+mod decompose;
 mod drawing;
 mod evaluate;
 mod fit;
@@ -18,6 +19,7 @@ pub mod progress;
 mod prototypes;
 mod refine;
 mod render;
+mod sheet;
 mod train;
 
 use std::ffi::OsString;
@@ -56,6 +58,7 @@ pub enum Command {
     Prototypes(prototypes::Arguments),
     Train(train::Arguments),
     Evaluate(evaluate::Arguments),
+    Decompose(decompose::Arguments),
 }
 
 impl Command {
@@ -72,6 +75,7 @@ impl Command {
             Self::Prototypes(arguments) => prototypes::run(arguments, console),
             Self::Train(arguments) => train::run(arguments, console),
             Self::Evaluate(arguments) => evaluate::run(arguments, console),
+            Self::Decompose(arguments) => decompose::run(arguments, console),
         }
     }
 }

@@ -5,7 +5,7 @@
 //!
 //! | file | holds |
 //! |---|---|
-//! | `mod.rs` | [`score`]: one picture |
+//! | `mod.rs` | [`score`], [`score_pixels`]: one picture |
 //! | `totals.rs` | [`Totals`]: means of many |
 //! | `objects.rs`, `object_totals.rs` | [`score_objects`]: objects against objects, and over many pictures |
 //! | `classes.rs` | [`Confusion`]: true and found classes |
@@ -88,7 +88,7 @@ pub struct MaskScore {
 pub struct Scratch {
     ssim: SsimScratch<f32>,
     rand_index: RandIndexScratch,
-    render: <ContourRenderer<f32> as Renderer<f32>>::Scratch,
+    render: Render,
     found: Ownership,
     truth: Ownership,
 }
@@ -107,6 +107,23 @@ pub fn score(
     let painted = painter.paint(found, image.size())?;
     let mut score = score_images(painted.view(), image, scratch)?;
     score.masks = known.map(|known| score_masks(painter, known, there, image.size(), scratch)).transpose()?;
+    Ok(score)
+}
+
+/// Scores a reconstruction and the object that each of its pixels shows, of a method that draws no scene. Objects of a true scene
+/// that blends own what they reach, as in [`score`]; those that were found what `labels` says, 0 for the background.
+///
+/// # Errors
+/// As [`score`]; [`ScoreError::Compare`] if the images differ in size.
+pub fn score_pixels(
+    painter: &Painter,
+    image: ImageView<'_, f32>,
+    known: Option<&Truth<'_>>,
+    (painted, labels): (ImageView<'_, f32>, &[u32]),
+    scratch: &mut Scratch,
+) -> Result<Score, ScoreError> {
+    let mut score = score_images(painted, image, scratch)?;
+    score.masks = known.map(|known| score_labels(painter, known, labels, image.size(), scratch)).transpose()?;
     Ok(score)
 }
 
@@ -145,33 +162,70 @@ fn score_masks(
     scratch: &mut Scratch,
 ) -> Result<MaskScore, ScoreError> {
     let Scratch { rand_index, render, found: found_owned, truth: truly_owned, .. } = scratch;
-    let mut own = |scene: &Scene<f32>, rule, owned: &mut Ownership| -> Result<(), ScoreError> {
-        // The visible edge, whatever renderer painted it.
-        let renderer = ContourRenderer::new(scene.edge, scene.compositing);
-        Ok(owned.fill_drawing(rule, &renderer, &painter.draw(scene, size)?, size, render)?)
-    };
-    let seen = OwnershipRule::Seen(found.compositing);
+    own_truly(painter, truth, size, render, truly_owned)?;
     let rule = match *truth {
-        Truth::Scene(truth) if truth.compositing == Compositing::Blend => {
-            own(truth, OwnershipRule::Reached, truly_owned)?;
-            OwnershipRule::Reached
-        }
-        Truth::Scene(truth) => {
-            own(truth, OwnershipRule::Seen(truth.compositing), truly_owned)?;
-            seen
-        }
-        Truth::Labels(labels) => {
-            truly_owned.fill_labels(labels);
-            seen
-        }
+        Truth::Scene(truth) if truth.compositing == Compositing::Blend => OwnershipRule::Reached,
+        _ => OwnershipRule::Seen(found.compositing),
     };
-    own(found, rule, found_owned)?;
+    own(painter, found, rule, size, render, found_owned)?;
+    compare(found_owned, truly_owned, rand_index)
+}
+
+/// Compares the pixels that labels give to objects.
+fn score_labels(
+    painter: &Painter,
+    truth: &Truth<'_>,
+    labels: &[u32],
+    size: ImageSize,
+    scratch: &mut Scratch,
+) -> Result<MaskScore, ScoreError> {
+    let Scratch { rand_index, render, found: found_owned, truth: truly_owned, .. } = scratch;
+    own_truly(painter, truth, size, render, truly_owned)?;
+    found_owned.fill_labels(labels);
+    compare(found_owned, truly_owned, rand_index)
+}
+
+type Render = <ContourRenderer<f32> as Renderer<f32>>::Scratch;
+
+/// What the objects of a scene own, by the visible edge, whatever renderer painted it.
+fn own(
+    painter: &Painter,
+    scene: &Scene<f32>,
+    rule: OwnershipRule,
+    size: ImageSize,
+    render: &mut Render,
+    owned: &mut Ownership,
+) -> Result<(), ScoreError> {
+    let renderer = ContourRenderer::new(scene.edge, scene.compositing);
+    Ok(owned.fill_drawing(rule, &renderer, &painter.draw(scene, size)?, size, render)?)
+}
+
+fn own_truly(
+    painter: &Painter,
+    truth: &Truth<'_>,
+    size: ImageSize,
+    render: &mut Render,
+    owned: &mut Ownership,
+) -> Result<(), ScoreError> {
+    match *truth {
+        Truth::Scene(truth) if truth.compositing == Compositing::Blend => {
+            own(painter, truth, OwnershipRule::Reached, size, render, owned)
+        }
+        Truth::Scene(truth) => own(painter, truth, OwnershipRule::Seen(truth.compositing), size, render, owned),
+        Truth::Labels(labels) => {
+            owned.fill_labels(labels);
+            Ok(())
+        }
+    }
+}
+
+fn compare(found: &Ownership, truth: &Ownership, rand_index: &mut RandIndexScratch) -> Result<MaskScore, ScoreError> {
     let mut overlap = MaskOverlap::default();
-    overlap.add(found_owned.union(), truly_owned.union());
+    overlap.add(found.union(), truth.union());
     Ok(MaskScore {
         overlap,
-        ari: adjusted_rand_index(found_owned.index(), truly_owned.index(), rand_index)?,
-        true_objects: truly_owned.objects(),
-        found_objects: found_owned.objects(),
+        ari: adjusted_rand_index(found.index(), truth.index(), rand_index)?,
+        true_objects: truth.objects(),
+        found_objects: found.objects(),
     })
 }

@@ -1,10 +1,11 @@
 //! Strided convolutions: small, and trained from nothing.
 
-use dvp_core::tensor::{Backend, Stride, Tensor, TensorError};
+use dvp_core::tensor::{Backend, Stride, Tensor};
 use serde::{Deserialize, Serialize};
 
 use super::Encoder;
 use crate::error::{NetError, require};
+use crate::layers::{Convolution, places};
 use crate::weights::Weights;
 
 /// Sizes of a [`ConvEncoder`].
@@ -37,34 +38,15 @@ impl ConvConfig {
 #[derive(Clone, Debug)]
 pub struct ConvEncoder<B: Backend> {
     patch: usize,
-    patches: Conv<B>,
+    patches: Convolution<B>,
     stages: Vec<Stage<B>>,
     channels: usize,
 }
 
-/// A convolution with a bias.
-#[derive(Clone, Debug)]
-struct Conv<B: Backend> {
-    kernels: Tensor<B>,
-    bias: Tensor<B>,
-    stride: Stride,
-}
-
 #[derive(Clone, Debug)]
 struct Stage<B: Backend> {
-    enter: Conv<B>,
-    residual: Vec<Conv<B>>,
-}
-
-impl<B: Backend> Conv<B> {
-    fn load(weights: &Weights<'_, B>, [from, to]: [usize; 2], side: usize, stride: Stride) -> Result<Self, NetError> {
-        let kernels = weights.get("weight", &[to, from, side, side])?;
-        Ok(Self { kernels, bias: weights.get("bias", &[to])?.reshape(&[to, 1, 1])?, stride })
-    }
-
-    fn forward(&self, x: &Tensor<B>) -> Result<Tensor<B>, TensorError> {
-        x.conv2d(&self.kernels, self.stride)?.add(&self.bias)?.relu()
-    }
+    enter: Convolution<B>,
+    residual: Vec<Convolution<B>>,
 }
 
 impl<B: Backend> ConvEncoder<B> {
@@ -77,16 +59,16 @@ impl<B: Backend> ConvEncoder<B> {
         let ConvConfig { patch, ref channels, residual } = *config;
         let first = channels[0];
         let tiles = Stride { step: patch, padding: 0 };
-        let patches = Conv::load(&weights.under("patches"), [3, first], patch, tiles)?;
+        let patches = Convolution::load(&weights.under("patches"), [3, first], patch, tiles)?;
         let mut stages = Vec::with_capacity(channels.len());
         let mut from = first + 2;
         for (k, &to) in channels.iter().enumerate() {
             let weights = weights.under(&format!("stages.{k}"));
             let step = if k == 0 { 1 } else { 2 };
-            let enter = Conv::load(&weights.under("enter"), [from, to], 3, Stride { step, padding: 1 })?;
+            let enter = Convolution::load(&weights.under("enter"), [from, to], 3, Stride { step, padding: 1 })?;
             let keep = |j| {
                 let weights = weights.under(&format!("residual.{j}"));
-                Conv::load(&weights, [to, to], 3, Stride { step: 1, padding: 1 })
+                Convolution::load(&weights, [to, to], 3, Stride { step: 1, padding: 1 })
             };
             stages.push(Stage { enter, residual: (0..residual).map(keep).collect::<Result<_, _>>()? });
             from = to;
@@ -110,22 +92,15 @@ impl<B: Backend> Encoder<B> for ConvEncoder<B> {
             return Err(NetError::ImageSize { width, height, patch: self.patch });
         }
         let centered = images.affine(2.0, -1.0)?;
-        let patches = self.patches.forward(&centered)?;
+        let patches = self.patches.forward(&centered)?.relu()?;
         let places = patches.like(places(rows, columns), &[1, 2, rows, columns])?;
         let mut x = Tensor::concat(&[&patches, &places.expand(&[batch, 2, rows, columns])?], 1)?;
         for stage in &self.stages {
-            x = stage.enter.forward(&x)?;
+            x = stage.enter.forward(&x)?.relu()?;
             for conv in &stage.residual {
-                x = x.add(&conv.forward(&x)?)?;
+                x = x.add(&conv.forward(&x)?.relu()?)?;
             }
         }
         Ok(x)
     }
-}
-
-/// Horizontal, then vertical places of a grid, -1 to 1 between the borders of the image.
-fn places(rows: usize, columns: usize) -> Vec<f64> {
-    let place = |k: usize, count: usize| (2 * k + 1) as f64 / count as f64 - 1.0;
-    let cells = || (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column)));
-    cells().map(|(_, column)| place(column, columns)).chain(cells().map(|(row, _)| place(row, rows))).collect()
 }

@@ -1,12 +1,11 @@
 //! Latents that no encoder made.
 
-use core::f64::consts::TAU;
-
 use dvp_core::real::{DType, Values};
 use dvp_core::tensor::{Backend, Tensor, TensorError};
-use rand::{RngExt as _, SeedableRng as _};
+use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
 
+use crate::initial::normal;
 use crate::model::{Latents, ModelConfig};
 
 /// Latents of one image, every number of every slot drawn from the standard normal distribution, the same for the same
@@ -30,13 +29,4 @@ pub fn random_latents<B: Backend>(
     let values = Values::F64((0..slots * width).map(|_| normal(&mut rng)).collect()).cast(dtype);
     let dims = dvp_core::dims::Dims::new(&[1, slots, width])?;
     Latents::of_objects(Tensor::from_values(values, &dims, device)?)
-}
-
-/// A number from the standard normal distribution.
-///
-/// *Source*: Box and Muller: A note on the generation of random normal deviates (1958).
-fn normal(rng: &mut ChaCha8Rng) -> f64 {
-    // In (0, 1]: the logarithm is finite.
-    let radius = (-2.0 * (1.0 - rng.random_range(0.0..1.0_f64)).ln()).sqrt();
-    radius * rng.random_range(0.0..TAU).cos()
 }

@@ -7,11 +7,9 @@
 //! | file | holds |
 //! |---|---|
 //! | `mod` | [`Proposer`] |
-//! | `square` | a picture on the square, and poses back to the units of the picture |
 //! | `built_in` | [`BUILT_IN`]: weights that come with the program |
 
 mod built_in;
-mod square;
 #[cfg(test)]
 mod tests;
 
@@ -22,12 +20,12 @@ use dvp_core::{AnyShape, Image, ImageView, Object, Real, Scene};
 
 pub use built_in::BUILT_IN;
 
-use self::square::Square;
 use crate::error::NetError;
 use crate::layers::Phase;
 use crate::model::{Latents, Model, ModelConfig};
 use crate::optimize::{OptZ, Optimum, random_latents};
 use crate::scene_steps::{SceneSteps, image_tensor};
+use crate::square::Square;
 use crate::there::there;
 use crate::train::Checkpoint;
 use crate::weights::Weights;

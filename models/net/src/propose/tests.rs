@@ -3,7 +3,7 @@ use dvp_core::shape::{Efd, mdshr_bank};
 use dvp_core::tensor::HostDevice;
 use dvp_core::{Image, ImageSize, Object, Pose, Real, Scene};
 
-use super::square::Square;
+use crate::square::Square;
 use super::*;
 use crate::train::{Judge, Mode, Schedule, Trainer};
 

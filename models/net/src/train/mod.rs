@@ -7,19 +7,28 @@
 //! | `judge` | [`Judge`]: the loss of a batch in each mode |
 //! | `schedule` | [`Schedule`]: the learning rate |
 //! | `checkpoint` | [`Checkpoint`]: a model in a file |
+//! | `stored` | what files of weights have in common |
+//! | `gradients` | gradients over all weights |
+//! | `decomposer`, `decomposer_file` | [`DecomposerTrainer`], [`DecomposerFile`]: the same for networks without shapes |
 //! | `trainer` | [`Trainer`]: steps of Adam, over threads |
 
 mod batch;
 mod checkpoint;
+mod decomposer;
+mod decomposer_file;
+mod gradients;
 mod judge;
 mod mode;
 mod schedule;
+mod stored;
 #[cfg(test)]
 mod tests;
 mod trainer;
 
 pub use batch::{Batch, Features};
 pub use checkpoint::Checkpoint;
+pub use decomposer::{DecomposerStep, DecomposerTrainer};
+pub use decomposer_file::DecomposerFile;
 pub use judge::{Judge, Judged};
 pub use mode::{Mode, Source};
 pub use schedule::Schedule;

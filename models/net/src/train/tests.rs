@@ -137,7 +137,7 @@ fn a_run_goes_on_to_the_same_numbers() {
     let expected: Vec<_> = (0..3).map(|_| whole.step(&batch).unwrap()).collect();
 
     let checkpoint = Checkpoint::from_bytes(&bytes).unwrap();
-    assert_eq!((checkpoint.steps(), checkpoint.about.as_str()), (2, "words"));
+    assert_eq!((checkpoint.steps(), checkpoint.about()), (2, "words"));
     let mut again = trainer::<f32>(Mode::TiTp);
     checkpoint.resume(&mut again, &HostDevice).unwrap();
     let found: Vec<_> = (0..3).map(|_| again.step(&batch).unwrap()).collect();

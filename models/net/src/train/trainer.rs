@@ -1,14 +1,14 @@
 //! Steps of training.
 
-use alloc::collections::BTreeMap;
 use std::thread;
 
 use dvp_core::optim::AdamSettings;
 use dvp_core::shape::PrototypeBank;
-use dvp_core::tensor::{Adam, Backend, Parameters, ParametersError, Tensor};
+use dvp_core::tensor::{Adam, Backend, Parameters};
 use dvp_core::{Image, Real, Scene};
 
 use super::batch::{Batch, Features};
+use super::gradients::{Gradients, cut, length};
 use super::judge::Judge;
 use super::mode::Mode;
 use super::schedule::Schedule;
@@ -59,9 +59,6 @@ pub struct Step {
     /// The learning rate.
     pub rate: f64,
 }
-
-/// Gradients by name.
-type Gradients<B> = BTreeMap<String, Tensor<B>>;
 
 /// What a part of a batch came to.
 struct Part<B: Backend> {
@@ -156,15 +153,11 @@ impl<B: Backend, T: Real> Trainer<B, T> {
         }
         let mean = |k: usize| parts.iter().map(|part| Some(part.share * part.losses[k]?)).sum::<Option<f64>>();
         let loss = mean(0).unwrap_or(f64::NAN);
-        let norm = norm(&gradients)?;
+        let norm = length(&gradients)?;
         if !loss.is_finite() || !norm.is_finite() {
             return Err(NetError::NotFinite { step: number, loss: if loss.is_finite() { norm } else { loss } });
         }
-        if let Some(longest) = self.clip_norm.filter(|longest| norm > *longest) {
-            for gradient in gradients.values_mut() {
-                *gradient = gradient.affine(longest / norm, 0.0)?;
-            }
-        }
+        cut(&mut gradients, norm, self.clip_norm)?;
         let rate = self.schedule.rate(number);
         self.adam.step(&mut self.parameters, &gradients, rate)?;
         for (name, tensor) in running_mean(&parts)? {
@@ -264,15 +257,6 @@ impl<B: Backend, T: Real> Trainer<B, T> {
         let gradients = replica.gradients(&judged.loss.backward()?);
         Ok(Part { share, losses, gradients, running: judged.running })
     }
-}
-
-/// Length of the gradient over all weights.
-fn norm<B: Backend>(gradients: &Gradients<B>) -> Result<f64, ParametersError> {
-    let mut sum = 0.0;
-    for gradient in gradients.values() {
-        sum += gradient.mul(gradient)?.sum_all()?.number()?;
-    }
-    Ok(sum.sqrt())
 }
 
 /// Means over parts of what follows a batch without a gradient.

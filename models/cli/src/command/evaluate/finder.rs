@@ -3,10 +3,11 @@
 use alloc::sync::Arc;
 use std::path::PathBuf;
 
-use anyhow::{Result, bail};
+use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
+use dvp_net::decompose::Divider;
 
-use crate::method::{Method, Runner, Tools, load_network};
+use crate::method::{Method, Runner, Tools, load_divider, load_network};
 
 /// What is said of a network on the command line.
 #[derive(Debug, Args)]
@@ -46,6 +47,8 @@ enum Source {
     RandOptP,
     /// The paper's Rand-OptZ: Adam from random latents, through the heads of the network
     RandOptZ,
+    /// MONet of --model: masks and what they show, no scene
+    Monet,
 }
 
 /// What is done with what the network sees.
@@ -68,6 +71,16 @@ impl NetworkArguments {
         self.model.is_some() || self.method.is_some() || self.generated.is_some()
     }
 
+    /// The network that divides pictures instead of finding their scenes, if one is asked.
+    pub(super) fn divider(&self) -> Result<Option<Divider>> {
+        let (Some(Source::Monet), model) = (self.method, &self.model) else { return Ok(None) };
+        if self.then != Then::None {
+            bail!("--then goes on from scenes, and --method monet finds none");
+        }
+        let model = model.as_deref().context("--method monet needs the weights of a run: --model FILE")?;
+        Ok(Some(load_divider(model)?))
+    }
+
     /// What finds the scenes, made ready.
     pub(super) fn runner(&self) -> Result<Runner> {
         let source = self.method.unwrap_or_default();
@@ -81,6 +94,7 @@ impl NetworkArguments {
             (Source::LivePublished, _) => Method::LivePublished,
             (Source::RandOptP, _) => Method::RandOptP,
             (Source::RandOptZ, _) => Method::RandOptZ,
+            (Source::Monet, _) => bail!("--method monet finds no scenes"),
             (Source::Net, Then::None) => Method::Net,
             (Source::Net, Then::OptP) => Method::NetOptP,
             (Source::Net, Then::OptZ) => Method::OptZ,

@@ -9,20 +9,24 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
 use dvp_core::{Image, ImageSize, Scene};
+use dvp_net::decompose::Divider;
 
 use self::finder::NetworkArguments;
 use super::options::{BatchArguments, PaintArguments};
 use super::{Console, Outcome, generated, in_words};
 use crate::format::{DataSet, Place, Sample, SceneJson, read_labels, read_npy, read_picture, read_scene, write_atomic};
-use crate::method::{Memory, Runner, Task, seed_of};
+use crate::method::{Memory, MethodError, Runner, Task, seed_of, timed};
 use crate::paint::Painter;
-use crate::score::{Row, Score, Scratch, Totals, Truth, score};
+use crate::score::{Row, Score, Scratch, Totals, Truth, score, score_pixels};
 use crate::suite::Suite;
 
 /// Scores a folder of predictions (STEM.json, as `dvp fit` writes them), or a network, against a data set.
 ///
 /// A network (--model) predicts from the images that it is compared with. Objects are there if it is sure of them, or in
 /// doubt if the image is painted better with them; those of opt-z count if their confidence is above 1/2.
+///
+/// MONet (--method monet --model FILE) divides the picture: its objects own the pixels in which their mask is the largest, the mask with
+/// the most pixels is the background, and masks with fewer than two pixels of a thousand belong to it.
 ///
 /// MAE, MSE and SSIM compare images; IoU (pooled over all images), ARI and the share of exact object counts need the
 /// true scenes (scenes.jsonl) or, beside a picture STEM.png, a label map STEM.labels.png: gray of 8 or 16 bits, 0 for the
@@ -93,6 +97,7 @@ struct Judge<'a> {
 enum Predictions<'a> {
     Folder(&'a Path),
     Network(Box<Runner>),
+    Divided(Box<Divider>),
 }
 
 impl Arguments {
@@ -106,14 +111,22 @@ impl Arguments {
                 Ok((Predictions::Folder(predictions), DataSet::open(data)?))
             }
             (Some(data), None, None) => {
-                Ok((Predictions::Network(Box::new(self.network.runner()?)), DataSet::open(data)?))
+                Ok((self.asked()?, DataSet::open(data)?))
             }
             (None, None, Some(count)) => {
                 let data = generated::mds_hr(count, self.network.seed)?;
-                Ok((Predictions::Network(Box::new(self.network.runner()?)), data))
+                Ok((self.asked()?, data))
             }
             _ => bail!("a network is scored on one thing: the folder of a data set, or --generated N"),
         }
+    }
+
+    /// What predicts while it is scored.
+    fn asked(&self) -> Result<Predictions<'_>> {
+        Ok(match self.network.divider()? {
+            Some(divider) => Predictions::Divided(Box::new(divider)),
+            None => Predictions::Network(Box::new(self.network.runner()?)),
+        })
     }
 }
 
@@ -180,6 +193,16 @@ impl Judge<'_> {
                 let found = runner.run(&task, memory)?;
                 let score = self.compare(sample, truth.as_ref(), &image, [&found.fit.scene, &found.there], scratch)?;
                 Ok(Score { cpu_ms: Some(found.cpu.as_secs_f64() * 1e3), ..score })
+            }
+            Predictions::Divided(divider) => {
+                let image = self.true_image(index, sample, truth.as_ref(), None)?;
+                let (parts, cpu) = timed(|| Ok::<_, MethodError>(divider.divide(image.view())?))?;
+                let labels = sample.labels.as_ref().map(|path| self.labels(path, image.size())).transpose()?;
+                let known = labels.as_deref().map(Truth::Labels).or_else(|| truth.as_ref().map(Truth::Scene));
+                let found = (parts.reconstruction(), parts.labels());
+                let found = (found.0.view(), &found.1[..]);
+                let score = score_pixels(&self.painter, image.view(), known.as_ref(), found, scratch)?;
+                Ok(Score { cpu_ms: Some(cpu.as_secs_f64() * 1e3), ..score })
             }
         }
     }

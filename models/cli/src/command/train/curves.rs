@@ -4,14 +4,30 @@ use std::fs;
 use std::path::Path;
 
 use anyhow::{Context, Result};
-use dvp_net::train::Step;
 
 use crate::chart::{Chart, Line};
 use crate::format::write_atomic;
 
-/// The first line of `losses.csv`.
-const HEADER: &str =
+/// The first line of `losses.csv` where scenes are learned.
+const OF_SCENES: &str =
     "step,loss,image_loss,parameter_loss,gradient,rate,seconds,validation_image_loss,validation_parameter_loss";
+/// And where parts are.
+const OF_PARTS: &str = "step,loss,pixels,latents,gradient,rate,seconds,validation_mae,validation_ari";
+
+/// What a line of the curves says of a step.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Entry {
+    pub(super) step: u64,
+    /// Mean since the last line.
+    pub(super) loss: f64,
+    /// Two of the terms of the loss of this step.
+    pub(super) terms: [Option<f64>; 2],
+    pub(super) gradient: f64,
+    pub(super) rate: f64,
+    pub(super) seconds: f64,
+    /// On the validation images, where they were looked at; runs are judged by the first.
+    pub(super) seen: [Option<f64>; 2],
+}
 
 /// A line of `losses.csv`.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,14 +39,23 @@ struct Row {
 }
 
 /// Losses of a run so far.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Curves {
+    header: &'static str,
     rows: Vec<Row>,
 }
 
 impl Curves {
+    pub(super) fn of_scenes() -> Self {
+        Self { header: OF_SCENES, rows: Vec::new() }
+    }
+
+    pub(super) fn of_parts() -> Self {
+        Self { header: OF_PARTS, rows: Vec::new() }
+    }
+
     /// Reads what a run left up to and with step `last`.
-    pub(super) fn read(path: &Path, last: u64) -> Result<Self> {
+    pub(super) fn read(&mut self, path: &Path, last: u64) -> Result<()> {
         let text = fs::read_to_string(path).with_context(|| format!("{} cannot be read", path.display()))?;
         let row = |line: &str| {
             let fields: Vec<&str> = line.split(',').collect();
@@ -38,7 +63,8 @@ impl Curves {
             let step = fields.first()?.parse().ok()?;
             Some(Row { step, loss: number(1)?, validation: number(7), text: line.to_owned() })
         };
-        Ok(Self { rows: text.lines().skip(1).filter_map(row).filter(|row| row.step <= last).collect() })
+        self.rows = text.lines().skip(1).filter_map(row).filter(|row| row.step <= last).collect();
+        Ok(())
     }
 
     /// Seconds that the run had taken at its last line.
@@ -47,31 +73,23 @@ impl Curves {
         self.rows.last().and_then(field).unwrap_or(0.0)
     }
 
-    /// The smallest L_x on the validation images.
+    /// The smallest error of the validation images.
     pub(super) fn best(&self) -> Option<f64> {
         self.rows.iter().filter_map(|row| row.validation).min_by(f64::total_cmp)
     }
 
-    /// Adds the line of a step, of mean `loss` since the last line; `seen`: losses on the validation images.
-    pub(super) fn push(&mut self, step: &Step, loss: f64, seconds: f64, seen: Option<[Option<f64>; 2]>) {
+    /// Adds a line.
+    pub(super) fn push(&mut self, entry: &Entry) {
+        let Entry { step, loss, terms, gradient, rate, seconds, seen } = *entry;
         let show = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:.6}"));
-        let [image, parameters] = seen.unwrap_or([None; 2]);
-        let text = format!(
-            "{},{loss:.6},{},{},{:.4},{:.3e},{seconds:.1},{},{}",
-            step.number,
-            show(step.image),
-            show(step.parameters),
-            step.gradient,
-            step.rate,
-            show(image),
-            show(parameters)
-        );
-        self.rows.push(Row { step: step.number, loss, validation: image, text });
+        let [[first, second], [error, other]] = [terms.map(show), seen.map(show)];
+        let text = format!("{step},{loss:.6},{first},{second},{gradient:.4},{rate:.3e},{seconds:.1},{error},{other}");
+        self.rows.push(Row { step, loss, validation: seen[0], text });
     }
 
     /// Writes `losses.csv` and `losses.svg`.
     pub(super) fn write(&self, csv: &Path, svg: &Path) -> Result<()> {
-        let lines: Vec<&str> = [HEADER].into_iter().chain(self.rows.iter().map(|row| row.text.as_str())).collect();
+        let lines: Vec<&str> = [self.header].into_iter().chain(self.rows.iter().map(|row| row.text.as_str())).collect();
         write_atomic(csv, (lines.join("\n") + "\n").as_bytes())?;
         #[expect(clippy::cast_precision_loss, reason = "steps are fewer than 2^53")]
         let at = |row: &Row| row.step as f64;

@@ -7,6 +7,7 @@ use anyhow::{Context, Result, bail};
 use dvp_core::tensor::{Host, HostDevice};
 use dvp_core::{Image, ImageSize, Scene};
 use dvp_fit::Bank;
+use dvp_net::decompose::on_square;
 use dvp_net::model::Model;
 use dvp_net::scene_steps::{SceneSteps, image_tensor};
 use dvp_net::train::{Batch, Source};
@@ -33,6 +34,19 @@ impl Data {
     pub(super) fn generated(bank: Bank<f32>, size: ImageSize, seed: u64, count: u64) -> Self {
         let count = (count > 0).then_some(count);
         Self::Generated { settings: SceneSettings::mds_hr(), bank, size, seed, count }
+    }
+
+    /// The pictures of a folder on squares of `side` pixels, as a network for such squares sees them. Scenes of pictures that are not
+    /// square lose their meaning there, and are left away.
+    pub(super) fn on_squares(self, side: usize) -> Result<Self> {
+        let Self::Folder { mut all, held_out, seed } = self else { return Ok(self) };
+        if all.images.first().is_some_and(|image| image.size().width() != image.size().height()) {
+            all.scenes.clear();
+        }
+        for image in &mut all.images {
+            *image = on_square(image.view(), side)?;
+        }
+        Ok(Self::Folder { all, held_out, seed })
     }
 
     /// The pictures of a folder; all must have one size.

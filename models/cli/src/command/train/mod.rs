@@ -4,30 +4,34 @@
 //! |---|---|
 //! | `settings` | what a run is made of, on the command line and in a file |
 //! | `data` | batches |
-//! | `run` | the steps, on any backend |
-//! | `store`, `curves`, `samples` | what it writes while it runs |
+//! | `job` | what runs have in common; the backends by name |
+//! | `run` | the steps of a network that proposes scenes, on any backend |
+//! | `parts_run` | those of one that divides images into parts |
+//! | `store`, `curves` | what it writes while it runs |
 
 mod curves;
 mod data;
 mod features;
+mod job;
+mod parts_run;
 mod run;
-mod samples;
 mod settings;
 mod store;
 
 use std::path::PathBuf;
 
-use anyhow::{Result, bail};
+use anyhow::Result;
 use clap::Args;
-use dvp_core::tensor::{Host, HostDevice};
 
+use self::job::go_on;
+use self::parts_run::PartsRun;
 use self::run::Run;
-use self::settings::{BackendName, Settings};
+use self::settings::{ModelName, Settings};
 use self::store::Store;
 use super::{Console, Outcome};
 use crate::format::write_atomic;
 
-/// Trains a network that proposes the scene of an image.
+/// Trains a network that proposes the scene of an image, or MONet, which divides it into masks.
 ///
 /// Writes the settings, two checkpoints, the best weights by the image loss on validation images (best.safetensors, for
 /// `dvp fit --start` and `dvp evaluate --model`), curves (losses.csv, losses.svg) and sample reconstructions. It may be
@@ -36,7 +40,8 @@ use crate::format::write_atomic;
 #[command(args_override_self = true)]
 #[command(before_help = "Example: dvp train --out run\n         \
                          dvp train --out run --mode ti+ --start gp/best.safetensors\n         \
-                         dvp train --out run --resume")]
+                         dvp train --out run --resume\n         \
+                         dvp train --out masks --model monet --side 64")]
 pub struct Arguments {
     /// Folder to write to
     #[arg(long, short, value_name = "DIR")]
@@ -62,24 +67,20 @@ pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Ou
     } else {
         store.check_new()?;
     }
+    settings.check()?;
     let settings = settings.complete()?;
-    let run = Run::new(&settings)?;
-    write_atomic(&store.path("run.json"), (serde_json::to_string_pretty(&settings)? + "\n").as_bytes())?;
-    match settings.backend.unwrap_or_default() {
-        BackendName::Host => run.go::<Host>(HostDevice, &store, arguments.resume, console),
-        #[cfg(feature = "burn")]
-        BackendName::Burn => {
-            let device = <dvp_burn::Burn as dvp_core::tensor::Backend>::Device::flex();
-            run.go::<dvp_burn::Burn>(device, &store, arguments.resume, console)
+    let backend = settings.backend.unwrap_or_default();
+    let write = || -> Result<()> { Ok(write_atomic(&store.path("run.json"), (serde_json::to_string_pretty(&settings)? + "\n").as_bytes())?) };
+    match settings.model.unwrap_or_default() {
+        ModelName::Scene => {
+            let run = Run::new(&settings)?;
+            write()?;
+            go_on(backend, &run, &store, arguments.resume, console)
         }
-        #[cfg(feature = "candle")]
-        BackendName::Candle => {
-            run.go::<dvp_candle::Candle>(dvp_candle::CandleDevice::CPU, &store, arguments.resume, console)
-        }
-        #[allow(unreachable_patterns, reason = "no backend is missing if all features are on")]
-        other => {
-            let name = format!("{other:?}").to_lowercase();
-            bail!("this dvp was built without {name}; build it with --features {name}")
+        ModelName::Monet => {
+            let run = PartsRun::new(&settings)?;
+            write()?;
+            go_on(backend, &run, &store, arguments.resume, console)
         }
     }
 }

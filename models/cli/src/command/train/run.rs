@@ -16,18 +16,17 @@ use dvp_net::propose::TRAINED_SIDE;
 use dvp_net::scene_steps::SceneSteps;
 use dvp_net::train::{Batch, Checkpoint, Judge, Mode, Schedule, Source, Trainer};
 
-use super::curves::Curves;
+use super::curves::{Curves, Entry};
 use super::data::{Data, reread};
 use super::features::FeatureCache;
-use super::samples;
+use super::job::{Job, LINE_EVERY, Numbers, Recent};
 use super::settings::Settings;
 use super::store::Store;
 use crate::command::options::BankChoice;
+use crate::command::sheet::sheet;
 use crate::command::{Console, Outcome, progress};
 use crate::format::{BitDepth, SceneJson, encode_png, write_atomic};
 
-/// Steps between lines of the curves.
-const LINE_EVERY: u64 = 10;
 /// Validation images that are drawn.
 const SAMPLES: usize = 8;
 
@@ -44,22 +43,10 @@ pub(super) struct Run {
     settings: Settings,
 }
 
-/// Numbers of a run that are set: [`Settings::complete`] leaves none open.
-struct Numbers {
-    steps: u64,
-    batch: usize,
-    save_every: u64,
-    validation: usize,
-    seed: u64,
-}
-
 impl Run {
     pub(super) fn new(settings: &Settings) -> Result<Self> {
         let (mode, config) = (settings.mode()?, settings.model()?);
-        let numbers = Numbers::of(settings);
-        if numbers.batch == 0 || numbers.save_every == 0 || numbers.steps == 0 || numbers.validation == 0 {
-            bail!("--steps, --batch, --save-every and --validation must be at least 1");
-        }
+        let numbers = Numbers::checked(settings)?;
         if mode.continues() && settings.start.is_none() {
             bail!(
                 "mode {mode} goes on from the weights of another run: name them with --start, an early gp for example"
@@ -90,8 +77,10 @@ impl Run {
         Ok(Self { mode, config, data, bank: known, painter, preliminary, settings: settings.clone() })
     }
 
-    /// Makes all steps that are left.
-    pub(super) fn go<B: Backend>(
+}
+
+impl Job for Run {
+    fn go<B: Backend>(
         &self,
         device: B::Device,
         store: &Store,
@@ -100,10 +89,10 @@ impl Run {
     ) -> Result<Outcome> {
         let numbers = Numbers::of(&self.settings);
         let mut trainer = self.trainer::<B>(&device, numbers.steps)?;
-        let mut curves = Curves::default();
+        let mut curves = Curves::of_scenes();
         if resume {
-            store.newest(console)?.resume(&mut trainer, &device)?;
-            curves = Curves::read(&store.path("losses.csv"), trainer.steps())?;
+            store.newest(console, Checkpoint::from_bytes)?.resume(&mut trainer, &device)?;
+            curves.read(&store.path("losses.csv"), trainer.steps())?;
         } else if let Some(file) = &self.settings.start {
             start_from(&mut trainer, file, &device, console)?;
         }
@@ -131,7 +120,8 @@ impl Run {
             if save || step.number.is_multiple_of(LINE_EVERY) {
                 let improved = seen.is_some_and(|[image, _]| curves.best().is_none_or(|best| image < Some(best)));
                 let loss = recent.take();
-                curves.push(&step, loss, before + clock.elapsed().as_secs_f64(), seen);
+                let seconds = before + clock.elapsed().as_secs_f64();
+                curves.push(&Entry { step: step.number, loss, terms: [step.image, step.parameters], gradient: step.gradient, rate: step.rate, seconds, seen: seen.unwrap_or_default() });
                 bar.set_message(format!("loss {loss:.4}"));
                 if save {
                     self.save(store, &trainer, &curves, improved)?;
@@ -149,6 +139,9 @@ impl Run {
         Ok(Outcome::Done)
     }
 
+}
+
+impl Run {
     /// Where features are kept, if the encoder is frozen and images come again.
     fn feature_cache<B: Backend>(&self, trainer: &Trainer<B, f32>, store: &Store) -> Result<Option<FeatureCache>> {
         if !self.config.has_frozen_encoder() || !self.data.is_finite() {
@@ -190,7 +183,7 @@ impl Run {
         let known = !held_out.scenes.is_empty();
         let parameters = if known { trainer.validate(Mode::Gp, held_out)?.parameters } else { None };
         let some = held_out.part(0, SAMPLES);
-        let grid = samples::grid(&some.images, &trainer.reconstruct(&some.images)?)?;
+        let grid = sheet(&[some.images.clone(), trainer.reconstruct(&some.images)?])?;
         let path = store.path("samples").join(format!("{:08}.png", trainer.steps()));
         write_atomic(&path, &encode_png(grid.view(), BitDepth::Eight)?)?;
         Ok([image, parameters])
@@ -210,7 +203,7 @@ impl Run {
             write_atomic(&store.path("best.safetensors"), &best.to_bytes()?)?;
         }
         // Last: a checkpoint stands for all that was written before it.
-        store.save(&Checkpoint::of(trainer, true, &about)?)
+        store.save(trainer.steps(), &Checkpoint::of(trainer, true, &about)?.to_bytes()?)
     }
 
     /// Keeps the batch of a step that failed.
@@ -247,18 +240,6 @@ impl Run {
         }
         let weights = Checkpoint::of(trainer, true, &serde_json::to_string(&self.settings)?)?;
         Ok(write_atomic(&folder.join("weights.safetensors"), &weights.to_bytes()?)?)
-    }
-}
-
-impl Numbers {
-    fn of(settings: &Settings) -> Self {
-        Self {
-            steps: settings.steps.unwrap_or(0),
-            batch: settings.batch.unwrap_or(0),
-            save_every: settings.save_every.unwrap_or(0),
-            validation: settings.validation.unwrap_or(0),
-            seed: settings.seed.unwrap_or(0),
-        }
     }
 }
 
@@ -302,24 +283,4 @@ fn published<B: Backend>(weights: &Parameters<B>) -> Result<Parameters<B>> {
         encoder.insert(format!("encoder.{name}"), tensor)?;
     }
     Ok(encoder)
-}
-
-/// The mean loss since the last line.
-#[derive(Default)]
-struct Recent {
-    sum: f64,
-    count: f64,
-}
-
-impl Recent {
-    fn add(&mut self, loss: f64) {
-        self.sum += loss;
-        self.count += 1.0;
-    }
-
-    fn take(&mut self) -> f64 {
-        let mean = self.sum / self.count.max(1.0);
-        *self = Self::default();
-        mean
-    }
 }

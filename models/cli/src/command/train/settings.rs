@@ -3,8 +3,10 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
+use dvp_net::decompose::DecomposerConfig;
+use dvp_net::decompose::monet::MonetConfig;
 use dvp_net::model::ModelConfig;
 use dvp_net::train::Mode;
 use serde::{Deserialize, Serialize};
@@ -15,13 +17,16 @@ use crate::format::read_text;
 #[derive(Clone, Debug, Default, PartialEq, Args, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub(super) struct Settings {
+    /// What is trained [scene]
+    #[arg(long, value_enum)]
+    pub(super) model: Option<ModelName>,
     /// What it learns from: ti, gp, gi, tp, ti+ or ti-tp, as in the paper, or gp-gi [gp]
     #[arg(long)]
     pub(super) mode: Option<String>,
     /// What computes [host]
     #[arg(long, value_enum)]
     pub(super) backend: Option<BackendName>,
-    /// Size of the model: tiny, small, cells, paper, or a JSON file of sizes [small]
+    /// Size of the model: tiny, small, cells, paper (of monet tiny, small, published), or a JSON file of sizes [small]
     #[arg(long, value_name = "SIZE")]
     pub(super) size: Option<String>,
     /// Folder of pictures to learn from, with their scenes for gp and gi; else MDS-HR scenes are generated
@@ -70,6 +75,9 @@ pub(super) struct Settings {
     /// Weight of rotations in L_p [0.05]
     #[arg(long, value_name = "WEIGHT")]
     pub(super) rotation_weight: Option<f64>,
+    /// Pixels along a side of the images of monet, which are resampled or generated so: 64 or 128, say [64]
+    #[arg(long, value_name = "N")]
+    pub(super) side: Option<usize>,
     /// Parts of a batch that are worked on at the same time [1]
     #[arg(long, value_name = "N")]
     pub(super) threads: Option<usize>,
@@ -82,6 +90,17 @@ pub(super) struct Settings {
     /// Validation images: generated, or the last ones of --data [128]
     #[arg(long, value_name = "N")]
     pub(super) validation: Option<usize>,
+}
+
+/// Models that can be trained.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum ModelName {
+    /// The paper's: proposes the scene of an image, through the renderer
+    #[default]
+    Scene,
+    /// MONet: divides an image into masks and what they show; learns from images alone
+    Monet,
 }
 
 /// Frameworks to compute with.
@@ -116,30 +135,80 @@ impl Settings {
 
     /// These where they are said, else the defaults: nothing is left open but files.
     pub(super) fn complete(&self) -> Result<Self> {
-        self.or(&Self {
-            mode: Some("gp".into()),
+        let both = Self {
+            model: Some(self.model.unwrap_or_default()),
             backend: Some(BackendName::default()),
             size: Some("small".into()),
-            data: None,
             scenes: Some(0),
-            preliminary: None,
-            bank: Some("mdshr".into()),
-            harmonics: Some(16),
-            start: None,
             steps: Some(20_000),
             batch: Some(32),
             learning_rate: Some(5e-4),
             warm_up: Some(500),
             cosine: Some(true),
             clip_norm: Some(1.0),
-            image_weight: Some(1.0),
-            scale_weight: Some(1.0),
-            rotation_weight: Some(0.05),
-            threads: Some(1),
             seed: Some(1),
             save_every: Some(500),
             validation: Some(128),
+            ..Self::default()
+        };
+        self.or(&match self.model.unwrap_or_default() {
+            ModelName::Scene => Self {
+                mode: Some("gp".into()),
+                bank: Some("mdshr".into()),
+                harmonics: Some(16),
+                image_weight: Some(1.0),
+                scale_weight: Some(1.0),
+                rotation_weight: Some(0.05),
+                threads: Some(1),
+                ..both
+            },
+            ModelName::Monet => Self { side: Some(64), ..both },
         })
+    }
+
+    /// Refuses what is said that means nothing to the model.
+    pub(super) fn check(&self) -> Result<()> {
+        let model = self.model.unwrap_or_default();
+        let of_scenes = [
+            ("--mode", self.mode.is_some()),
+            ("--preliminary", self.preliminary.is_some()),
+            ("--bank", self.bank.is_some()),
+            ("--harmonics", self.harmonics.is_some()),
+            ("--image-weight", self.image_weight.is_some()),
+            ("--scale-weight", self.scale_weight.is_some()),
+            ("--rotation-weight", self.rotation_weight.is_some()),
+            ("--threads", self.threads.is_some()),
+        ];
+        let foreign = match model {
+            ModelName::Scene => [("--side", self.side.is_some())].into_iter().find(|(_, is)| *is),
+            ModelName::Monet => of_scenes.into_iter().find(|(_, is)| *is),
+        };
+        match foreign {
+            Some((option, _)) if model == ModelName::Scene => bail!("{option} is for --model monet"),
+            Some((option, _)) => bail!("--model monet learns from images alone and knows no shapes: leave {option} away"),
+            None => Ok(()),
+        }
+    }
+
+    /// The sizes of MONet.
+    pub(super) fn decomposer(&self) -> Result<DecomposerConfig> {
+        let side = self.side.unwrap_or(64);
+        let name = self.size.as_deref().unwrap_or("small");
+        let config = match name {
+            "tiny" => DecomposerConfig::Monet(MonetConfig::tiny(side)),
+            "small" => DecomposerConfig::Monet(MonetConfig::small(side)),
+            "published" => DecomposerConfig::Monet(MonetConfig::published(side)),
+            file => {
+                let text =
+                    fs::read(file).with_context(|| format!("--size {file}: no tiny, small, published, nor a file"))?;
+                serde_json::from_slice(&text).with_context(|| format!("{file}: no sizes of a decomposer"))?
+            }
+        };
+        if config.side() != side {
+            bail!("--side is {side}, {name} is for images of {} pixels along a side", config.side());
+        }
+        config.validate().with_context(|| format!("--size {name}"))?;
+        Ok(config)
     }
 
     pub(super) fn mode(&self) -> Result<Mode> {

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `run.json` | the settings; `dvp train --config run.json` runs them again |
 //! | `checkpoint-00000500.safetensors` | all that `--resume` needs; the two newest are kept |
-//! | `best.safetensors` | the weights with the smallest L_x on the validation images |
+//! | `best.safetensors` | the weights with the smallest L_x, or mean absolute error, on the validation images |
 //! | `losses.csv`, `losses.svg` | the curves |
 //! | `features/` | what a frozen encoder makes of images that come again; may be deleted at any time |
 //! | `samples/00000500.png` | validation images over their reconstructions |
@@ -13,7 +13,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
-use dvp_net::train::Checkpoint;
+use dvp_net::error::NetError;
 
 use crate::command::Console;
 use crate::format::write_atomic;
@@ -45,10 +45,9 @@ impl Store {
         Ok(())
     }
 
-    /// Writes a checkpoint and removes those that are too old.
-    pub(super) fn save(&self, checkpoint: &Checkpoint) -> Result<()> {
-        let name = format!("checkpoint-{:08}.safetensors", checkpoint.steps());
-        write_atomic(&self.path(&name), &checkpoint.to_bytes()?)?;
+    /// Writes the checkpoint of a step and removes those that are too old.
+    pub(super) fn save(&self, step: u64, checkpoint: &[u8]) -> Result<()> {
+        write_atomic(&self.path(&format!("checkpoint-{step:08}.safetensors")), checkpoint)?;
         for old in self.checkpoints()?.iter().rev().skip(KEPT) {
             fs::remove_file(old).with_context(|| format!("{} cannot be removed", old.display()))?;
         }
@@ -56,10 +55,14 @@ impl Store {
     }
 
     /// The newest checkpoint that can be read; damaged ones are named.
-    pub(super) fn newest(&self, console: &mut Console<'_>) -> Result<Checkpoint> {
+    pub(super) fn newest<F>(
+        &self,
+        console: &mut Console<'_>,
+        read: impl Fn(&[u8]) -> Result<F, NetError>,
+    ) -> Result<F> {
         for path in self.checkpoints()?.iter().rev() {
             let bytes = fs::read(path).with_context(|| format!("{} cannot be read", path.display()))?;
-            match Checkpoint::from_bytes(&bytes) {
+            match read(&bytes) {
                 Ok(checkpoint) => return Ok(checkpoint),
                 Err(error) => writeln!(console.err, "{}: {error}; the one before it is taken", path.display())?,
             }

@@ -7,11 +7,15 @@ use crate::layers::{Taps, taps};
 
 /// Where a picture lies on its square.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Square {
+pub(crate) struct Square {
     /// Side of the square in units of the picture, the shorter side of which is 1.
     side: f32,
     /// Left and upper corner of the picture, in its units from that of the square.
     corner: [f32; 2],
+    /// The size of the picture.
+    size: ImageSize,
+    /// Columns and rows of border on the left of it and above.
+    before: [usize; 2],
 }
 
 impl Square {
@@ -19,11 +23,12 @@ impl Square {
     ///
     /// # Errors
     /// [`NetError::Image`] for a picture with NaN or infinity.
-    pub(super) fn of(image: ImageView<'_, f32>, side: usize) -> Result<(Self, Image<f32>), NetError> {
+    pub(crate) fn of(image: ImageView<'_, f32>, side: usize) -> Result<(Self, Image<f32>), NetError> {
         let size = image.size();
         let (long, unit) = (size.width().max(size.height()), size.unit_px() as f32);
         let before = [size.width(), size.height()].map(|extent| (long - extent) / 2);
-        let square = Self { side: long as f32 / unit, corner: before.map(|px| px as f32 / unit) };
+        let corner = before.map(|px| px as f32 / unit);
+        let square = Self { side: long as f32 / unit, corner, size, before };
         // Checked here: a view may be made of an image that was written to since it was.
         let own = Image::from_planar(size, image.data().to_vec())?;
         let (Ok(target), false) = (ImageSize::new(side, side), (size.width(), size.height()) == (side, side)) else {
@@ -36,8 +41,23 @@ impl Square {
         Ok((square, Image::from_planar(target, data)?))
     }
 
+    /// A plane of the square, `side` x `side` numbers in \[0, 1\], as one of the picture.
+    pub(crate) fn plane_to_picture(&self, plane: &[f32], side: usize) -> Vec<f32> {
+        let (width, height) = (self.size.width(), self.size.height());
+        if [width, height] == [side; 2] {
+            return plane.to_vec();
+        }
+        let (Ok(square), taps) = (ImageSize::new(side, side), taps(side, width.max(height))) else {
+            return vec![0.0; self.size.pixels()];
+        };
+        let whole = resampled(plane, square, [0; 2], &taps);
+        let [left, above] = self.before;
+        let rows = whole.chunks_exact(taps.len().max(1)).skip(above).take(height);
+        rows.flat_map(|row| &row[left..left + width]).copied().collect()
+    }
+
     /// A scene in units of the square, in those of the picture.
-    pub(super) fn to_picture(self, mut scene: Scene<f32>) -> Scene<f32> {
+    pub(crate) fn to_picture(self, mut scene: Scene<f32>) -> Scene<f32> {
         for pose in scene.objects.iter_mut().map(|object| &mut object.pose) {
             for (place, corner) in pose.translation.iter_mut().zip(self.corner) {
                 *place = *place * self.side - corner;

@@ -1,0 +1,98 @@
+//! What runs of training have in common, whatever is trained.
+
+use anyhow::{Result, bail};
+use dvp_core::tensor::{Backend, Host, HostDevice};
+
+use super::settings::{BackendName, Settings};
+use super::store::Store;
+use crate::command::{Console, Outcome};
+
+/// Steps between lines of the curves.
+pub(super) const LINE_EVERY: u64 = 10;
+
+/// A run, ready to go.
+pub(super) trait Job {
+    /// Makes all steps that are left.
+    fn go<B: Backend>(
+        &self,
+        device: B::Device,
+        store: &Store,
+        resume: bool,
+        console: &mut Console<'_>,
+    ) -> Result<Outcome>;
+}
+
+/// Makes all steps that are left, on the backend of that name.
+pub(super) fn go_on(
+    backend: BackendName,
+    job: &impl Job,
+    store: &Store,
+    resume: bool,
+    console: &mut Console<'_>,
+) -> Result<Outcome> {
+    match backend {
+        BackendName::Host => job.go::<Host>(HostDevice, store, resume, console),
+        #[cfg(feature = "burn")]
+        BackendName::Burn => {
+            job.go::<dvp_burn::Burn>(<dvp_burn::Burn as Backend>::Device::flex(), store, resume, console)
+        }
+        #[cfg(feature = "candle")]
+        BackendName::Candle => job.go::<dvp_candle::Candle>(dvp_candle::CandleDevice::CPU, store, resume, console),
+        #[allow(unreachable_patterns, reason = "no backend is missing if all features are on")]
+        other => {
+            let name = format!("{other:?}").to_lowercase();
+            bail!("this dvp was built without {name}; build it with --features {name}")
+        }
+    }
+}
+
+/// Numbers of a run that are set: [`Settings::complete`] leaves none open.
+pub(super) struct Numbers {
+    pub(super) steps: u64,
+    pub(super) batch: usize,
+    pub(super) save_every: u64,
+    pub(super) validation: usize,
+    pub(super) seed: u64,
+}
+
+impl Numbers {
+    /// Those of `settings`.
+    pub(super) fn of(settings: &Settings) -> Self {
+        Self {
+            steps: settings.steps.unwrap_or(0),
+            batch: settings.batch.unwrap_or(0),
+            save_every: settings.save_every.unwrap_or(0),
+            validation: settings.validation.unwrap_or(0),
+            seed: settings.seed.unwrap_or(0),
+        }
+    }
+
+    /// The same, refused where nothing can be done with them.
+    pub(super) fn checked(settings: &Settings) -> Result<Self> {
+        let numbers = Self::of(settings);
+        if numbers.batch == 0 || numbers.save_every == 0 || numbers.steps == 0 || numbers.validation == 0 {
+            bail!("--steps, --batch, --save-every and --validation must be at least 1");
+        }
+        Ok(numbers)
+    }
+}
+
+/// The mean loss since the last line.
+#[derive(Default)]
+pub(super) struct Recent {
+    sum: f64,
+    count: f64,
+}
+
+impl Recent {
+    pub(super) fn add(&mut self, loss: f64) {
+        self.sum += loss;
+        self.count += 1.0;
+    }
+
+    pub(super) fn take(&mut self) -> f64 {
+        let mean = self.sum / self.count.max(1.0);
+        *self = Self::default();
+        mean
+    }
+}

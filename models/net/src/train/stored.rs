@@ -1,0 +1,99 @@
+//! Weights in a file: tensors, sizes and words of who wrote it.
+//!
+//! One safetensors file. Sizes and words are JSON in the file's metadata, with a checksum over all numbers: a damaged file is
+//! never taken for a model.
+
+use dvp_core::tensor::{Backend, Host, HostDevice, Parameters, Tensor, TensorError, safetensors_note};
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+
+use crate::error::NetError;
+
+/// The version of the layout.
+const VERSION: u32 = 1;
+
+/// What a file says beside its numbers.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Note<C> {
+    version: u32,
+    config: C,
+    steps: u32,
+    about: String,
+    /// CRC-32 of the numbers as f64, tensor after tensor in the order of names, little endian.
+    checksum: u32,
+}
+
+/// What a file holds; `C` are the sizes of the model.
+#[derive(Clone, Debug)]
+pub(super) struct Stored<C> {
+    pub(super) config: C,
+    pub(super) steps: u32,
+    pub(super) about: String,
+    pub(super) tensors: Parameters<Host>,
+}
+
+impl<C: Clone + Serialize + DeserializeOwned> Stored<C> {
+    /// A file without a tensor.
+    pub(super) fn new(config: C, steps: u32, about: &str) -> Self {
+        Self { config, steps, about: about.to_owned(), tensors: Parameters::new() }
+    }
+
+    /// Takes a copy of tensors, under a path.
+    pub(super) fn take<B: Backend>(&mut self, path: &str, parameters: &Parameters<B>) -> Result<(), NetError> {
+        for (name, tensor) in parameters.iter() {
+            self.tensors.insert(format!("{path}.{name}"), &to_host(tensor)?)?;
+        }
+        Ok(())
+    }
+
+    pub(super) fn to_bytes(&self) -> Result<Vec<u8>, NetError> {
+        let Self { config, steps, about, tensors } = self;
+        let (config, about, checksum) = (config.clone(), about.clone(), checksum(tensors)?);
+        let note = Note { version: VERSION, config, steps: *steps, about, checksum };
+        let note = serde_json::to_string(&note).map_err(|error| NetError::Checkpoint(error.to_string()))?;
+        Ok(tensors.to_safetensors_with(Some(&note))?)
+    }
+
+    pub(super) fn from_bytes(bytes: &[u8]) -> Result<Self, NetError> {
+        let refused = |reason: String| NetError::Checkpoint(reason);
+        let note = safetensors_note(bytes)?
+            .ok_or_else(|| refused("weights without a note: written by another program; see --start".into()))?;
+        let note: Note<C> = serde_json::from_str(&note).map_err(|error| refused(format!("its note: {error}")))?;
+        let Note { version, config, steps, about, checksum: expected } = note;
+        if version != VERSION {
+            return Err(refused(format!("layout {version}, this program reads {VERSION}")));
+        }
+        let tensors = Parameters::from_safetensors(bytes, &HostDevice)?;
+        if checksum(&tensors)? != expected {
+            return Err(refused("damaged: its numbers do not match its checksum".into()));
+        }
+        Ok(Self { config, steps, about, tensors })
+    }
+
+    /// The tensors under a path, which ends with a dot, by the rest of their names.
+    pub(super) fn part<B: Backend>(&self, path: &str, device: &B::Device) -> Result<Parameters<B>, NetError> {
+        let mut part = Parameters::new();
+        for (name, tensor) in self.tensors.iter() {
+            if let Some(name) = name.strip_prefix(path) {
+                part.insert(name, &Tensor::from_values(tensor.values()?, tensor.dims(), device)?)?;
+            }
+        }
+        Ok(part)
+    }
+}
+
+fn to_host<B: Backend>(tensor: &Tensor<B>) -> Result<Tensor<Host>, TensorError> {
+    Tensor::from_values(tensor.values()?, tensor.dims(), &HostDevice)
+}
+
+/// CRC-32 of all numbers.
+fn checksum(tensors: &Parameters<Host>) -> Result<u32, NetError> {
+    let mut hasher = crc32fast::Hasher::new();
+    for (_, tensor) in tensors.iter() {
+        for value in tensor.to_f64()? {
+            hasher.update(&value.to_le_bytes());
+        }
+    }
+    Ok(hasher.finalize())
+}

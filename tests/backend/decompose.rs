@@ -1,0 +1,116 @@
+//! MONet on every backend: 50 steps from the same weights on the same images, and its gradients.
+
+use dvp_core::real::DType;
+use dvp_core::tensor::{Host, Parameters, Tensor};
+use dvp_core::{Image, ImageSize, Real};
+use dvp_net::decompose::DecomposerConfig;
+use dvp_net::decompose::monet::MonetConfig;
+use dvp_net::error::NetError;
+use dvp_net::train::{DecomposerFile, DecomposerTrainer, Schedule};
+
+use crate::check::close;
+use crate::registry::{Outcome, Tally, Tested, on_every_backend};
+
+/// Steps of a run.
+const STEPS: usize = 50;
+
+/// Most by which a loss may differ from that of the host, relative to it. Adam divides gradients by their size, so that rounding
+/// of small ones moves weights by whole steps: what the backends sum in another order (some 10^4 products of f32 a step, errors
+/// of 1e-6) grows over the steps, to 2e-4 in f32 at the most; in f64 by the same factor from 1e-15.
+fn tolerance(dtype: DType) -> f64 {
+    match dtype {
+        DType::F32 => 2e-3,
+        DType::F64 => 1e-9,
+    }
+}
+
+/// Four images of 16 x 16: a square of one color on another.
+fn images<T: Real>() -> Vec<Image<T>> {
+    let size = ImageSize::new(16, 16).unwrap();
+    let image = |k: usize| {
+        let inside = |place: usize, from: usize| (from..from + 6).contains(&place);
+        let value = |at: usize| {
+            let (channel, x, y) = (at / 256, at % 16, at / 16 % 16);
+            let is_square = inside(x, 1 + 2 * k) && inside(y, 8 - 2 * k);
+            T::of(if is_square { 0.9 - 0.3 * channel as f64 } else { 0.1 + 0.2 * ((channel + k) % 3) as f64 })
+        };
+        Image::from_planar(size, (0..768).map(value).collect()).unwrap()
+    };
+    (0..4).map(image).collect()
+}
+
+fn trainer<B: Tested, T: Real>() -> Result<DecomposerTrainer<B, T>, NetError> {
+    let config = DecomposerConfig::Monet(MonetConfig::tiny(16));
+    DecomposerTrainer::new(config, Schedule::constant(5e-3), 3, B::place())
+}
+
+fn losses<B: Tested, T: Real>() -> Vec<f64> {
+    let (mut trainer, images) = (trainer::<B, T>().unwrap(), images::<T>());
+    (0..STEPS).map(|_| trainer.step(&images).unwrap().loss).collect()
+}
+
+fn same_losses<B: Tested, T: Real>(tally: &Tally) -> Outcome {
+    let (own, host) = (losses::<B, T>(), losses::<Host, T>());
+    let apart = own.iter().zip(&host).map(|(a, b)| (a - b).abs() / b.abs()).fold(0.0, f64::max);
+    let finite = own.iter().all(|loss| loss.is_finite());
+    tally.check(finite && own.len() == STEPS && apart <= tolerance(T::DTYPE), || {
+        format!("losses of {} are {apart:e} apart: {own:?} {host:?}", T::DTYPE)
+    })?;
+    tally.check(own[STEPS - 1] < own[0] / 2.0, || format!("no progress: {own:?}"))
+}
+
+fn fifty_steps<B: Tested>(tally: &Tally) -> Outcome {
+    same_losses::<B, f64>(tally)?;
+    same_losses::<B, f32>(tally)
+}
+
+/// The gradient of every weight, as the host has it (which its own tests hold against central differences).
+fn gradients<B: Tested>(tally: &Tally) -> Outcome {
+    fn of<B: Tested>() -> Result<Vec<(String, Vec<f64>)>, NetError> {
+        let parameters: Parameters<B> = trainer::<B, f64>()?.parameters().clone();
+        let decomposer = trainer::<B, f64>()?.config().load(&dvp_net::weights::Weights::new(&parameters))?;
+        let values: Vec<f64> = images::<f64>().iter().flat_map(|image| image.data().to_vec()).collect();
+        let verdict = decomposer.judge(&Tensor::new(values, &[4, 3, 16, 16], &B::place())?, 9)?;
+        let gradients = parameters.gradients(&verdict.loss.backward()?);
+        gradients.into_iter().map(|(name, tensor)| Ok((name, tensor.to_f64()?))).collect()
+    }
+    let (own, host) = (of::<B>().unwrap(), of::<Host>().unwrap());
+    tally.check(own.len() == host.len() && own.len() > 20, || format!("{} gradients for {}", own.len(), host.len()))?;
+    for ((name, own), (expected, host)) in own.iter().zip(&host) {
+        tally.check(name == expected, || format!("{name} for {expected}"))?;
+        close(tally, name, own, host, 1e-9)?;
+    }
+    Ok(())
+}
+
+/// A file written on one backend is read on another: the host sees the same parts.
+fn files<B: Tested>(tally: &Tally) -> Outcome {
+    let (mut trainer, images) = (trainer::<B, f32>().unwrap(), images::<f32>());
+    trainer.step(&images).unwrap();
+    let bytes = DecomposerFile::of(&trainer, true, "words").unwrap().to_bytes().unwrap();
+    let file = DecomposerFile::from_bytes(&bytes).unwrap();
+    let mut host = self::trainer::<Host, f32>().unwrap();
+    file.resume(&mut host, &Host::place()).unwrap();
+    tally.check(host.steps() == 1 && file.about() == "words", || format!("{} steps", host.steps()))?;
+    let [own, host] = [trainer.parts(&images).unwrap(), host.parts(&images).unwrap()];
+    for (own, host) in own.iter().zip(&host) {
+        let [own, host] = [own, host].map(|parts| parts.masks().flatten().map(|&m| f64::from(m)).collect::<Vec<_>>());
+        close(tally, "masks", &own, &host, 1e-5)?;
+    }
+    Ok(())
+}
+
+#[test]
+fn fifty_steps_everywhere() {
+    on_every_backend!(fifty_steps);
+}
+
+#[test]
+fn gradients_everywhere() {
+    on_every_backend!(gradients);
+}
+
+#[test]
+fn files_everywhere() {
+    on_every_backend!(files);
+}
