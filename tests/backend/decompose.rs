@@ -14,13 +14,13 @@ use crate::registry::{Outcome, Tally, Tested, on_every_backend};
 /// Steps of a run.
 const STEPS: usize = 50;
 
-/// Most by which a loss may differ from that of the host, relative to it. Adam divides gradients by their size, so that rounding
-/// of small ones moves weights by whole steps: what the backends sum in another order (some 10^4 products of f32 a step, errors
-/// of 1e-6) grows over the steps, to 2e-4 in f32 at the most; in f64 by the same factor from 1e-15.
+/// Most by which a loss of any step may differ from that of the host, relative to it. The backends add in another order; Adam, which
+/// divides gradients by their size, carries the rounding of small ones into the weights, and the steps carry it on: burn ends 2e-7
+/// apart in f32 and 4e-16 in f64. Another processor may sum in yet another order: a hundred times and more of that is allowed.
 fn tolerance(dtype: DType) -> f64 {
     match dtype {
-        DType::F32 => 2e-3,
-        DType::F64 => 1e-9,
+        DType::F32 => 5e-5,
+        DType::F64 => 1e-12,
     }
 }
 
@@ -49,19 +49,25 @@ fn losses<B: Tested, T: Real>() -> Vec<f64> {
     (0..STEPS).map(|_| trainer.step(&images).unwrap().loss).collect()
 }
 
-fn same_losses<B: Tested, T: Real>(tally: &Tally) -> Outcome {
-    let (own, host) = (losses::<B, T>(), losses::<Host, T>());
-    let apart = own.iter().zip(&host).map(|(a, b)| (a - b).abs() / b.abs()).fold(0.0, f64::max);
-    let finite = own.iter().all(|loss| loss.is_finite());
-    tally.check(finite && own.len() == STEPS && apart <= tolerance(T::DTYPE), || {
-        format!("losses of {} are {apart:e} apart: {own:?} {host:?}", T::DTYPE)
-    })?;
-    tally.check(own[STEPS - 1] < own[0] / 2.0, || format!("no progress: {own:?}"))
-}
-
 fn fifty_steps<B: Tested>(tally: &Tally) -> Outcome {
-    same_losses::<B, f64>(tally)?;
-    same_losses::<B, f32>(tally)
+    let pairs = [
+        (DType::F64, losses::<B, f64>(), losses::<Host, f64>()),
+        (DType::F32, losses::<B, f32>(), losses::<Host, f32>()),
+    ];
+    let apart = pairs
+        .each_ref()
+        .map(|(_, own, host)| own.iter().zip(host).map(|(a, b)| (a - b).abs() / b.abs()).fold(0.0, f64::max));
+    for ((dtype, own, host), largest) in pairs.iter().zip(apart) {
+        let complete = own.len() == STEPS && own.iter().all(|loss| loss.is_finite());
+        tally.check(complete && largest <= tolerance(*dtype), || {
+            format!("losses of f64 and f32 are {apart:?} apart, of {dtype}: {own:?} {host:?}")
+        })?;
+        // Latents are drawn anew in every step: the losses of single steps scatter.
+        let mean = |part: &[f64]| part.iter().sum::<f64>() / part.len() as f64;
+        let [first, last] = [mean(&own[..10]), mean(&own[STEPS - 10..])];
+        tally.check(last < 0.7 * first, || format!("no progress: {own:?}"))?;
+    }
+    Ok(())
 }
 
 /// The gradient of every weight, as the host has it (which its own tests hold against central differences).

@@ -5,11 +5,11 @@ use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
+use super::Verdict;
 use super::attention_net::AttentionNet;
 use super::component_vae::{Component, ComponentVae, Latents};
 use super::parts::Parts;
 use super::terms::{Terms, apart, mixture, told};
-use super::Verdict;
 use crate::error::{NetError, require};
 use crate::initial::normal;
 use crate::weights::Weights;
@@ -167,8 +167,7 @@ impl<B: Backend> Monet<B> {
     pub fn load(config: &MonetConfig, weights: &Weights<'_, B>) -> Result<Self, NetError> {
         config.validate()?;
         let MonetConfig { side, ref attention_channels, attention_hidden, .. } = *config;
-        let attention =
-            AttentionNet::load(&weights.under("attention"), side, attention_channels, attention_hidden)?;
+        let attention = AttentionNet::load(&weights.under("attention"), side, attention_channels, attention_hidden)?;
         let vae = ComponentVae::load(&weights.under("vae"), config)?;
         Ok(Self { config: config.clone(), attention, vae })
     }

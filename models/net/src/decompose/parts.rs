@@ -87,9 +87,7 @@ impl PartsOf {
     pub fn reconstruction(&self) -> Image<f32> {
         let mut image = Image::zeros(self.size);
         for (mask, colors) in self.masks().zip(self.colors()) {
-            for (sums, colors) in
-                image.data_mut().chunks_exact_mut(mask.len()).zip(colors.chunks_exact(mask.len()))
-            {
+            for (sums, colors) in image.data_mut().chunks_exact_mut(mask.len()).zip(colors.chunks_exact(mask.len())) {
                 sums.iter_mut().zip(mask).zip(colors).for_each(|((sum, share), color)| *sum += share * color);
             }
         }

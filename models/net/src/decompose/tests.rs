@@ -115,15 +115,12 @@ fn published_sizes_are_taken() {
     for (side, blocks) in [(64, 5), (128, 6)] {
         let config = MonetConfig::published(side);
         assert_eq!(config.attention_channels.len(), blocks);
-        let asked = asked::<Host, _>(&HostDevice, |weights| {
-            DecomposerConfig::Monet(config.clone()).load(weights)
-        })
-        .unwrap();
+        let asked =
+            asked::<Host, _>(&HostDevice, |weights| DecomposerConfig::Monet(config.clone()).load(weights)).unwrap();
         let of = |path: &str| asked.iter().filter(|(name, _)| name.starts_with(path)).map(|(_, dims)| dims.len()).sum();
         let down: usize = of("attention.down.");
         let channels = [4, 32, 32, 64, 64, 64, 64];
-        let expected: usize =
-            channels.windows(2).take(blocks).map(|pair| 9 * pair[0] * pair[1] + 2 * pair[1]).sum();
+        let expected: usize = channels.windows(2).take(blocks).map(|pair| 9 * pair[0] * pair[1] + 2 * pair[1]).sum();
         assert_eq!(down, expected);
         // 16 latents and two places to 32 channels, three times 32 to 32, 32 to 4; each with a bias.
         let decoder: usize = of("vae.decoder.");

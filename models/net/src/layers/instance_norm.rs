@@ -1,6 +1,7 @@
 //! Instance norm with weights.
 
-use dvp_core::tensor::{Backend, Tensor, TensorError};
+use dvp_core::real::DType;
+use dvp_core::tensor::{Backend, InstanceNormOp, Tensor, TensorError};
 
 use crate::error::NetError;
 use crate::weights::Weights;
@@ -23,22 +24,25 @@ impl<B: Backend> InstanceNorm<B> {
     /// # Errors
     /// As [`Weights::get`].
     pub(crate) fn load(weights: &Weights<'_, B>, channels: usize) -> Result<Self, NetError> {
-        let of = |name| -> Result<Tensor<B>, NetError> {
-            Ok(weights.get(name, &[channels])?.reshape(&[channels, 1])?)
-        };
-        Ok(Self { weight: of("weight")?, bias: of("bias")? })
+        Ok(Self { weight: weights.get("weight", &[channels])?, bias: weights.get("bias", &[channels])? })
     }
 
     /// batch x channels x h x w to the same extents.
     ///
     /// # Errors
-    /// [`TensorError::Operand`] if the rank is not 4; as [`Tensor::layer_norm`] and [`Tensor::mul`].
+    /// [`TensorError::Operand`] if the rank is not 4; as [`Tensor::apply`].
     pub(crate) fn forward(&self, x: &Tensor<B>) -> Result<Tensor<B>, TensorError> {
         let &[batch, channels, h, w] = x.dims().extents() else {
             let must = "must be batch x channels x h x w";
             return Err(TensorError::Operand { op: "instance_norm", dims: *x.dims(), must });
         };
-        let normed = x.reshape(&[batch, channels, h * w])?.layer_norm(EPSILON)?;
-        normed.mul(&self.weight)?.add(&self.bias)?.reshape(&[batch, channels, h, w])
+        let of_each = |numbers: &Tensor<B>| numbers.expand(&[batch, channels]);
+        let inputs = [&x.reshape(&[batch, channels, h * w])?, &of_each(&self.weight)?, &of_each(&self.bias)?];
+        let op = InstanceNormOp::new(channels, h * w, EPSILON)?;
+        let normed = match x.dtype() {
+            DType::F32 => Tensor::apply::<f32, _>(op, &inputs)?,
+            DType::F64 => Tensor::apply::<f64, _>(op, &inputs)?,
+        };
+        normed.reshape(&[batch, channels, h, w])
     }
 }

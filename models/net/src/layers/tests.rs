@@ -2,7 +2,7 @@
 
 use dvp_core::tensor::{Host, HostDevice, Parameters, Tensor};
 
-use super::{Mlp, attend, join_heads};
+use super::{InstanceNorm, Mlp, attend, halved, join_heads, places, repeated};
 use crate::weights::Weights;
 
 fn tensor(values: &[f64], extents: &[usize]) -> Tensor<Host> {
@@ -52,4 +52,40 @@ fn a_perceptron_by_hand() {
     let mlp = Mlp::load(&Weights::new(&parameters), &[1, 2, 1]).unwrap();
     let found = mlp.forward(&tensor(&[2.0, -3.0], &[2, 1])).unwrap();
     assert_eq!(found.to_f64().unwrap(), [5.0, 19.0]);
+}
+
+#[test]
+fn an_instance_norm_by_hand() {
+    // Two channels of 17 x 1 pixels: 8 x 1, 1 x 0 and 8 x -1 in the first, whose mean is 0 and variance 16 / 17; the same number
+    // everywhere in the second.
+    let mut parameters = Parameters::new();
+    parameters.insert("weight", &tensor(&[3.0, 7.0], &[2])).unwrap();
+    parameters.insert("bias", &tensor(&[0.5, -2.0], &[2])).unwrap();
+    let norm = InstanceNorm::load(&Weights::new(&parameters), 2).unwrap();
+    let first = (0..17).map(|k| f64::from((8_i32 - k).signum()));
+    let image: Vec<f64> = first.chain([4.0; 17]).collect();
+    let found = norm.forward(&tensor(&image, &[1, 2, 17, 1])).unwrap();
+    assert_eq!(found.dims().extents(), [1, 2, 17, 1]);
+    let found = found.to_f64().unwrap();
+    let expected = 3.0 / (16.0_f64 / 17.0 + 1e-5).sqrt();
+    assert!((found[0] - 0.5 - expected).abs() < 1e-12 && (found[16] - 0.5 + expected).abs() < 1e-12, "{found:?}");
+    assert!((found[8] - 0.5).abs() < 1e-12 && found[17..].iter().all(|x| (x + 2.0).abs() < 1e-12), "{found:?}");
+    assert!(norm.forward(&tensor(&[0.0; 4], &[2, 2])).is_err());
+}
+
+#[test]
+fn images_are_halved_and_repeated() {
+    let image = tensor(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0], &[1, 1, 2, 4]);
+    assert_eq!(halved(&image).unwrap().to_f64().unwrap(), [1.0, 3.0]);
+    assert!(halved(&tensor(&[0.0; 3], &[1, 1, 1, 3])).is_err(), "odd sides");
+    let small = tensor(&[1.0, 2.0, 3.0, 4.0], &[2, 1, 1, 2]);
+    let found = repeated(&small, 2).unwrap();
+    assert_eq!(found.dims().extents(), [2, 1, 2, 4]);
+    assert_eq!(found.to_f64().unwrap()[..8], [1.0, 1.0, 2.0, 2.0, 1.0, 1.0, 2.0, 2.0]);
+    assert_eq!(halved(&found).unwrap().to_f64().unwrap(), small.to_f64().unwrap());
+}
+
+#[test]
+fn places_run_from_border_to_border() {
+    assert_eq!(places(1, 2), [-0.5, 0.5, 0.0, 0.0], "columns, then rows");
 }

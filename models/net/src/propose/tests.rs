@@ -3,8 +3,8 @@ use dvp_core::shape::{Efd, mdshr_bank};
 use dvp_core::tensor::HostDevice;
 use dvp_core::{Image, ImageSize, Object, Pose, Real, Scene};
 
-use crate::square::Square;
 use super::*;
+use crate::square::Square;
 use crate::train::{Judge, Mode, Schedule, Trainer};
 
 /// A tiny model that has learned nothing, trained in `T`.

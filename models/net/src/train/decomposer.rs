@@ -54,12 +54,7 @@ impl<B: Backend, T: Real> DecomposerTrainer<B, T> {
     ///
     /// # Errors
     /// [`NetError::Config`].
-    pub fn new(
-        config: DecomposerConfig,
-        schedule: Schedule,
-        seed: u64,
-        device: B::Device,
-    ) -> Result<Self, NetError> {
+    pub fn new(config: DecomposerConfig, schedule: Schedule, seed: u64, device: B::Device) -> Result<Self, NetError> {
         let asked = asked::<B, _>(&device, |weights| config.load(weights))?;
         let parameters = initial_weights(&asked, seed, T::DTYPE, &device)?;
         let adam = Adam::new(AdamSettings::default());

@@ -110,9 +110,7 @@ impl Arguments {
                 }
                 Ok((Predictions::Folder(predictions), DataSet::open(data)?))
             }
-            (Some(data), None, None) => {
-                Ok((self.asked()?, DataSet::open(data)?))
-            }
+            (Some(data), None, None) => Ok((self.asked()?, DataSet::open(data)?)),
             (None, None, Some(count)) => {
                 let data = generated::mds_hr(count, self.network.seed)?;
                 Ok((self.asked()?, data))

@@ -1,7 +1,9 @@
 //! What runs of training have in common, whatever is trained.
 
-use anyhow::{Result, bail};
-use dvp_core::tensor::{Backend, Host, HostDevice};
+use std::path::Path;
+
+use anyhow::{Context, Result, bail};
+use dvp_core::tensor::{Backend, Host, HostDevice, Parameters};
 
 use super::settings::{BackendName, Settings};
 use super::store::Store;
@@ -44,6 +46,28 @@ pub(super) fn go_on(
             bail!("this dvp was built without {name}; build it with --features {name}")
         }
     }
+}
+
+/// The weights of `file` that fit a model's `own`. Those of other extents are named: they start anew.
+///
+/// # Errors
+/// If the model has none of a name.
+pub(super) fn fitting<B: Backend>(
+    own: &Parameters<B>,
+    weights: &Parameters<B>,
+    file: &Path,
+    console: &mut Console<'_>,
+) -> Result<Parameters<B>> {
+    let mut fitting = Parameters::new();
+    for (name, tensor) in weights.iter() {
+        let own = own.get(name).with_context(|| file.display().to_string())?.dims();
+        if own == tensor.dims() {
+            fitting.insert(name, tensor)?;
+        } else {
+            writeln!(console.err, "{name} is {} in {}, {own} here: starts anew", tensor.dims(), file.display())?;
+        }
+    }
+    Ok(fitting)
 }
 
 /// Numbers of a run that are set: [`Settings::complete`] leaves none open.

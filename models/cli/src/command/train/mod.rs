@@ -70,7 +70,9 @@ pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Ou
     settings.check()?;
     let settings = settings.complete()?;
     let backend = settings.backend.unwrap_or_default();
-    let write = || -> Result<()> { Ok(write_atomic(&store.path("run.json"), (serde_json::to_string_pretty(&settings)? + "\n").as_bytes())?) };
+    let write = || -> Result<()> {
+        Ok(write_atomic(&store.path("run.json"), (serde_json::to_string_pretty(&settings)? + "\n").as_bytes())?)
+    };
     match settings.model.unwrap_or_default() {
         ModelName::Scene => {
             let run = Run::new(&settings)?;

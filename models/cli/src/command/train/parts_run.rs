@@ -1,10 +1,12 @@
 //! The steps of a run that trains a network to divide images into parts.
 
+use std::fs;
+use std::path::Path;
 use std::time::Instant;
 
 use anyhow::{Context, Result};
 use dvp_core::render::EdgeProfile;
-use dvp_core::tensor::{Backend, Parameters};
+use dvp_core::tensor::Backend;
 use dvp_core::{Image, ImageSize};
 use dvp_net::decompose::DecomposerConfig;
 use dvp_net::scene_steps::SceneSteps;
@@ -12,7 +14,7 @@ use dvp_net::train::{Batch, DecomposerFile, DecomposerTrainer, Schedule, Source}
 
 use super::curves::{Curves, Entry};
 use super::data::Data;
-use super::job::{Job, LINE_EVERY, Numbers, Recent};
+use super::job::{Job, LINE_EVERY, Numbers, Recent, fitting};
 use super::settings::Settings;
 use super::store::Store;
 use crate::command::sheet::{of_parts, sheet};
@@ -41,9 +43,7 @@ impl PartsRun {
         let numbers = Numbers::checked(settings)?;
         let side = config.side();
         let data = match &settings.data {
-            Some(folder) => {
-                Data::folder(folder, Source::Images, numbers.validation, numbers.seed)?.on_squares(side)?
-            }
+            Some(folder) => Data::folder(folder, Source::Images, numbers.validation, numbers.seed)?.on_squares(side)?,
             None => {
                 let size = ImageSize::new(side, side)?;
                 Data::generated(mdshr_bank(), size, numbers.seed, settings.scenes.unwrap_or(0))
@@ -122,8 +122,8 @@ impl Job for PartsRun {
             store.newest(console, DecomposerFile::from_bytes)?.resume(&mut trainer, &device)?;
             curves.read(&store.path("losses.csv"), trainer.steps())?;
         } else if let Some(file) = &self.settings.start {
-            let weights: Parameters<B> = read_start(file)?.weights(&device)?;
-            trainer.set_weights(&weights)?;
+            let weights = read_start(file)?.weights(&device)?;
+            trainer.set_weights(&fitting(trainer.parameters(), &weights, file, console)?)?;
         }
         let held_out = self.data.held_out(numbers.validation, &self.painter)?;
         let (clock, before) = (Instant::now(), curves.seconds());
@@ -160,7 +160,7 @@ impl Job for PartsRun {
 }
 
 /// The weights that a run starts from.
-fn read_start(file: &std::path::Path) -> Result<DecomposerFile> {
-    let bytes = std::fs::read(file).with_context(|| format!("{} cannot be read", file.display()))?;
+fn read_start(file: &Path) -> Result<DecomposerFile> {
+    let bytes = fs::read(file).with_context(|| format!("{} cannot be read", file.display()))?;
     DecomposerFile::from_bytes(&bytes).with_context(|| file.display().to_string())
 }

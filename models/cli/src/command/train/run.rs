@@ -19,7 +19,7 @@ use dvp_net::train::{Batch, Checkpoint, Judge, Mode, Schedule, Source, Trainer};
 use super::curves::{Curves, Entry};
 use super::data::{Data, reread};
 use super::features::FeatureCache;
-use super::job::{Job, LINE_EVERY, Numbers, Recent};
+use super::job::{Job, LINE_EVERY, Numbers, Recent, fitting};
 use super::settings::Settings;
 use super::store::Store;
 use crate::command::options::BankChoice;
@@ -76,7 +76,6 @@ impl Run {
         weights.rotation = settings.rotation_weight.map_or(weights.rotation, f32::of);
         Ok(Self { mode, config, data, bank: known, painter, preliminary, settings: settings.clone() })
     }
-
 }
 
 impl Job for Run {
@@ -121,7 +120,15 @@ impl Job for Run {
                 let improved = seen.is_some_and(|[image, _]| curves.best().is_none_or(|best| image < Some(best)));
                 let loss = recent.take();
                 let seconds = before + clock.elapsed().as_secs_f64();
-                curves.push(&Entry { step: step.number, loss, terms: [step.image, step.parameters], gradient: step.gradient, rate: step.rate, seconds, seen: seen.unwrap_or_default() });
+                curves.push(&Entry {
+                    step: step.number,
+                    loss,
+                    terms: [step.image, step.parameters],
+                    gradient: step.gradient,
+                    rate: step.rate,
+                    seconds,
+                    seen: seen.unwrap_or_default(),
+                });
                 bar.set_message(format!("loss {loss:.4}"));
                 if save {
                     self.save(store, &trainer, &curves, improved)?;
@@ -138,7 +145,6 @@ impl Job for Run {
         writeln!(console.out, "{}", store.path("best.safetensors").display())?;
         Ok(Outcome::Done)
     }
-
 }
 
 impl Run {
@@ -264,15 +270,7 @@ fn start_from<B: Backend>(
         Some(_) => Checkpoint::from_bytes(&bytes).with_context(named)?.weights(device)?,
         None => published(&Parameters::from_safetensors(&bytes, device).with_context(named)?)?,
     };
-    let mut fitting = Parameters::new();
-    for (name, tensor) in weights.iter() {
-        let own = trainer.parameters().get(name).with_context(named)?.dims();
-        if own == tensor.dims() {
-            fitting.insert(name, tensor)?;
-        } else {
-            writeln!(console.err, "{name} is {} in {}, {own} here: starts anew", tensor.dims(), file.display())?;
-        }
-    }
+    let fitting = fitting(trainer.parameters(), &weights, file, console)?;
     trainer.set_weights(&fitting).with_context(named)
 }
 

@@ -185,7 +185,9 @@ impl Settings {
         };
         match foreign {
             Some((option, _)) if model == ModelName::Scene => bail!("{option} is for --model monet"),
-            Some((option, _)) => bail!("--model monet learns from images alone and knows no shapes: leave {option} away"),
+            Some((option, _)) => {
+                bail!("--model monet learns from images alone and knows no shapes: leave {option} away")
+            }
             None => Ok(()),
         }
     }
