@@ -84,11 +84,15 @@ impl Eraser<'_> {
             if run[0] == 0 || run[1] >= length {
                 continue;
             }
-            let sides = if low.cross.sides == high.cross.sides {
-                low.cross.sides.map(|side| self.palette[side as usize])
-            } else {
-                [run[0] - 1, run[1]].map(|at| self.pixels[self.index(low.along, line, at)].map(f64::from))
-            };
+            // What is known beside it, or as much as both windows say of what something else covers.
+            let sides = [0, 1].map(|side| {
+                let beside = self.index(low.along, line, [run[0] - 1, run[1]][side]);
+                if low.cross.sides == high.cross.sides && !self.known[beside] {
+                    self.palette[low.cross.sides[side] as usize]
+                } else {
+                    self.pixels[beside].map(f64::from)
+                }
+            });
             self.fill(low.along, line, run, center, sides);
         }
     }

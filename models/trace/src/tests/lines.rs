@@ -71,3 +71,19 @@ fn upright_edges_on_whole_pixels_are_known_as_well_as_others() {
     assert!(found.edge.law == dvp_core::render::EdgeLaw::Area && found.edge == dvp_core::render::EdgeProfile::area());
     assert!(error(&picture, &found) < 1e-4, "{}", error(&picture, &found));
 }
+
+#[test]
+fn what_stands_on_a_line_does_not_run_along_it() {
+    // Fields with edges over a base line: between two of them there is no room for a window across it.
+    let corners = |k: usize| [10.6, 25.2, 39.8, 54.4, 69.0].map(|x| x + 4.0)[k];
+    let field = |k: usize| object(rectangle(10.1, 34.0), [corners(k) + 5.05, 65.0], 0.0, BLUE);
+    let edge = |k: usize| {
+        let [low, high] = [corners(k), corners(k) + 10.1];
+        line(&[[low, 82.0], [low, 48.0], [high, 48.0], [high, 82.0]], 0.47, [0.0; 3])
+    };
+    let base = line(&[[6.2, 82.0], [91.7, 82.0]], 0.47, [0.0; 3]);
+    let objects = (0..5).flat_map(|k| [field(k), edge(k)]).chain([base]).collect();
+    let found = found(&paint(&scene(WHITE, objects)));
+    let fields = found.objects.iter().filter(|object| object.color()[2] > 0.5 && object.color()[0] < 0.5);
+    assert_eq!(fields.count(), 5, "{:?}", found.objects);
+}
