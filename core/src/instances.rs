@@ -12,12 +12,12 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use crate::image::{CHANNELS, RGBA_CHANNELS};
+use crate::image::{CHANNELS, RGBA_CHANNELS, check};
 use crate::loss::{Loss, SceneLoss, Ssim};
 use crate::matching::Hungarian;
 use crate::metric::{Ownership, Tally};
 use crate::real::Real;
-use crate::render::{ContourDistance, CoverageModel, ExactArea, HardMask, Renderer, TileRenderer};
+use crate::render::{ContourDistance, CoverageModel, ExactArea, HardMask, PixelLoss, Renderer, TileRenderer};
 use crate::scene::Scene;
 use crate::shape::{Efd, OutlineBasis, mdshr_bank};
 
@@ -25,7 +25,12 @@ use crate::shape::{Efd, OutlineBasis, mdshr_bank};
 #[must_use]
 pub fn of<T: Real>() -> Vec<*const ()> {
     let mut all = vec![
+        check::<T> as *const (),
         OutlineBasis::<T>::new as *const (),
+        OutlineBasis::<T>::outline as *const (),
+        OutlineBasis::<T>::outline_vjp as *const (),
+        <PixelLoss as Loss<T>>::value as *const (),
+        <PixelLoss as Loss<T>>::vjp as *const (),
         Efd::<T>::from_contour as *const (),
         Efd::<T>::normalize as *const (),
         Efd::<T>::symmetry as *const (),
@@ -47,7 +52,7 @@ pub fn of<T: Real>() -> Vec<*const ()> {
     all
 }
 
-fn of_renderer<T: Real, C: CoverageModel<T>>() -> [*const (); 10] {
+fn of_renderer<T: Real, C: CoverageModel<T>>() -> [*const (); 11] {
     [
         <TileRenderer<C> as Renderer<T>>::render as *const (),
         <TileRenderer<C> as Renderer<T>>::render_vjp as *const (),
@@ -58,6 +63,7 @@ fn of_renderer<T: Real, C: CoverageModel<T>>() -> [*const (); 10] {
         <TileRenderer<C> as Renderer<T>>::loss_and_grad::<CHANNELS> as *const (),
         <TileRenderer<C> as Renderer<T>>::loss_and_grad::<RGBA_CHANNELS> as *const (),
         TileRenderer::<C>::object_coverage::<T> as *const (),
+        TileRenderer::<C>::visit_each::<T> as *const (),
         Ownership::fill_drawing::<T, C> as *const (),
     ]
 }

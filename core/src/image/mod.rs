@@ -158,7 +158,8 @@ impl<'a, T: Real, const N: usize> ImageView<'a, T, N> {
 }
 
 /// Checks length and values of image data.
-fn check<T: Real>(expected: usize, data: &[T]) -> Result<(), ImageError> {
+#[inline(never)]
+pub(crate) fn check<T: Real>(expected: usize, data: &[T]) -> Result<(), ImageError> {
     if data.len() != expected {
         return Err(ImageError::Length { expected, len: data.len() });
     }

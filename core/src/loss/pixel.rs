@@ -16,6 +16,7 @@ impl<T: Real> Loss<T> for PixelLoss {
     type Grad = [T];
     type Scratch = ();
 
+    #[inline(never)]
     fn value(&self, pair: ImagePair<'_, T>, (): &mut ()) -> Result<T, LossError> {
         let (a, b) = (pair.image().data(), pair.target().data());
         let sum = match self {
@@ -25,6 +26,7 @@ impl<T: Real> Loss<T> for PixelLoss {
         Ok(T::of(sum / T::of_usize(a.len()).as_f64()))
     }
 
+    #[inline(never)]
     fn vjp(&self, pair: ImagePair<'_, T>, cotangent: T, scratch: &mut (), grad: &mut [T]) -> Result<T, LossError> {
         check_length("image gradient", grad, pair.image().data().len())?;
         pixel_vjp(*self, pair, cotangent, grad);

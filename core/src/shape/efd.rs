@@ -78,7 +78,7 @@ impl<T: Real> OutlineBasis<T> {
     ///
     /// # Errors
     /// [`ShapeError::TooManyHarmonics`] above N rows, [`ShapeError::Length`] if there are not K vertices.
-    #[inline]
+    #[inline(never)]
     pub fn outline(&self, rows: &[[T; 4]], vertices: &mut [[T; 2]]) -> Result<(), ShapeError> {
         self.check(rows.len(), vertices.len())?;
         dispatch(Trace { basis: self, rows, vertices });

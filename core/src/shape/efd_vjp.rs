@@ -12,6 +12,7 @@ impl<T: Real> OutlineBasis<T> {
     ///
     /// # Errors
     /// As [`Self::outline`].
+    #[inline(never)]
     pub fn outline_vjp(&self, grad_vertices: &[[T; 2]], grad_rows: &mut [[T; 4]]) -> Result<(), ShapeError> {
         self.check(grad_rows.len(), grad_vertices.len())?;
         self.pull_back(0, grad_vertices, grad_rows);

@@ -17,4 +17,6 @@ extern crate alloc;
 
 pub mod export;
 pub mod format;
+#[doc(hidden)]
+pub mod instances;
 pub mod svg;

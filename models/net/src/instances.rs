@@ -6,6 +6,7 @@ use alloc::vec::Vec;
 use dvp_core::tensor::Host;
 
 use crate::model::Model;
+use crate::scene_steps::image_tensor;
 use crate::train::{Checkpoint, Trainer};
 
 /// Models and their training on the host in f32, compiled in this crate.
@@ -13,6 +14,7 @@ use crate::train::{Checkpoint, Trainer};
 #[inline(never)]
 pub fn single() -> Vec<*const ()> {
     vec![
+        image_tensor::<f32, Host> as *const (),
         Model::<Host>::load::<f32> as *const (),
         Model::<Host>::features as *const (),
         Model::<Host>::latents as *const (),

@@ -142,6 +142,7 @@ impl<T: Real> SceneSteps<T> {
 ///
 /// # Errors
 /// [`TensorError::Values`] if their sizes differ.
+#[inline(never)]
 pub fn image_tensor<T: Real, B: Backend>(images: &[Image<T>], device: &B::Device) -> Result<Tensor<B>, TensorError> {
     let size = images.first().map_or([0; 2], |image| [image.size().height(), image.size().width()]);
     let values: Vec<T> = images.iter().flat_map(|image| image.data()).copied().collect();

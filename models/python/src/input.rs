@@ -4,8 +4,8 @@ use core::fmt;
 use std::path::{Path, PathBuf};
 
 use dvp::format::{
-    BitDepth, FormatError, Picture, decode_picture, decode_picture_rgba, mdshr_bank, parse_bank, read_bank,
-    read_labels, read_npy, read_picture, read_picture_rgba,
+    BitDepth, ChannelValue, FormatError, Picture, decode_picture, decode_picture_rgba, mdshr_bank, parse_bank,
+    read_bank, read_labels, read_npy, read_picture, read_picture_rgba,
 };
 use dvp_core::ImageSize;
 use dvp_core::image::{ImageError, RgbaImage};
@@ -90,11 +90,8 @@ impl Source {
                 image.ok_or_else(|| InputError::Stack { path: path.clone(), count })?.into()
             }
             Self::Path(path) => return Ok(read_picture(path, max_pixels)?),
-            Self::Eight(extents, values) => {
-                let real = |value: u8| f64::from(value) / 255.0;
-                of_pixels(*extents, values, real, BitDepth::Eight, max_pixels)?
-            }
-            Self::Float(extents, values) => of_pixels(*extents, values, f64::from, BitDepth::Sixteen, max_pixels)?,
+            Self::Eight(extents, values) => of_pixels(*extents, values, BitDepth::Eight, max_pixels)?,
+            Self::Float(extents, values) => of_pixels(*extents, values, BitDepth::Sixteen, max_pixels)?,
         };
         Ok(picture.with_coded(coded))
     }
@@ -118,17 +115,16 @@ fn size_of([height, width, _]: [usize; 3], limit: usize) -> Result<ImageSize, In
     size.ok_or(InputError::Pixels { width, height, limit })
 }
 
-fn of_pixels<V: Copy>(
+fn of_pixels<V: ChannelValue>(
     extents: [usize; 3],
     values: &[V],
-    real: impl Fn(V) -> f64 + Copy,
     bits: BitDepth,
     max_pixels: usize,
 ) -> Result<Picture<f32>, InputError> {
     let size = size_of(extents, max_pixels)?;
     match extents[2] {
-        3 => Ok(Picture::opaque(size, values, real, bits)?),
-        4 => Ok(Picture::translucent(size, values, real, bits)?),
+        3 => Ok(Picture::opaque(size, values, bits)?),
+        4 => Ok(Picture::translucent(size, values, bits)?),
         channels => Err(InputError::Channels { channels }),
     }
 }

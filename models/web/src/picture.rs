@@ -75,7 +75,7 @@ impl Picture {
     #[wasm_bindgen(constructor)]
     pub fn new(rgba: &[u8], width: u32, height: u32, coded: bool) -> Result<Self, WebError> {
         let size = size_of(width, height)?;
-        let picture = format::Picture::translucent(size, rgba, |value| f64::from(value) / 255.0, BitDepth::Eight)?;
+        let picture = format::Picture::translucent(size, rgba, BitDepth::Eight)?;
         Ok(Self { picture: picture.with_coded(coded) })
     }
 

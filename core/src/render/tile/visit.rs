@@ -29,6 +29,21 @@ impl<C> TileRenderer<C> {
     where
         C: CoverageModel<T>,
     {
+        self.visit_each(drawing, size, scratch, &mut visit)
+    }
+
+    /// [`Self::visit_coverage`], compiled once for all that visit ([`crate::instances`]).
+    #[inline(never)]
+    pub(crate) fn visit_each<T: Real>(
+        &self,
+        drawing: &Drawing<T>,
+        size: ImageSize,
+        scratch: &mut TileScratch<T, C::Record>,
+        visit: &mut dyn FnMut(usize, usize, &[T]),
+    ) -> Result<(), RenderError>
+    where
+        C: CoverageModel<T>,
+    {
         self.coverage.check()?;
         check_drawing(drawing)?;
         let TileScratch { vertices_px, tiles, records, .. } = scratch;

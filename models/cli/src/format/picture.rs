@@ -65,15 +65,13 @@ impl Decoded {
     fn into_picture<T: Real>(self, path: &Path) -> Result<Picture<T>, FormatError> {
         let Self { size, picture, coded } = self;
         let color = picture.color();
-        let eight = |value: u8| f64::from(value) / 255.0;
-        let sixteen = |value: u16| f64::from(value) / 65535.0;
         let result = match (color.bytes_per_pixel() / color.channel_count(), color.has_alpha()) {
-            (1, false) => Picture::opaque(size, picture.into_rgb8().as_raw(), eight, BitDepth::Eight),
-            (1, true) => Picture::translucent(size, picture.into_rgba8().as_raw(), eight, BitDepth::Eight),
-            (2, false) => Picture::opaque(size, picture.into_rgb16().as_raw(), sixteen, BitDepth::Sixteen),
-            (2, true) => Picture::translucent(size, picture.into_rgba16().as_raw(), sixteen, BitDepth::Sixteen),
-            (_, false) => Picture::opaque(size, picture.into_rgb32f().as_raw(), f64::from, BitDepth::Sixteen),
-            (_, true) => Picture::translucent(size, picture.into_rgba32f().as_raw(), f64::from, BitDepth::Sixteen),
+            (1, false) => Picture::opaque(size, picture.into_rgb8().as_raw(), BitDepth::Eight),
+            (1, true) => Picture::translucent(size, picture.into_rgba8().as_raw(), BitDepth::Eight),
+            (2, false) => Picture::opaque(size, picture.into_rgb16().as_raw(), BitDepth::Sixteen),
+            (2, true) => Picture::translucent(size, picture.into_rgba16().as_raw(), BitDepth::Sixteen),
+            (_, false) => Picture::opaque(size, picture.into_rgb32f().as_raw(), BitDepth::Sixteen),
+            (_, true) => Picture::translucent(size, picture.into_rgba32f().as_raw(), BitDepth::Sixteen),
         };
         let values = |source| FormatError::Values { path: path.to_path_buf(), source };
         Ok(result.map_err(values)?.with_coded(coded))

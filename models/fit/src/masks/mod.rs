@@ -68,6 +68,7 @@ impl core::error::Error for LabelMapError {}
 ///
 /// # Errors
 /// [`LabelMapError::Length`] if there is not one label per pixel.
+#[inline(never)]
 pub fn outlines_of_labels<T: Real>(labels: &[u32], size: ImageSize) -> Result<Vec<LabelOutline<T>>, LabelMapError> {
     let (expected, len) = (size.pixels(), labels.len());
     if len != expected {

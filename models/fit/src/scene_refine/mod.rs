@@ -111,6 +111,7 @@ impl SceneRefine {
     ///
     /// # Errors
     /// As [`Self::fit`].
+    #[inline(never)]
     pub fn fit_watched<T: Real, const N: usize>(
         &self,
         image: ImageView<'_, T, N>,

@@ -17,6 +17,30 @@ pub enum BitDepth {
     Sixteen,
 }
 
+/// A value of a channel as files store it.
+pub trait ChannelValue: Copy {
+    /// The value: of whole numbers a share of the largest one, of floating point as it stands.
+    fn value(self) -> f64;
+}
+
+impl ChannelValue for u8 {
+    fn value(self) -> f64 {
+        f64::from(self) / 255.0
+    }
+}
+
+impl ChannelValue for u16 {
+    fn value(self) -> f64 {
+        f64::from(self) / 65535.0
+    }
+}
+
+impl ChannelValue for f32 {
+    fn value(self) -> f64 {
+        f64::from(self)
+    }
+}
+
 /// A picture as read from a file.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -56,18 +80,14 @@ impl<T: Real> Picture<T> {
         Self { bits, ..self }
     }
 
-    /// A picture of r, g, b, r, g, b, ..., each made a number in [0, 1] by `real`.
+    /// A picture of r, g, b, r, g, b, ....
     ///
     /// # Errors
     /// [`ImageError`] if there are not three values per pixel or one is not finite.
-    pub fn opaque<V: Copy>(
-        size: ImageSize,
-        values: &[V],
-        real: impl Fn(V) -> f64,
-        bits: BitDepth,
-    ) -> Result<Self, ImageError> {
+    #[inline(never)]
+    pub fn opaque<V: ChannelValue>(size: ImageSize, values: &[V], bits: BitDepth) -> Result<Self, ImageError> {
         check_length(3 * size.pixels(), values.len())?;
-        let pixels = values.as_chunks().0.iter().map(|&[r, g, b]| [real(r), real(g), real(b)]);
+        let pixels = values.as_chunks().0.iter().map(|pixel: &[V; 3]| pixel.map(V::value));
         Ok(Self { bits, ..planar(size, pixels)?.into() })
     }
 
@@ -75,14 +95,10 @@ impl<T: Real> Picture<T> {
     ///
     /// # Errors
     /// [`ImageError`] if there are not four values per pixel or one is not finite.
-    pub fn translucent<V: Copy>(
-        size: ImageSize,
-        values: &[V],
-        real: impl Fn(V) -> f64 + Copy,
-        bits: BitDepth,
-    ) -> Result<Self, ImageError> {
+    #[inline(never)]
+    pub fn translucent<V: ChannelValue>(size: ImageSize, values: &[V], bits: BitDepth) -> Result<Self, ImageError> {
         check_length(4 * size.pixels(), values.len())?;
-        let pixels = values.as_chunks().0.iter().map(|pixel: &[V; 4]| pixel.map(real));
+        let pixels = values.as_chunks().0.iter().map(|pixel: &[V; 4]| pixel.map(V::value));
         let ground = Ground::of(pixels.clone());
         let image = planar(size, pixels.map(|pixel| ground.under(pixel)))?;
         let matte = ground.under([0.0; 4]).map(T::of);
