@@ -34,7 +34,7 @@ pub fn read_picture<T: Real>(path: &Path, max_pixels: usize) -> Result<Picture<T
 /// # Errors
 /// As [`read_picture`].
 pub fn decode_picture<T: Real>(bytes: &[u8], name: &Path, max_pixels: usize) -> Result<Picture<T>, FormatError> {
-    decode_from(Cursor::new(bytes), name, max_pixels)?.into_picture(name)
+    decode_from(&mut Cursor::new(bytes), name, max_pixels)?.into_picture(name)
 }
 
 /// Reads a picture of at most `max_pixels` pixels with its alpha; no pixel of an opaque one lets anything through.
@@ -50,7 +50,7 @@ pub fn read_picture_rgba<T: Real>(path: &Path, max_pixels: usize) -> Result<Rgba
 /// # Errors
 /// As [`read_picture`].
 pub fn decode_picture_rgba<T: Real>(bytes: &[u8], name: &Path, max_pixels: usize) -> Result<RgbaImage<T>, FormatError> {
-    decode_from(Cursor::new(bytes), name, max_pixels)?.into_rgba(name)
+    decode_from(&mut Cursor::new(bytes), name, max_pixels)?.into_rgba(name)
 }
 
 /// A file's pixels.
@@ -93,11 +93,16 @@ impl Decoded {
 /// The pixels of a file as stored, at least one; turned as the orientation tag says.
 pub(super) fn decode(path: &Path, max_pixels: usize) -> Result<Decoded, FormatError> {
     let file = File::open(path).map_err(|source| FormatError::Read { path: path.to_path_buf(), source })?;
-    decode_from(BufReader::new(file), path, max_pixels)
+    decode_from(&mut BufReader::new(file), path, max_pixels)
 }
 
-/// The same of what a file holds.
-fn decode_from(file: impl BufRead + Seek, path: &Path, max_pixels: usize) -> Result<Decoded, FormatError> {
+/// What decoders read from: a file, or memory.
+trait Source: BufRead + Seek {}
+
+impl<S: BufRead + Seek> Source for S {}
+
+/// The same of what a file holds. All sources are one type, so that the decoders are compiled once.
+fn decode_from(file: &mut dyn Source, path: &Path, max_pixels: usize) -> Result<Decoded, FormatError> {
     let unreadable = |source| FormatError::Read { path: path.to_path_buf(), source };
     let undecodable = |source: ImageError| FormatError::Decode { path: path.to_path_buf(), source: source.into() };
     let mut reader = ImageReader::new(file);
