@@ -57,11 +57,10 @@ impl MonetConfig {
     /// a public implementation (`applied-ai-lab/genesis`), as the paper names none.
     #[must_use]
     pub fn published(side: usize) -> Self {
-        let blocks = if side > 64 { 6 } else { 5 };
         Self {
             side,
             slots: 5,
-            attention_channels: [32, 32, 64, 64, 64, 64].into_iter().take(blocks).collect(),
+            attention_channels: if side > 64 { vec![32, 32, 32, 64, 64, 64] } else { vec![32, 32, 64, 64, 64] },
             attention_hidden: 128,
             encoder_channels: vec![32, 32, 64, 64],
             encoder_hidden: 256,
