@@ -201,13 +201,24 @@ fn are_near([low, high]: [Vec2<f64>; 2], [other_low, other_high]: [Vec2<f64>; 2]
 
 /// Where two chains cross.
 pub(super) fn crossings(one: &Chain, other: &Chain) -> Vec<Vec2<f64>> {
-    if !are_near(one.bounds(), other.bounds(), 0.0) {
+    crossings_of(one, other, |_| true)
+}
+
+/// Where two chains cross and something of the first is not seen: windows are missing there, or the other line is in them, too.
+pub(super) fn hidden_crossings(one: &Chain, other: &Chain) -> Vec<Vec2<f64>> {
+    let is_hidden = |[from, to]: [&Mark; 2]| from.is_shared || to.is_shared || (to.point - from.point).length() > NEXT;
+    crossings_of(one, other, is_hidden)
+}
+
+fn crossings_of(one: &Chain, other: &Chain, is_asked: impl Fn([&Mark; 2]) -> bool) -> Vec<Vec2<f64>> {
+    let bounds = other.bounds();
+    if !are_near(one.bounds(), bounds, 0.0) {
         return Vec::new();
     }
-    let bounds = other.bounds();
     let sorted =
         |[a, b]: [Vec2<f64>; 2]| [Vec2::new(a.x.min(b.x), a.y.min(b.y)), Vec2::new(a.x.max(b.x), a.y.max(b.y))];
-    let near = one.steps().filter(|&step| are_near(sorted(step), bounds, 0.0));
+    let asked = one.marks.windows(2).filter(|pair| is_asked([&pair[0], &pair[1]]));
+    let near = asked.map(|pair| [pair[0].point, pair[1].point]).filter(|&step| are_near(sorted(step), bounds, 0.0));
     near.flat_map(|step| other.steps().filter_map(move |next| crossing(step, next))).collect()
 }
 

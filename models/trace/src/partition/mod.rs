@@ -67,7 +67,7 @@ pub struct Partition {
     pub is_hard: bool,
     /// Share of the pixels that no mixture of the palette explains, [0, 1].
     pub unexplained: f64,
-    /// Whether lines that have pixels of their own were taken out because they cross or touch.
+    /// Whether lines that have pixels of their own were taken out because they cross.
     pub has_crossings: bool,
 }
 
@@ -95,7 +95,7 @@ impl Partition {
         Self::with_lines(image, coded, &[tuning::THIN_WIDTH, tuning::CROSSING_WIDTH])
     }
 
-    /// The same with lines that cross or touch as faces, if they have pixels of their own; none if there are no such lines.
+    /// The same with lines that cross as faces, if they have pixels of their own; none if there are no such lines.
     #[must_use]
     pub fn without_crossings(&self, image: &ImageView<'_, f32>) -> Option<Self> {
         self.has_crossings.then(|| Self::with_lines(image, self.coded, &[tuning::THIN_WIDTH]).ok()).flatten()

@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
-use super::chain::{Chain, Mark, crossings, join, read_once};
+use super::chain::{Chain, Mark, crossings, hidden_crossings, join, read_once};
 use super::cross::{Along, Canvas, Cross};
 use super::mix::coverage;
 use super::palette::distance;
@@ -75,14 +75,13 @@ fn in_order(canvas: &Canvas<'_>, mut lines: Vec<(ThinLine, Chain)>) -> Vec<(Thin
     numbered.into_iter().map(|(_, line)| line).collect()
 }
 
-/// Of lines that may be wider than what is thin: those that cross or touch one another, or cut in two what they lie on with the color of
+/// Of lines that may be wider than what is thin: those that cross one another, or cut in two what they lie on with the color of
 /// what lies behind all, `back`: they would be holes. A pen draws what else is alone.
 pub(super) fn crossing_lines(lines: Vec<(ThinLine, Chain)>, back: Color) -> Vec<(ThinLine, Chain)> {
-    let mut keep: Vec<bool> = lines.iter().map(|(_, chain)| chain.marks.iter().any(|mark| mark.is_shared)).collect();
+    let mut keep = alloc::vec![false; lines.len()];
     for a in 0..lines.len() {
-        for b in 0..a {
-            let [one, other] = [&lines[a], &lines[b]];
-            if one.0.color != other.0.color && !crossings(&one.1, &other.1).is_empty() {
+        for b in (0..lines.len()).filter(|&b| lines[a].0.color != lines[b].0.color) {
+            if !hidden_crossings(&lines[a].1, &lines[b].1).is_empty() {
                 (keep[a], keep[b]) = (true, true);
             }
         }
