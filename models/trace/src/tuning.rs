@@ -172,6 +172,20 @@ pub const THIN_TOLERANCE: f64 = 0.2;
 /// Standard deviation of the middle of a thin line in one window, pixels: what slanted lines look like to windows.
 pub const THIN_SIGMA: f64 = 0.05;
 
+/// Windows of a line that are further apart than this (pixels) are not next to one another: two apart at 45 degrees are 2.8.
+pub const CHAIN_NEXT: f64 = 2.5;
+/// Least that is seen of a line that another one hides in part, pixels: half a pixel is more than mixtures are off.
+pub const PAIR_SEEN: f64 = 0.5;
+/// How far the line in a window of two may be from where its chain goes on, pixels: half of the step from which windows side by side are one
+/// chain. And how much further after every window that is missing.
+pub const PAIR_ASIDE: [f64; 2] = [0.75, 0.05];
+/// So many windows at the end of a chain tell where it goes on; fewer than so many do not.
+pub const PAIR_REACH: usize = 7;
+/// See [`PAIR_REACH`].
+pub const PAIR_MARKS: usize = 4;
+/// Where lines are steeper to their windows, those along the other axis read them: a little more than 45 degrees, so that both overlap.
+pub const PAIR_SLOPE: f64 = 1.1;
+
 /// How far apart (pixels) the parts of a thin line may be that something crosses.
 pub const THIN_GAP: f64 = 32.0;
 

@@ -6,7 +6,7 @@
 //! | file | holds |
 //! |---|---|
 //! | `config` | [`DecomposerConfig`]: which, and its sizes |
-//! | `monet` | [`Monet`](monet::Monet): attention takes a part at a time, an autoencoder describes it |
+//! | `monet` | [`monet::Monet`]: attention takes a part at a time, an autoencoder describes it |
 //! | `attention_net` | its attention, a U-Net |
 //! | `component_vae` | its autoencoder |
 //! | `terms` | the terms of its loss |

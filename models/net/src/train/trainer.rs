@@ -111,7 +111,8 @@ impl<B: Backend, T: Real> Trainer<B, T> {
     /// go on from another.
     ///
     /// # Errors
-    /// [`ParametersError::Missing`] if the model has none of that name, [`ParametersError::Dims`].
+    /// [`ParametersError::Missing`](dvp_core::tensor::ParametersError::Missing) if the model has none of that name,
+    /// [`ParametersError::Dims`](dvp_core::tensor::ParametersError::Dims).
     #[inline(never)]
     pub fn set_weights(&mut self, weights: &Parameters<B>) -> Result<(), NetError> {
         for (name, tensor) in weights.iter() {

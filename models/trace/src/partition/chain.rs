@@ -206,7 +206,9 @@ pub(super) fn crossings(one: &Chain, other: &Chain) -> Vec<Vec2<f64>> {
 
 /// Where two chains cross and something of the first is not seen: windows are missing there, or the other line is in them, too.
 pub(super) fn hidden_crossings(one: &Chain, other: &Chain) -> Vec<Vec2<f64>> {
-    let is_hidden = |[from, to]: [&Mark; 2]| from.is_shared || to.is_shared || (to.point - from.point).length() > NEXT;
+    let is_hidden = |[from, to]: [&Mark; 2]| {
+        from.is_shared || to.is_shared || (to.point - from.point).length() > tuning::CHAIN_NEXT
+    };
     crossings_of(one, other, is_hidden)
 }
 
@@ -235,7 +237,7 @@ pub(super) fn read_once(chains: Vec<Chain>) -> Vec<Chain> {
     let bounds: Vec<_> = chains.iter().map(Chain::bounds).collect();
     let is_on = |mark: &Mark, other: &Chain| {
         // Where windows are missing something else may lie.
-        other.steps().filter(|[from, to]| (*to - *from).length() <= NEXT).any(|[from, to]| {
+        other.steps().filter(|[from, to]| (*to - *from).length() <= tuning::CHAIN_NEXT).any(|[from, to]| {
             let foot = from.lerp(to, LineSegment::new(from, to).nearest(mark.point).share);
             (mark.point - foot).length() < 0.25 * mark.width
         })
@@ -253,9 +255,6 @@ pub(super) fn read_once(chains: Vec<Chain>) -> Vec<Chain> {
     let keep: Vec<bool> = (0..chains.len()).map(|k| !is_read(k)).collect();
     chains.into_iter().zip(keep).filter_map(|(chain, keep)| keep.then_some(chain)).collect()
 }
-
-/// Windows further apart than this (pixels) are not next to one another.
-const NEXT: f64 = 2.5;
 
 /// Appends marks; those that go back behind where the line has come are left out.
 fn append<'a>(marks: &mut Vec<Mark>, more: impl Iterator<Item = &'a Mark>) {

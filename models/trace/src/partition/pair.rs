@@ -16,16 +16,6 @@ use super::mix::coverage;
 use super::palette::distance;
 use crate::tuning;
 
-/// Least that is seen of a line that another one hides in part, pixels: half a pixel is more than mixtures are off.
-const LEAST_SEEN: f64 = 0.5;
-/// How far a window's line may be from where its chain goes on, pixels: half of the step from which windows side by side are one chain. And
-/// how much further after every window that is missing.
-const MOST_ASIDE: [f64; 2] = [0.75, 0.05];
-/// Chains of fewer windows do not tell where they go on.
-const LEAST_MARKS: usize = 4;
-/// So many windows at the end of a chain do.
-const REACH: usize = 7;
-
 /// What is seen of a line that shares its window.
 struct Seen {
     /// Where it begins and ends along the window, pixels.
@@ -54,7 +44,7 @@ pub(super) fn grow(
         return;
     }
     let mut taken = BTreeSet::new();
-    let mut order: Vec<usize> = (0..chains.len()).filter(|&k| chains[k].marks.len() >= LEAST_MARKS).collect();
+    let mut order: Vec<usize> = (0..chains.len()).filter(|&k| chains[k].marks.len() >= tuning::PAIR_MARKS).collect();
     order.sort_by_key(|&k| core::cmp::Reverse(chains[k].marks.len()));
     for k in order {
         let own = color_of(&chains[k]);
@@ -106,9 +96,9 @@ impl Tip {
             return None;
         }
         let of_end: Vec<&Mark> = if at_finish {
-            chain.marks[n - REACH.min(n)..].iter().collect()
+            chain.marks[n - tuning::PAIR_REACH.min(n)..].iter().collect()
         } else {
-            chain.marks[..REACH.min(n)].iter().rev().collect()
+            chain.marks[..tuning::PAIR_REACH.min(n)].iter().rev().collect()
         };
         let last: Vec<[f64; 2]> = of_end.iter().map(|mark| place(mark)).collect();
         let slope = slope(&last)?;
@@ -134,7 +124,7 @@ impl Tip {
     ) -> Option<Mark> {
         let slope = slope(&self.last)?;
         // Where it is steeper windows along the other axis read it.
-        if slope.abs() > 1.1 {
+        if slope.abs() > tuning::PAIR_SLOPE {
             return None;
         }
         let width = self.width * (1.0 + slope * slope).sqrt();
@@ -152,7 +142,7 @@ impl Tip {
                 return None;
             }
             let Some(center) = center_of(&cross, width) else { continue };
-            if (center - predicted).abs() <= MOST_ASIDE[0] + MOST_ASIDE[1] * missing as f64 {
+            if (center - predicted).abs() <= tuning::PAIR_ASIDE[0] + tuning::PAIR_ASIDE[1] * missing as f64 {
                 let mut mark = Mark { along, cross, point: dvp_core::Vec2::default(), width, is_shared: true };
                 mark.place(center, width);
                 return Some(mark);
@@ -178,11 +168,11 @@ impl Seen {
     fn center(&self, width: f64) -> Option<f64> {
         let [low, high] = self.range;
         let seen = high - low;
-        if self.gap > LEAST_SEEN {
+        if self.gap > tuning::PAIR_SEEN {
             return ((seen - width).abs() <= tolerance(width)).then_some(0.5 * (low + high));
         }
         // What is hidden of it lies under the other one.
-        (LEAST_SEEN..width + tolerance(width)).contains(&seen).then_some(if self.is_first {
+        (tuning::PAIR_SEEN..width + tolerance(width)).contains(&seen).then_some(if self.is_first {
             low + 0.5 * width
         } else {
             high - 0.5 * width
@@ -235,7 +225,7 @@ impl Canvas<'_> {
             shares.push([1.0 - a - b, a, b]);
         }
         let total = |of: usize| shares.iter().map(|share| share[of]).sum::<f64>();
-        if worst > self.noise || total(1) < LEAST_SEEN || total(2) < LEAST_SEEN {
+        if worst > self.noise || total(1) < tuning::PAIR_SEEN || total(2) < tuning::PAIR_SEEN {
             return None;
         }
         let fullest = |of: usize| (0..shares.len()).max_by(|&a, &b| shares[a][of].total_cmp(&shares[b][of]));
