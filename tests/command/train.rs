@@ -26,7 +26,7 @@ fn newest(out: &Path) -> PathBuf {
 }
 
 /// The columns of `losses.csv` that time does not change.
-fn losses(out: &Path) -> Vec<String> {
+pub(crate) fn losses(out: &Path) -> Vec<String> {
     let csv = fs::read_to_string(out.join("losses.csv")).unwrap();
     let timeless = |line: &str| {
         let fields: Vec<&str> = line.split(',').enumerate().filter(|(k, _)| *k != 6).map(|(_, field)| field).collect();

@@ -13,8 +13,8 @@
 //! | `atan2` | [`Atan2`]: a (y, x) pair to an angle |
 //!
 //! The other ops stand beside the maths that they wrap: outlines and prototypes in [`shape`](crate::shape), poses in
-//! [`scene`](crate::scene), images in [`render`](crate::render), losses in [`loss`](crate::loss), windows of pixels
-//! and their norms in [`tensor`](crate::tensor). Each is checked against central differences in `tests/backend`.
+//! [`scene`](crate::scene), images in [`render`](crate::render), losses in [`loss`](crate::loss), windows of pixels in
+//! [`tensor`](crate::tensor). Each is checked against central differences in `tests/backend`.
 
 mod atan2;
 mod batch;

@@ -14,7 +14,6 @@
 //! | `gradient` | parameters, [`Gradients`] |
 //! | `parameters` | [`Parameters`]: named tensors; with the feature `safetensors` to and from a file's bytes |
 //! | `adam` | the reference optimizer; its settings and schedule are in [`optim`](crate::optim) |
-//! | `instance_norm` | [`InstanceNormOp`]: channels of images with mean 0 and variance 1 |
 //! | `unfold` | [`Unfold`]: windows of pixels as columns, by which convolution is a product |
 //! | `host` | [`Host`]: plain vectors and a tape, the backend that is always there |
 //!
@@ -29,7 +28,6 @@ mod error;
 mod gradient;
 mod handle;
 mod host;
-mod instance_norm;
 mod layout;
 mod parameters;
 mod product;
@@ -46,7 +44,6 @@ pub use error::TensorError;
 pub use gradient::Gradients;
 pub use handle::Tensor;
 pub use host::{Host, HostArray, HostDevice, HostGradients};
-pub use instance_norm::InstanceNormOp;
 pub use parameters::{Parameters, ParametersError};
 #[cfg(feature = "safetensors")]
 pub use safetensors::safetensors_note;

@@ -111,7 +111,7 @@ impl Known {
 /// # Errors
 /// [`NoDrawing`] if the picture is no drawing of flat colors with clear edges.
 pub fn trace(image: &ImageView<'_, f32>, known: &Known) -> Result<Traced, NoDrawing> {
-    let partition = Partition::of(image, known.coded).map_err(NoDrawing::Partition)?;
+    let (partition, faces) = Partition::readings(image, known.coded).map_err(NoDrawing::Partition)?;
     let rings = boundary::rings(&partition);
     let stained = match partition.coded {
         // Coders stain what is beside an edge, whatever its profile is: in large pictures one of their own is seen as blur, small ones leave a doubt.
@@ -128,7 +128,6 @@ pub fn trace(image: &ImageView<'_, f32>, known: &Known) -> Result<Traced, NoDraw
     let matte = known.matte.map(|matte| matte.map(f64::from));
     let mut layers = layers::layers(&partition, &rings, matte);
     // What slivers are, and lines that cross, the shorter description tells.
-    let faces = partition.without_crossings(image);
     let others = [Some(&partition), faces.as_ref()].into_iter().flatten().filter_map(Partition::with_slivers);
     for other in others.chain(faces.clone()) {
         let others = layers::layers(&other, &boundary::rings(&other), matte);

@@ -7,7 +7,7 @@ use dvp_core::scene::PoseOp;
 use dvp_core::shape::{
     EfdModel, MixOp, NormalizeOp, OutlineBasis, OutlineOp, PrototypeBank, PrototypeModel, mdshr_bank,
 };
-use dvp_core::tensor::{InstanceNormOp, Stride, Unfold};
+use dvp_core::tensor::{Stride, Unfold};
 use dvp_core::{Image, ImageSize, Real};
 use dvp_tests::strategy;
 use proptest::collection::vec;
@@ -23,7 +23,6 @@ pub(super) fn of(step: &str) -> Cases {
     match step {
         "Atan2" => atan2(),
         "ImageLossOp" => prop_oneof![3 => pixel_losses(), 1 => ssim()].boxed(),
-        "InstanceNormOp" => instance_norm(),
         "MixOp" => mix(),
         "NormalizeOp" => normalize(),
         "OutlineOp" => prop_oneof![outline_of_descriptors(), outline_of_weights()].boxed(),
@@ -58,16 +57,6 @@ fn unfold() -> Cases {
         })
         .prop_flat_map(|(batch, image, window, stride)| {
             step!(T => Unfold::new(image, window, stride).unwrap()).with_inputs(batch, &[Domain::Any])
-        })
-        .boxed()
-}
-
-/// At least three pixels: of two, both are 1 and -1 wherever they are. A tenth is added to the variance: where pixels are nearly equal,
-/// steps of central differences are long against it.
-fn instance_norm() -> Cases {
-    (batch(), 1_usize..4, 3_usize..20)
-        .prop_flat_map(|(batch, channels, pixels)| {
-            step!(T => InstanceNormOp::new(channels, pixels, 0.1).unwrap()).with_inputs(batch, &[Domain::Any; 3])
         })
         .boxed()
 }

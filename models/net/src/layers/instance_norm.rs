@@ -1,7 +1,6 @@
 //! Instance norm with weights.
 
-use dvp_core::real::DType;
-use dvp_core::tensor::{Backend, InstanceNormOp, Tensor, TensorError};
+use dvp_core::tensor::{Backend, Tensor, TensorError};
 
 use crate::error::NetError;
 use crate::weights::Weights;
@@ -14,6 +13,7 @@ const EPSILON: f64 = 1e-5;
 /// *Source*: Ulyanov, Vedaldi, Lempitsky: Instance Normalization (2016).
 #[derive(Clone, Debug)]
 pub(crate) struct InstanceNorm<B: Backend> {
+    /// Channels x 1, as the bias.
     weight: Tensor<B>,
     bias: Tensor<B>,
 }
@@ -24,25 +24,21 @@ impl<B: Backend> InstanceNorm<B> {
     /// # Errors
     /// As [`Weights::get`].
     pub(crate) fn load(weights: &Weights<'_, B>, channels: usize) -> Result<Self, NetError> {
-        Ok(Self { weight: weights.get("weight", &[channels])?, bias: weights.get("bias", &[channels])? })
+        let of_each = |name: &str| Ok::<_, NetError>(weights.get(name, &[channels])?.reshape(&[channels, 1])?);
+        Ok(Self { weight: of_each("weight")?, bias: of_each("bias")? })
     }
 
     /// batch x channels x h x w to the same extents.
     ///
     /// # Errors
-    /// [`TensorError::Operand`] if the rank is not 4; as [`Tensor::apply`].
+    /// [`TensorError::Operand`] if the rank is not 4; as [`Tensor::layer_norm`] and [`Tensor::mul`].
     pub(crate) fn forward(&self, x: &Tensor<B>) -> Result<Tensor<B>, TensorError> {
         let &[batch, channels, h, w] = x.dims().extents() else {
             let must = "must be batch x channels x h x w";
             return Err(TensorError::Operand { op: "instance_norm", dims: *x.dims(), must });
         };
-        let of_each = |numbers: &Tensor<B>| numbers.expand(&[batch, channels]);
-        let inputs = [&x.reshape(&[batch, channels, h * w])?, &of_each(&self.weight)?, &of_each(&self.bias)?];
-        let op = InstanceNormOp::new(channels, h * w, EPSILON)?;
-        let normed = match x.dtype() {
-            DType::F32 => Tensor::apply::<f32, _>(op, &inputs)?,
-            DType::F64 => Tensor::apply::<f64, _>(op, &inputs)?,
-        };
-        normed.reshape(&[batch, channels, h, w])
+        // The layer norm of all pixels of a channel.
+        let normed = x.reshape(&[batch, channels, h * w])?.layer_norm(EPSILON)?;
+        normed.mul(&self.weight)?.add(&self.bias)?.reshape(&[batch, channels, h, w])
     }
 }

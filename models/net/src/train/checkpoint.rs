@@ -5,9 +5,8 @@
 
 use dvp_core::Real;
 use dvp_core::dims::Dims;
-use dvp_core::optim::AdamSettings;
 use dvp_core::shape::{Efd, PrototypeBank};
-use dvp_core::tensor::{Adam, Backend, Host, HostDevice, Parameters, Tensor, TensorError};
+use dvp_core::tensor::{Backend, Host, HostDevice, Parameters, Tensor, TensorError};
 
 use super::stored::Stored;
 use super::trainer::Trainer;
@@ -28,11 +27,7 @@ impl Checkpoint {
     /// If the framework refuses to hand out its values.
     #[inline(never)]
     pub fn of<B: Backend, T: Real>(trainer: &Trainer<B, T>, resumable: bool, about: &str) -> Result<Self, NetError> {
-        let mut stored = Stored::new(trainer.config().clone(), trainer.adam.steps(), about);
-        stored.take("model", trainer.parameters())?;
-        if resumable {
-            stored.take("adam", &trainer.adam.moments()?)?;
-        }
+        let mut stored = Stored::of(trainer.config().clone(), (trainer.parameters(), &trainer.adam), resumable, about)?;
         stored.tensors.insert("bank", &bank_tensor(trainer.bank())?)?;
         Ok(Self { stored })
     }
@@ -89,7 +84,7 @@ impl Checkpoint {
     /// If the framework refuses.
     #[inline(never)]
     pub fn weights<B: Backend>(&self, device: &B::Device) -> Result<Parameters<B>, NetError> {
-        self.stored.part("model.", device)
+        self.stored.weights(device)
     }
 
     /// The model, to look with: its weights are constants.
@@ -109,11 +104,7 @@ impl Checkpoint {
         if self.config() != trainer.config() {
             return Err(NetError::Checkpoint("it is of a model of other sizes".into()));
         }
-        let moments = self.stored.part::<B>("adam.", device)?;
-        if moments.is_empty() && self.stored.steps > 0 {
-            return Err(NetError::Checkpoint("it holds no optimizer; give it as --start".into()));
-        }
-        let adam = Adam::resume(AdamSettings::default(), self.stored.steps, &moments)?;
+        let adam = self.stored.adam(device)?;
         trainer.set_weights(&self.weights(device)?)?;
         trainer.adam = adam;
         Ok(())

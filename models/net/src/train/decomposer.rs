@@ -8,6 +8,7 @@ use dvp_core::{Image, Real};
 
 use super::gradients::{cut, length};
 use super::schedule::Schedule;
+use super::stored::set_values;
 use crate::decompose::{Decomposer, DecomposerConfig, PartsOf, Terms};
 use crate::error::NetError;
 use crate::initial::initial_weights;
@@ -79,10 +80,7 @@ impl<B: Backend, T: Real> DecomposerTrainer<B, T> {
     /// [`ParametersError::Missing`](dvp_core::tensor::ParametersError::Missing) if the decomposer has none of that name,
     /// [`ParametersError::Dims`](dvp_core::tensor::ParametersError::Dims). Weights named before that one are then taken.
     pub fn set_weights(&mut self, weights: &Parameters<B>) -> Result<(), NetError> {
-        for (name, tensor) in weights.iter() {
-            self.parameters.set(name, &tensor.cast(T::DTYPE)?)?;
-        }
-        Ok(())
+        set_values(&mut self.parameters, weights, T::DTYPE)
     }
 
     /// Steps made.

@@ -3,8 +3,7 @@
 //! Tensors: `model.*`, `adam.mean.*`, `adam.square.*`; the rest as [`Checkpoint`](super::Checkpoint) has it.
 
 use dvp_core::Real;
-use dvp_core::optim::AdamSettings;
-use dvp_core::tensor::{Adam, Backend, Parameters};
+use dvp_core::tensor::{Backend, Parameters};
 
 use super::decomposer::DecomposerTrainer;
 use super::stored::Stored;
@@ -29,11 +28,7 @@ impl DecomposerFile {
         resumable: bool,
         about: &str,
     ) -> Result<Self, NetError> {
-        let mut stored = Stored::new(trainer.config().clone(), trainer.adam.steps(), about);
-        stored.take("model", trainer.parameters())?;
-        if resumable {
-            stored.take("adam", &trainer.adam.moments()?)?;
-        }
+        let stored = Stored::of(trainer.config().clone(), (trainer.parameters(), &trainer.adam), resumable, about)?;
         Ok(Self { stored })
     }
 
@@ -76,7 +71,7 @@ impl DecomposerFile {
     /// # Errors
     /// If the framework refuses.
     pub fn weights<B: Backend>(&self, device: &B::Device) -> Result<Parameters<B>, NetError> {
-        self.stored.part("model.", device)
+        self.stored.weights(device)
     }
 
     /// The decomposer, to look with: its weights are constants.
@@ -100,11 +95,7 @@ impl DecomposerFile {
         if self.config() != trainer.config() {
             return Err(NetError::Checkpoint("it is of a decomposer of other sizes".into()));
         }
-        let moments = self.stored.part::<B>("adam.", device)?;
-        if moments.is_empty() && self.stored.steps > 0 {
-            return Err(NetError::Checkpoint("it holds no optimizer; give it as --start".into()));
-        }
-        let adam = Adam::resume(AdamSettings::default(), self.stored.steps, &moments)?;
+        let adam = self.stored.adam(device)?;
         trainer.set_weights(&self.weights(device)?)?;
         trainer.adam = adam;
         Ok(())

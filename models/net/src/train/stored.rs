@@ -3,7 +3,9 @@
 //! One safetensors file. Sizes and words are JSON in the file's metadata, with a checksum over all numbers: a damaged file is
 //! never taken for a model.
 
-use dvp_core::tensor::{Backend, Host, HostDevice, Parameters, Tensor, TensorError, safetensors_note};
+use dvp_core::optim::AdamSettings;
+use dvp_core::real::DType;
+use dvp_core::tensor::{Adam, Backend, Host, HostDevice, Parameters, Tensor, TensorError, safetensors_note};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
@@ -34,13 +36,23 @@ pub(super) struct Stored<C> {
 }
 
 impl<C: Clone + Serialize + DeserializeOwned> Stored<C> {
-    /// A file without a tensor.
-    pub(super) fn new(config: C, steps: u32, about: &str) -> Self {
-        Self { config, steps, about: about.to_owned(), tensors: Parameters::new() }
+    /// A copy of a trainer's weights; with its optimizer if `resumable`.
+    pub(super) fn of<B: Backend>(
+        config: C,
+        (parameters, adam): (&Parameters<B>, &Adam<B>),
+        resumable: bool,
+        about: &str,
+    ) -> Result<Self, NetError> {
+        let mut stored = Self { config, steps: adam.steps(), about: about.to_owned(), tensors: Parameters::new() };
+        stored.take("model", parameters)?;
+        if resumable {
+            stored.take("adam", &adam.moments()?)?;
+        }
+        Ok(stored)
     }
 
     /// Takes a copy of tensors, under a path.
-    pub(super) fn take<B: Backend>(&mut self, path: &str, parameters: &Parameters<B>) -> Result<(), NetError> {
+    fn take<B: Backend>(&mut self, path: &str, parameters: &Parameters<B>) -> Result<(), NetError> {
         for (name, tensor) in parameters.iter() {
             self.tensors.insert(format!("{path}.{name}"), &to_host(tensor)?)?;
         }
@@ -71,8 +83,22 @@ impl<C: Clone + Serialize + DeserializeOwned> Stored<C> {
         Ok(Self { config, steps, about, tensors })
     }
 
+    /// The weights by the names of the model.
+    pub(super) fn weights<B: Backend>(&self, device: &B::Device) -> Result<Parameters<B>, NetError> {
+        self.part("model.", device)
+    }
+
+    /// The optimizer as it was.
+    pub(super) fn adam<B: Backend>(&self, device: &B::Device) -> Result<Adam<B>, NetError> {
+        let moments = self.part::<B>("adam.", device)?;
+        if moments.is_empty() && self.steps > 0 {
+            return Err(NetError::Checkpoint("it holds no optimizer; give it as --start".into()));
+        }
+        Ok(Adam::resume(AdamSettings::default(), self.steps, &moments)?)
+    }
+
     /// The tensors under a path, which ends with a dot, by the rest of their names.
-    pub(super) fn part<B: Backend>(&self, path: &str, device: &B::Device) -> Result<Parameters<B>, NetError> {
+    fn part<B: Backend>(&self, path: &str, device: &B::Device) -> Result<Parameters<B>, NetError> {
         let mut part = Parameters::new();
         for (name, tensor) in self.tensors.iter() {
             if let Some(name) = name.strip_prefix(path) {
@@ -81,6 +107,18 @@ impl<C: Clone + Serialize + DeserializeOwned> Stored<C> {
         }
         Ok(part)
     }
+}
+
+/// Gives parameters the values of those of the same name; the others stay.
+pub(super) fn set_values<B: Backend>(
+    parameters: &mut Parameters<B>,
+    values: &Parameters<B>,
+    dtype: DType,
+) -> Result<(), NetError> {
+    for (name, tensor) in values.iter() {
+        parameters.set(name, &tensor.cast(dtype)?)?;
+    }
+    Ok(())
 }
 
 fn to_host<B: Backend>(tensor: &Tensor<B>) -> Result<Tensor<Host>, TensorError> {

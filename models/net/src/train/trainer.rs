@@ -12,6 +12,7 @@ use super::gradients::{Gradients, cut, length};
 use super::judge::Judge;
 use super::mode::Mode;
 use super::schedule::Schedule;
+use super::stored::set_values;
 use crate::error::NetError;
 use crate::initial::initial_weights;
 use crate::layers::Phase;
@@ -115,10 +116,7 @@ impl<B: Backend, T: Real> Trainer<B, T> {
     /// [`ParametersError::Dims`](dvp_core::tensor::ParametersError::Dims).
     #[inline(never)]
     pub fn set_weights(&mut self, weights: &Parameters<B>) -> Result<(), NetError> {
-        for (name, tensor) in weights.iter() {
-            self.parameters.set(name, &tensor.cast(T::DTYPE)?)?;
-        }
-        Ok(())
+        set_values(&mut self.parameters, weights, T::DTYPE)
     }
 
     /// Steps made.

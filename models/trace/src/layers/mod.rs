@@ -128,11 +128,11 @@ pub fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<Color>) 
     }
     // Thin lines were taken out of what they lie on.
     let lines = partition.lines.iter().filter_map(|line| Some((line.color, fit_thin(&line.chain, &ruler)?)));
-    layers.extend(lines.map(|(color, stroke)| {
+    layers.extend(lines.map(|(color, (stroke, misfit))| {
         let points: usize = stroke.rings.iter().map(|ring| ring.points.len()).sum();
         // Where it passes and how wide it is can be seen, where it ends less so.
         let bits = (2 * points - 1) as f64 * ruler.number(tuning::THIN_SIGMA) + 2.0 * ruler.number(tuning::CRACK_SIGMA);
-        Layer { color: partition.rgb(color), form: Form::Stroked(stroke), bits }
+        Layer { color: partition.rgb(color), form: Form::Stroked(stroke), bits: bits + misfit }
     }));
     Layers { background: partition.rgb(partition.color(background)), layers }
 }

@@ -76,7 +76,6 @@ fn partition(size: [usize; 2], pixels: Vec<[f32; 3]>, mixed: Mixed, labels: Vec<
         sigma: tuning::ROUNDING,
         is_hard,
         unexplained,
-        has_crossings: false,
     }
 }
 

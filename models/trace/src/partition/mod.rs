@@ -67,8 +67,6 @@ pub struct Partition {
     pub is_hard: bool,
     /// Share of the pixels that no mixture of the palette explains, [0, 1].
     pub unexplained: f64,
-    /// Whether lines that have pixels of their own were taken out because they cross.
-    pub has_crossings: bool,
 }
 
 /// Why a picture was not cut into faces.
@@ -92,17 +90,14 @@ impl Partition {
     /// # Errors
     /// [`NoPartition`] if it is no drawing of flat colors.
     pub fn of(image: &ImageView<'_, f32>, coded: bool) -> Result<Self, NoPartition> {
-        Self::with_lines(image, coded, &[tuning::THIN_WIDTH, tuning::CROSSING_WIDTH])
+        Ok(Self::readings(image, coded)?.0)
     }
 
-    /// The same with lines that cross as faces, if they have pixels of their own; none if there are no such lines.
-    #[must_use]
-    pub fn without_crossings(&self, image: &ImageView<'_, f32>) -> Option<Self> {
-        self.has_crossings.then(|| Self::with_lines(image, self.coded, &[tuning::THIN_WIDTH]).ok()).flatten()
-    }
-
-    /// Cuts a picture into faces, after lines up to each of some widths (pixels) were taken out of it.
-    fn with_lines(image: &ImageView<'_, f32>, coded: bool, widths: &[f64]) -> Result<Self, NoPartition> {
+    /// The ways to cut a picture into faces: lines that cross taken out of it, and, if there are such with pixels of their own, as faces.
+    ///
+    /// # Errors
+    /// As [`Self::of`].
+    pub fn readings(image: &ImageView<'_, f32>, coded: bool) -> Result<(Self, Option<Self>), NoPartition> {
         let size = [image.size().width(), image.size().height()];
         let mut pixels: Vec<[f32; 3]> = (0..image.size().pixels()).map(|i| image.pixel(i)).collect();
         let noise = flat::Noise::of(&pixels, size, coded)?;
@@ -123,32 +118,35 @@ impl Partition {
             return Err(NoPartition::NotFlat { flat: share });
         }
         let mut colors = palette::Palette::of(&flats, &noise)?;
+        let finish = |pixels: Vec<[f32; 3]>, flats: &flat::Flats, colors, lines| {
+            let mixed = mix::explain(&pixels, size, flats, colors, &noise);
+            Self { coded: noise.is_coded(), sigma: noise.sigma, lines, ..faces::cut(size, pixels, mixed) }
+        };
         let mut lines = Vec::new();
-        let mut has_crossings = false;
-        for &widest in widths {
+        let mut as_faces = None;
+        for widest in [tuning::THIN_WIDTH, tuning::CROSSING_WIDTH] {
             // Lines that cross have two colors, and lie on a third.
             if widest > tuning::THIN_WIDTH && colors.colors.len() < 3 {
                 continue;
             }
-            let (taken, is_changed) = take_lines(&mut pixels, size, &flats, &colors, &noise, widest);
+            let found = Found::of(&mut pixels, size, &flats, &colors, &noise, widest);
+            if found.is_mended {
+                flats = find(&pixels);
+                colors = palette::Palette::of(&flats, &noise)?;
+            }
             // What shows the ground through something is a part of it either way.
-            let is_on_ground = |line: &ThinLine| line.color != colors.colors[0];
-            has_crossings |= widest > tuning::THIN_WIDTH && taken.iter().any(is_on_ground);
-            // Wide lines may pass under thin ones.
-            lines.splice(0..0, taken);
-            if is_changed {
+            let is_on_ground = |(line, _): &(ThinLine, chain::Chain)| line.color != found.ground;
+            if widest > tuning::THIN_WIDTH && found.lines.iter().any(is_on_ground) {
+                as_faces = Some(finish(pixels.clone(), &flats, colors.clone(), lines.clone()));
+            }
+            if !found.lines.is_empty() {
+                // Wide lines may pass under thin ones.
+                lines.splice(0..0, found.erase(&mut pixels, size));
                 flats = find(&pixels);
                 colors = palette::Palette::of(&flats, &noise)?;
             }
         }
-        let mixed = mix::explain(&pixels, size, &flats, colors, &noise);
-        Ok(Self {
-            coded: noise.is_coded(),
-            sigma: noise.sigma,
-            lines,
-            has_crossings,
-            ..faces::cut(size, pixels, mixed)
-        })
+        Ok((finish(pixels, &flats, colors, lines), as_faces))
     }
 
     /// Color of a face.
@@ -177,29 +175,50 @@ impl Partition {
     }
 }
 
-/// Mends seams, and takes lines up to some width (pixels) out of the picture: the lines, and whether any pixel is another than before.
-fn take_lines(
-    pixels: &mut [[f32; 3]],
-    size: [usize; 2],
-    flats: &flat::Flats,
-    colors: &palette::Palette,
-    noise: &flat::Noise,
-    widest: f64,
-) -> (Vec<ThinLine>, bool) {
-    let flat = cross::thick(&flats.regions, size[0], &colors.of_region, widest as u16 + 1);
-    let (contrast, white) = (noise.contrast, if noise.is_coded() { coded::weighted([1.0; 3]) } else { [1.0; 3] });
-    let mut open = mix::open(pixels, size, &flat, &colors.colors, noise);
-    let noise = f64::from(noise.mixed);
-    let is_mended = seam::mend(pixels, size, &flat, &mut open, &colors.colors, noise);
-    let canvas =
-        cross::Canvas { pixels, size, flat: &flat, open: &open, noise, contrast, white: white.map(f64::from), widest };
-    let mut lines = thin::find(&canvas, &colors.colors);
-    if widest > tuning::THIN_WIDTH {
-        lines = thin::crossing_lines(lines, colors.colors[0]);
+/// Lines in a picture, and what is known of the pixels that they leave.
+struct Found {
+    lines: Vec<(ThinLine, chain::Chain)>,
+    /// Pixels that no mixture of flat colors nearby explains, and those that are flat.
+    open: Vec<bool>,
+    known: Vec<bool>,
+    /// Colors of flat pixels when the lines were found, and the one behind everything.
+    palette: Vec<Color>,
+    ground: Color,
+    /// Whether seams were mended: pixels are others than before.
+    is_mended: bool,
+}
+
+impl Found {
+    /// Mends seams, and finds lines up to some width, pixels.
+    fn of(
+        pixels: &mut [[f32; 3]],
+        size: [usize; 2],
+        flats: &flat::Flats,
+        colors: &palette::Palette,
+        noise: &flat::Noise,
+        widest: f64,
+    ) -> Self {
+        let flat = cross::thick(&flats.regions, size[0], &colors.of_region, widest as u16 + 1);
+        let (contrast, white) = (noise.contrast, if noise.is_coded() { coded::weighted([1.0; 3]) } else { [1.0; 3] });
+        let mut open = mix::open(pixels, size, &flat, &colors.colors, noise);
+        let noise = f64::from(noise.mixed);
+        let is_mended = seam::mend(pixels, size, &flat, &mut open, &colors.colors, noise);
+        let white = white.map(f64::from);
+        let canvas = cross::Canvas { pixels, size, flat: &flat, open: &open, noise, contrast, white, widest };
+        let mut lines = thin::find(&canvas, &colors.colors);
+        let ground = colors.colors[0];
+        if widest > tuning::THIN_WIDTH {
+            lines = thin::crossing_lines(lines, ground);
+        }
+        let known = flat.iter().map(|&color| color != u16::MAX).collect();
+        Self { lines, open, known, palette: colors.colors.clone(), ground, is_mended }
     }
-    let known = flat.iter().map(|&color| color != u16::MAX).collect();
-    let mut eraser = erase::Eraser { pixels, size, open: &open, known, palette: &colors.colors };
-    eraser.erase(lines.iter().map(|(_, chain)| chain));
-    let is_changed = is_mended || !lines.is_empty();
-    (lines.into_iter().map(|(line, _)| line).collect(), is_changed)
+
+    /// Takes the lines out of the picture.
+    fn erase(self, pixels: &mut [[f32; 3]], size: [usize; 2]) -> impl Iterator<Item = ThinLine> {
+        let Self { lines, open, known, palette, .. } = self;
+        let mut eraser = erase::Eraser { pixels, size, open: &open, known, palette: &palette };
+        eraser.erase(lines.iter().map(|(_, chain)| chain));
+        lines.into_iter().map(|(line, _)| line)
+    }
 }

@@ -49,7 +49,7 @@ pub(super) fn grow(
     for k in order {
         let own = color_of(&chains[k]);
         for at_finish in [true, false] {
-            let Some(mut tip) = Tip::of(&chains[k], at_finish) else { continue };
+            let Some(tip) = Tip::of(&chains[k], at_finish) else { continue };
             let ground = palette[tip.ground as usize];
             let center = |cross: &Cross, width: f64| {
                 let is_short = cross.run[1] - cross.run[0] <= LONGEST;
@@ -63,11 +63,10 @@ pub(super) fn grow(
                 let pairs = others.filter_map(|&other| canvas.pair(along, cross, [ground, colors[own], colors[other]]));
                 pairs.min_by(|a, b| a.1.total_cmp(&b.1)).and_then(|(seen, _)| seen.center(width))
             };
-            while let Some(mark) = tip.next(canvas, along, crosses, (chains[k].colors, ground), center) {
+            while let Some(mark) = tip.next(canvas, along, &chains[k], crosses, ground, center) {
                 if !taken.insert((mark.cross.line, mark.cross.run[0], own)) {
                     break;
                 }
-                tip.push(&mark);
                 let at = if at_finish { chains[k].marks.len() } else { 0 };
                 chains[k].marks.insert(at, mark);
             }
@@ -75,70 +74,84 @@ pub(super) fn grow(
     }
 }
 
-/// The end of a chain: where it goes on.
+/// Where a chain goes at one of its ends.
+struct Course {
+    /// The last window: its line, and the middle in it.
+    line: f64,
+    center: f64,
+    /// +1 if windows beyond the end have greater lines, else -1.
+    step: f64,
+    /// By how much the middle moves from window to window.
+    slope: f64,
+}
+
+impl Course {
+    fn of(chain: &Chain, at_finish: bool) -> Option<Self> {
+        let n = chain.marks.len();
+        let reach = tuning::PAIR_REACH.min(n);
+        let ends = if at_finish { [n - 1, n - reach] } else { [0, reach - 1] };
+        let [[line, center], [inner_line, inner]] = ends.map(|k| {
+            let mark = &chain.marks[k];
+            [mark.cross.line as f64, mark.point.dot(mark.axis())]
+        });
+        let lines = line - inner_line;
+        let slope = (center - inner) / lines.abs();
+        (lines != 0.0).then_some(Self { line, center, step: lines.signum(), slope })
+    }
+
+    /// How much longer windows across a line are than it is wide.
+    fn stretch(&self) -> f64 {
+        (1.0 + self.slope * self.slope).sqrt()
+    }
+}
+
+/// What the line is that goes on from an end of a chain.
 struct Tip {
-    /// Windows (their line, and the middle in them) at the end, the last one last.
-    last: Vec<[f64; 2]>,
+    at_finish: bool,
     /// Width of the line, pixels: across it, not along windows.
     width: f64,
     /// The palette's color of what it lies on.
     ground: u16,
-    /// +1 if windows beyond the end have greater lines, else -1.
-    step: f64,
 }
 
 impl Tip {
     fn of(chain: &Chain, at_finish: bool) -> Option<Self> {
-        let place = |mark: &Mark| [mark.cross.line as f64, mark.point.dot(mark.axis())];
+        let stretch = Course::of(chain, at_finish)?.stretch();
         let n = chain.marks.len();
-        let [ground, other] = chain.marks[if at_finish { n - 1 } else { 0 }].cross.sides;
-        if ground != other {
-            return None;
-        }
-        let of_end: Vec<&Mark> = if at_finish {
-            chain.marks[n - tuning::PAIR_REACH.min(n)..].iter().collect()
-        } else {
-            chain.marks[..tuning::PAIR_REACH.min(n)].iter().rev().collect()
-        };
-        let last: Vec<[f64; 2]> = of_end.iter().map(|mark| place(mark)).collect();
-        let slope = slope(&last)?;
-        let mut widths: Vec<f64> = of_end.iter().map(|mark| mark.width / (1.0 + slope * slope).sqrt()).collect();
+        let reach = tuning::PAIR_REACH.min(n);
+        let (of_end, last) = if at_finish { (&chain.marks[n - reach..], n - 1) } else { (&chain.marks[..reach], 0) };
+        let [ground, other] = chain.marks[last].cross.sides;
+        let mut widths: Vec<f64> = of_end.iter().map(|mark| mark.width / stretch).collect();
         widths.sort_by(f64::total_cmp);
-        let step = (last.last()?[0] - last.first()?[0]).signum();
-        Some(Self { width: widths[widths.len() / 2], last, ground, step })
+        (ground == other).then_some(Self { at_finish, width: widths[widths.len() / 2], ground })
     }
 
-    fn push(&mut self, mark: &Mark) {
-        self.last.remove(0);
-        self.last.push([mark.cross.line as f64, mark.point.dot(mark.axis())]);
-    }
-
-    /// The next window that the line shares with another one.
+    /// The next window of the line that it shares with another one, or fills alone.
     fn next(
         &self,
         canvas: &Canvas<'_>,
         along: Along,
+        chain: &Chain,
         crosses: &[Vec<Cross>],
-        (own, ground): (u128, Color),
+        ground: Color,
         center_of: impl Fn(&Cross, f64) -> Option<f64>,
     ) -> Option<Mark> {
-        let slope = slope(&self.last)?;
+        let course = Course::of(chain, self.at_finish)?;
         // Where it is steeper windows along the other axis read it.
-        if slope.abs() > tuning::PAIR_SLOPE {
+        if course.slope.abs() > tuning::PAIR_SLOPE {
             return None;
         }
-        let width = self.width * (1.0 + slope * slope).sqrt();
-        let [last, center] = *self.last.last()?;
+        let width = self.width * course.stretch();
         for missing in 0..(2.0 * canvas.widest) as usize {
-            let line = last + self.step * (1 + missing) as f64;
+            let ahead = (1 + missing) as f64;
+            let line = course.line + course.step * ahead;
             if line < 0.0 {
                 return None;
             }
-            let predicted = center + slope * (line - last).abs();
-            let line = line as usize;
+            let (line, predicted) = (line as usize, course.center + course.slope * ahead);
             let run = canvas.run_around(along, line, predicted, (self.ground, ground))?;
             let cross = Cross { line, run, sides: [self.ground; 2], colors: 0 };
-            if crosses[line].iter().any(|single| single.run == cross.run && single.colors & own != 0) {
+            if crosses[line].iter().any(|single| single.run == cross.run && single.colors & chain.colors != 0) {
                 return None;
             }
             let Some(center) = center_of(&cross, width) else { continue };
@@ -150,12 +163,6 @@ impl Tip {
         }
         None
     }
-}
-
-/// By how much the middle moves from window to window.
-fn slope(last: &[[f64; 2]]) -> Option<f64> {
-    let ([line, center], [other_line, other]) = (*last.first()?, *last.last()?);
-    (line != other_line).then(|| (other - center) / (other_line - line).abs())
 }
 
 /// By how much the width of a line may differ from window to window, pixels.

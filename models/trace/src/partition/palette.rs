@@ -8,7 +8,7 @@ use super::{Color, NoPartition};
 use crate::tuning;
 
 /// The colors, and which of them each flat region has.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Palette {
     pub(super) colors: Vec<Color>,
     /// Color of every flat region.

@@ -233,7 +233,7 @@ fn thin_lines() {
     });
     let chain = ThinChain { samples: samples.collect(), ..ThinChain::default() };
     assert!(fit_thin(&ThinChain::default(), &RULER).is_none());
-    let strokes: Vec<_> = fit_thin(&chain, &RULER).into_iter().collect();
+    let strokes: Vec<_> = fit_thin(&chain, &RULER).into_iter().map(|(stroke, _)| stroke).collect();
     let [stroke] = &strokes[..] else { panic!("{strokes:?}") };
     assert!((stroke.width - 1.2).abs() < 0.01, "{stroke:?}");
     assert_eq!((stroke.cap, stroke.rings[0].points.len()), (Cap::Butt, 2));

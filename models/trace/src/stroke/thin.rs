@@ -37,24 +37,27 @@ pub struct ThinChain {
     pub is_closed: bool,
 }
 
-/// The stroke along a chain of at least three samples: its center line through them, its width their mean across the line.
+/// The stroke along a chain of at least three samples, and the bits by which it misses them: its center line through them, its width their
+/// mean across the line.
 #[must_use]
-pub fn fit_thin(chain: &ThinChain, ruler: &Ruler) -> Option<Stroke<f64>> {
+pub fn fit_thin(chain: &ThinChain, ruler: &Ruler) -> Option<(Stroke<f64>, f64)> {
     let thin = &chain.samples[..];
     if thin.len() < 3 {
         return None;
     }
     let mut samples: Vec<_> =
         thin.iter().map(|thin| Sample { point: thin.point, axis: thin.axis, sigma: thin.sigma }).collect();
-    let mut ring = if chain.is_closed {
+    let (mut ring, misfit) = if chain.is_closed {
         let area: f64 =
             (0..samples.len()).map(|k| samples[k].point.cross(samples[(k + 1) % samples.len()].point)).sum();
         if area < 0.0 {
             samples.reverse();
         }
-        fit_closed(&RingSamples { runs: alloc::vec![samples.clone()], closed: true }, ruler)?.shape.ring()
+        let outline = fit_closed(&RingSamples { runs: alloc::vec![samples.clone()], closed: true }, ruler)?;
+        (outline.shape.ring(), outline.misfit)
     } else {
-        fit_open(&samples, ruler)?.path
+        let line = fit_open(&samples, ruler)?;
+        (line.path, line.misfit)
     };
     let line = pieces(&ring);
     let (mut sum, mut weights) = (0.0, 0.0);
@@ -76,5 +79,5 @@ pub fn fit_thin(chain: &ThinChain, ruler: &Ruler) -> Option<Stroke<f64>> {
         move_tip(&mut ring, at_finish, from + out * reach);
     }
     let join = Join::Miter { limit: MITER_LIMIT };
-    Stroke::new(alloc::vec![ring], sum / weights, Cap::Butt, join).ok()
+    Some((Stroke::new(alloc::vec![ring], sum / weights, Cap::Butt, join).ok()?, misfit))
 }

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result, bail};
 use dvp_core::tensor::{Backend, Host, HostDevice, Parameters};
+use dvp_net::train::Schedule;
 
 use super::settings::{BackendName, Settings};
 use super::store::Store;
@@ -70,6 +71,14 @@ pub(super) fn fitting<B: Backend>(
     Ok(fitting)
 }
 
+/// The rates of a run of so many steps.
+pub(super) fn schedule(settings: &Settings, steps: u64) -> Schedule {
+    let Settings { learning_rate, warm_up, cosine, .. } = settings;
+    Schedule::constant(learning_rate.unwrap_or(5e-4))
+        .with_warm_up(warm_up.unwrap_or(0))
+        .with_end(cosine.unwrap_or(true).then_some(steps))
+}
+
 /// Numbers of a run that are set: [`Settings::complete`] leaves none open.
 pub(super) struct Numbers {
     pub(super) steps: u64,
@@ -89,6 +98,11 @@ impl Numbers {
             validation: settings.validation.unwrap_or(0),
             seed: settings.seed.unwrap_or(0),
         }
+    }
+
+    /// How much was done, in words.
+    pub(super) fn made(&self, steps: u64, seconds: f64) -> String {
+        format!("{steps} steps of {} images, {seconds:.0} s", self.batch)
     }
 
     /// The same, refused where nothing can be done with them.

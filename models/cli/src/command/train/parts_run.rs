@@ -10,11 +10,11 @@ use dvp_core::tensor::Backend;
 use dvp_core::{Image, ImageSize};
 use dvp_net::decompose::DecomposerConfig;
 use dvp_net::scene_steps::SceneSteps;
-use dvp_net::train::{Batch, DecomposerFile, DecomposerTrainer, Schedule, Source};
+use dvp_net::train::{Batch, DecomposerFile, DecomposerTrainer, Source};
 
 use super::curves::{Curves, Entry};
 use super::data::Data;
-use super::job::{Job, LINE_EVERY, Numbers, Recent, fitting};
+use super::job::{Job, LINE_EVERY, Numbers, Recent, fitting, schedule};
 use super::settings::Settings;
 use super::store::Store;
 use crate::command::sheet::{of_parts, sheet};
@@ -54,10 +54,8 @@ impl PartsRun {
     }
 
     fn trainer<B: Backend>(&self, device: &B::Device, steps: u64) -> Result<DecomposerTrainer<B, f32>> {
-        let Settings { learning_rate, warm_up, cosine, clip_norm, seed, .. } = &self.settings;
-        let schedule = Schedule::constant(learning_rate.unwrap_or(5e-4))
-            .with_warm_up(warm_up.unwrap_or(0))
-            .with_end(cosine.unwrap_or(true).then_some(steps));
+        let Settings { clip_norm, seed, .. } = &self.settings;
+        let schedule = schedule(&self.settings, steps);
         let mut trainer = DecomposerTrainer::new(self.config.clone(), schedule, seed.unwrap_or(1), device.clone())?;
         trainer.clip_norm = clip_norm.filter(|norm| *norm > 0.0);
         Ok(trainer)
@@ -88,23 +86,6 @@ impl PartsRun {
         write_atomic(&path, &encode_png(sheet.view(), BitDepth::Eight)?)?;
         Ok([mean(errors.into_iter()), mean(indices.into_iter())])
     }
-
-    fn save<B: Backend>(
-        &self,
-        store: &Store,
-        trainer: &DecomposerTrainer<B, f32>,
-        curves: &Curves,
-        improved: bool,
-    ) -> Result<()> {
-        let about = serde_json::to_string(&self.settings)?;
-        curves.write(&store.path("losses.csv"), &store.path("losses.svg"))?;
-        if improved {
-            let best = DecomposerFile::of(trainer, false, &about)?;
-            write_atomic(&store.path("best.safetensors"), &best.to_bytes()?)?;
-        }
-        // Last: a checkpoint stands for all that was written before it.
-        store.save(trainer.steps(), &DecomposerFile::of(trainer, true, &about)?.to_bytes()?)
-    }
 }
 
 impl Job for PartsRun {
@@ -129,6 +110,7 @@ impl Job for PartsRun {
         let (clock, before) = (Instant::now(), curves.seconds());
         let bar = progress::bar(numbers.steps, trainer.steps());
         let mut recent = Recent::default();
+        let about = serde_json::to_string(&self.settings)?;
         while trainer.steps() < numbers.steps {
             let batch = self.data.batch(trainer.steps(), numbers.batch, &self.painter)?;
             let step = trainer.step(&batch.images)?;
@@ -143,16 +125,16 @@ impl Job for PartsRun {
                 curves.push(&Entry { step: step.number, loss, terms, gradient, rate, seconds, seen });
                 bar.set_message(format!("loss {loss:.4}"));
                 if save {
-                    self.save(store, &trainer, &curves, improved)?;
+                    let file = |resumable| Ok(DecomposerFile::of(&trainer, resumable, &about)?.to_bytes()?);
+                    store.keep(step.number, &curves, improved, file)?;
                 }
             }
             bar.set_position(step.number);
         }
         bar.finish_and_clear();
+        let (parameters, seconds) = (trainer.parameters().value_count(), before + clock.elapsed().as_secs_f64());
+        writeln!(console.out, "{parameters} numbers, {}", numbers.made(trainer.steps(), seconds))?;
         let best = curves.best().unwrap_or(f64::NAN);
-        let (parameters, steps) = (trainer.parameters().value_count(), trainer.steps());
-        let seconds = before + clock.elapsed().as_secs_f64();
-        writeln!(console.out, "{parameters} numbers, {steps} steps of {} images, {seconds:.0} s", numbers.batch)?;
         writeln!(console.out, "mean absolute error on {} validation images: {best:.5}", held_out.images.len())?;
         writeln!(console.out, "{}", store.path("best.safetensors").display())?;
         Ok(Outcome::Done)

@@ -14,12 +14,12 @@ use dvp_net::error::NetError;
 use dvp_net::model::{Model, ModelConfig};
 use dvp_net::propose::TRAINED_SIDE;
 use dvp_net::scene_steps::SceneSteps;
-use dvp_net::train::{Batch, Checkpoint, Judge, Mode, Schedule, Source, Trainer};
+use dvp_net::train::{Batch, Checkpoint, Judge, Mode, Source, Trainer};
 
 use super::curves::{Curves, Entry};
 use super::data::{Data, reread};
 use super::features::FeatureCache;
-use super::job::{Job, LINE_EVERY, Numbers, Recent, fitting};
+use super::job::{Job, LINE_EVERY, Numbers, Recent, fitting, schedule};
 use super::settings::Settings;
 use super::store::Store;
 use crate::command::options::BankChoice;
@@ -103,6 +103,7 @@ impl Job for Run {
         let (clock, before) = (Instant::now(), curves.seconds());
         let bar = progress::bar(numbers.steps, trainer.steps());
         let mut recent = Recent::default();
+        let about = serde_json::to_string(&self.settings)?;
         while trainer.steps() < numbers.steps {
             let mut batch = self.data.batch(trainer.steps(), numbers.batch, &self.painter)?;
             if let Some(model) = &self.preliminary {
@@ -131,16 +132,16 @@ impl Job for Run {
                 });
                 bar.set_message(format!("loss {loss:.4}"));
                 if save {
-                    self.save(store, &trainer, &curves, improved)?;
+                    let file = |resumable| Ok(Checkpoint::of(&trainer, resumable, &about)?.to_bytes()?);
+                    store.keep(step.number, &curves, improved, file)?;
                 }
             }
             bar.set_position(step.number);
         }
         bar.finish_and_clear();
+        let (parameters, seconds) = (trainer.parameters().value_count(), before + clock.elapsed().as_secs_f64());
+        writeln!(console.out, "{parameters} numbers, {}", numbers.made(trainer.steps(), seconds))?;
         let best = curves.best().unwrap_or(f64::NAN);
-        let (parameters, steps) = (trainer.parameters().value_count(), trainer.steps());
-        let seconds = before + clock.elapsed().as_secs_f64();
-        writeln!(console.out, "{parameters} numbers, {steps} steps of {} images, {seconds:.0} s", numbers.batch)?;
         writeln!(console.out, "image loss on {} validation images: {best:.5}", held_out.images.len())?;
         writeln!(console.out, "{}", store.path("best.safetensors").display())?;
         Ok(Outcome::Done)
@@ -160,7 +161,7 @@ impl Run {
     }
 
     fn trainer<B: Backend>(&self, device: &B::Device, steps: u64) -> Result<Trainer<B, f32>> {
-        let Settings { learning_rate, warm_up, cosine, clip_norm, threads, seed, .. } = &self.settings;
+        let Settings { clip_norm, threads, seed, .. } = &self.settings;
         let judge = Judge {
             mode: self.mode,
             image_loss: PixelLoss::Mae,
@@ -168,9 +169,7 @@ impl Run {
             steps: self.painter.clone(),
             bank: self.bank.clone(),
         };
-        let schedule = Schedule::constant(learning_rate.unwrap_or(5e-4))
-            .with_warm_up(warm_up.unwrap_or(0))
-            .with_end(cosine.unwrap_or(true).then_some(steps));
+        let schedule = schedule(&self.settings, steps);
         let (config, bank, seed) = (self.config.clone(), self.bank.clone(), seed.unwrap_or(1));
         let mut trainer = Trainer::new(config, bank, judge, schedule, seed, device.clone())?;
         trainer.clip_norm = clip_norm.filter(|norm| *norm > 0.0);
@@ -193,23 +192,6 @@ impl Run {
         let path = store.path("samples").join(format!("{:08}.png", trainer.steps()));
         write_atomic(&path, &encode_png(grid.view(), BitDepth::Eight)?)?;
         Ok([image, parameters])
-    }
-
-    fn save<B: Backend>(
-        &self,
-        store: &Store,
-        trainer: &Trainer<B, f32>,
-        curves: &Curves,
-        improved: bool,
-    ) -> Result<()> {
-        let about = serde_json::to_string(&self.settings)?;
-        curves.write(&store.path("losses.csv"), &store.path("losses.svg"))?;
-        if improved {
-            let best = Checkpoint::of(trainer, false, &about)?;
-            write_atomic(&store.path("best.safetensors"), &best.to_bytes()?)?;
-        }
-        // Last: a checkpoint stands for all that was written before it.
-        store.save(trainer.steps(), &Checkpoint::of(trainer, true, &about)?.to_bytes()?)
     }
 
     /// Keeps the batch of a step that failed.

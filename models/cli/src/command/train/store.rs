@@ -15,6 +15,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail};
 use dvp_net::error::NetError;
 
+use super::curves::Curves;
 use crate::command::Console;
 use crate::format::write_atomic;
 
@@ -45,8 +46,25 @@ impl Store {
         Ok(())
     }
 
+    /// Writes all that a step leaves: the curves, the weights if they are the best so far, and the checkpoint. `file`: their bytes, with
+    /// what `--resume` needs or without.
+    pub(super) fn keep(
+        &self,
+        step: u64,
+        curves: &Curves,
+        improved: bool,
+        file: impl Fn(bool) -> Result<Vec<u8>>,
+    ) -> Result<()> {
+        curves.write(&self.path("losses.csv"), &self.path("losses.svg"))?;
+        if improved {
+            write_atomic(&self.path("best.safetensors"), &file(false)?)?;
+        }
+        // Last: a checkpoint stands for all that was written before it.
+        self.save(step, &file(true)?)
+    }
+
     /// Writes the checkpoint of a step and removes those that are too old.
-    pub(super) fn save(&self, step: u64, checkpoint: &[u8]) -> Result<()> {
+    fn save(&self, step: u64, checkpoint: &[u8]) -> Result<()> {
         write_atomic(&self.path(&format!("checkpoint-{step:08}.safetensors")), checkpoint)?;
         for old in self.checkpoints()?.iter().rev().skip(KEPT) {
             fs::remove_file(old).with_context(|| format!("{} cannot be removed", old.display()))?;
