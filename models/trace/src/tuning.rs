@@ -208,9 +208,9 @@ pub const MOST_SPECK: usize = 6;
 /// Share of the places along edges that may have mixed pixels in a picture of hard edges: upright ones on whole pixels have none either,
 /// but hardly a whole picture is made of them alone.
 pub const MOST_HARD: f64 = 0.05;
-/// Corners per place along edges from which on edges without mixed pixels are stairs: an upright square of 33 pixels has as many, and an edge that is one
-/// pixel off over 66. With fewer everything is upright and on whole pixels, and known as well as any edge.
-pub const LEAST_STAIRS: f64 = 0.03;
+/// Steps of one pixel per place along edges from which on edges without mixed pixels are stairs: an edge that is one pixel off over 66 has as many.
+/// With fewer everything is upright and on whole pixels, and known as well as any edge.
+pub const LEAST_STAIRS: f64 = 0.015;
 /// Most faces of one color behind the same that are joined pair by pair: more take too long, and are all one thing or none.
 pub const MOST_PAIRED: usize = 5;
 /// Share of stained pixels that is supposed where no edge is long and straight enough to tell: what leaves a doubt.

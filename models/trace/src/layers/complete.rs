@@ -14,7 +14,7 @@ use super::memo::Memo;
 use super::order::Order;
 use super::visible::{self, Hidden};
 use super::walk::{self, Walk};
-use super::{link, raster, sheet};
+use super::{hard, link, raster, sheet};
 use crate::boundary::{Ring, Step};
 use crate::outline::{Outline, OutlineShape};
 use crate::partition::{OUTSIDE, Partition};
@@ -46,6 +46,8 @@ pub(super) struct Completion<'a> {
     pub(super) neighbors: Vec<Vec<u32>>,
     /// What speaks for the order.
     pub(super) order: &'a Order,
+    /// The face that everything lies on.
+    pub(super) background: u32,
     pub(super) ruler: Ruler,
     /// Pairs of faces that were found to be one thing behind another, when the order was.
     pub(super) united: Vec<(u32, u32)>,
@@ -53,6 +55,8 @@ pub(super) struct Completion<'a> {
     pub(super) known: RefCell<BTreeMap<Place, Completed>>,
     /// Outlines that were fitted.
     pub(super) memo: Memo,
+    /// Whether what is painted is known, and outlines are fitted pixel by pixel.
+    pub(super) is_last: bool,
 }
 
 /// Outlines, and bits of their numbers and misfits.
@@ -95,6 +99,12 @@ impl Completion<'_> {
     /// Place of a face in the order of painting.
     pub(super) fn rank(&self, face: u32) -> usize {
         self.rank[face as usize]
+    }
+
+    /// Whether a face that is painted has the color of the background.
+    pub(super) fn shows_background(&self, face: u32) -> bool {
+        let color = |face: u32| self.partition.faces[face as usize].color;
+        self.rank(face) > 0 && color(face) == color(self.background)
     }
 
     /// Whether a face has no flat pixel: it may be a part of anything.
@@ -161,6 +171,18 @@ impl Completion<'_> {
         let completed = self.completed(group, rank);
         self.known.borrow_mut().insert(key, completed.clone());
         completed
+    }
+
+    /// The outlines of a group that get fewest pixels wrong, where edges are hard; `outlines`, those that the order was found with, if they
+    /// still agree with what is seen and others do not.
+    pub(super) fn last(&mut self, group: &[u32], outlines: Vec<Outline>) -> Vec<Outline> {
+        if !self.partition.is_hard {
+            return outlines;
+        }
+        self.is_last = true;
+        let completed = self.completed(group, self.hindmost(group));
+        self.is_last = false;
+        if completed.agrees && completed.outlines.len() == outlines.len() { completed.outlines } else { outlines }
     }
 
     /// [`Completion::outlines`] of a group at place `rank` that was not asked for before.
@@ -251,7 +273,11 @@ impl Completion<'_> {
 
     /// The outlines through samples.
     fn fit(&self, samples: &[RingSamples]) -> Completed {
-        Completed::new(samples.iter().filter_map(|samples| self.memo.fit_closed(samples, &self.ruler)).collect(), true)
+        let fit = |samples| match self.is_last {
+            true => hard::fit(samples, &self.ruler),
+            false => self.memo.fit_closed(samples, &self.ruler),
+        };
+        Completed::new(samples.iter().filter_map(fit).collect(), true)
     }
 
     /// The outlines through samples, within that of the picture where they go around what they leave free: corners around a disk are a

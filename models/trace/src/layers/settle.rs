@@ -61,6 +61,7 @@ pub(super) fn settle(completion: &mut Completion<'_>) {
                 search.completion.paint(&order);
             }
         }
+        is_changed |= search.open(&mut order, &mut total);
         is_changed |= search.unite(&mut order, &mut total);
         is_changed |= search.frame(&mut order, &mut total);
         if !is_changed || search.completion.is_spent() {
@@ -77,6 +78,31 @@ struct Search<'a, 'b> {
 }
 
 impl Search<'_, '_> {
+    /// Takes away what is painted in the color of the background where the rest is shorter with an opening there: of what is seen through
+    /// openings that others hide in part, junctions tell little.
+    fn open(&mut self, order: &mut Vec<u32>, total: &mut Option<f64>) -> bool {
+        let mut is_changed = false;
+        let open: Vec<u32> = order.iter().copied().filter(|&face| self.completion.shows_background(face)).collect();
+        for face in open {
+            if self.completion.is_spent() {
+                break;
+            }
+            let before = *total.get_or_insert_with(|| join::total(self.completion));
+            self.completion.rank[face as usize] = 0;
+            let mut without = order.clone();
+            without.retain(|&other| other != face);
+            self.completion.paint(&without);
+            let after = join::total(self.completion);
+            if after < before - tuning::LEAST_SAVED {
+                *order = without;
+                is_changed = true;
+                *total = Some(after);
+            }
+            self.completion.paint(order);
+        }
+        is_changed
+    }
+
     /// Puts what lies between two faces of one color in front of both where they are shorter as one thing: of what is seen on both sides
     /// of something, and within its openings, no junction need be clear.
     fn unite(&mut self, order: &mut Vec<u32>, total: &mut Option<f64>) -> bool {

@@ -61,7 +61,7 @@ fn partition(size: [usize; 2], pixels: Vec<[f32; 3]>, mixed: Mixed, labels: Vec<
     let edges = (0..labels.len()).filter(is_edge).count();
     let mixed = (0..labels.len()).filter(is_edge).filter(is_mixed).count();
     let is_hard = (mixed as f64) < tuning::MOST_HARD * edges as f64
-        && corners(&labels, size) as f64 > tuning::LEAST_STAIRS * edges as f64;
+        && steps(&labels, size) as f64 > tuning::LEAST_STAIRS * edges as f64;
     Partition {
         size,
         pixels,
@@ -79,16 +79,20 @@ fn partition(size: [usize; 2], pixels: Vec<[f32; 3]>, mixed: Mixed, labels: Vec<
     }
 }
 
-/// Places where one pixel of four is of another face than the other three.
-fn corners(labels: &[u32], [width, height]: [usize; 2]) -> usize {
-    let is_corner = |i: usize| {
-        let four = [i, i + 1, i + width, i + width + 1].map(|i| labels[i]);
-        (0..4).any(|k| {
-            let rest = [four[(k + 1) % 4], four[(k + 2) % 4], four[(k + 3) % 4]];
-            rest[0] == rest[1] && rest[1] == rest[2] && rest[0] != four[k]
-        })
+/// Cracks, one pixel long, that a boundary turns into and back from: steps of the stairs that hard edges are where they are slanted. Upright
+/// shapes on whole pixels have none, however many corners they have.
+fn steps(labels: &[u32], [width, height]: [usize; 2]) -> usize {
+    // Pixels (first, second) on both sides of a crack, in a picture whose rows are `across` pixels apart, and `along` it.
+    let is_step = |first: usize, along: usize, across: usize| {
+        let second = first + across;
+        let [before, behind] = [first - along, first + along].map(|i| [labels[i], labels[i + across]]);
+        let (one, other) = ([labels[first]; 2], [labels[second]; 2]);
+        one != other && (before == one && behind == other || before == other && behind == one)
     };
-    (1..height).flat_map(|y| (1..width).map(move |x| (y - 1) * width + x - 1)).filter(|&i| is_corner(i)).count()
+    let inner = |side: usize| 1..side.saturating_sub(1);
+    let upright = inner(height).flat_map(|y| (1..width).map(move |x| y * width + x - 1));
+    let level = (1..height).flat_map(|y| inner(width).map(move |x| (y - 1) * width + x));
+    upright.filter(|&i| is_step(i, width, 1)).count() + level.filter(|&i| is_step(i, 1, width)).count()
 }
 
 /// Whether, of four pixels around a corner whose diagonals are of two colors, the diagonal from upper left to lower right is
