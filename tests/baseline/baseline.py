@@ -2,6 +2,7 @@
 """What a program makes of every picture of all sets, recorded, and two records held against each other.
 
     baseline.py record OUT.json --dvp EXE [--sets val,fresh,pictures,holes,circles,charts,real] [--quick]
+                [--seed N --count N]                   # other generated scenes, to look at
     baseline.py compare BEFORE.json AFTER.json     # exit code 1 if a picture got worse
     baseline.py show RECORD.json                   # tables of means, as markdown
 
@@ -49,6 +50,8 @@ def arguments():
     record.add_argument("--dvp", type=pathlib.Path, default=HERE / "../../target/release/dvp")
     record.add_argument("--sets", help="of those above, separated by commas")
     record.add_argument("--quick", action="store_true", help="a few pictures of each set")
+    record.add_argument("--seed", type=int, help="of the generated scenes; another than the reported one, to change the fit by")
+    record.add_argument("--count", type=int, help="of the generated scenes per preset")
     record.add_argument("--work", type=pathlib.Path, default=HERE / "../../target/baseline")
     record.add_argument("--shared", type=pathlib.Path, default=HERE / "../../../shared")
     compare = commands.add_parser("compare")
@@ -74,7 +77,7 @@ def record(a):
     dvp = a.dvp.resolve()
     if not dvp.is_file():
         sys.exit(f"{dvp} is not there: build it with cargo build --release -p dvp, or name another with --dvp")
-    place = sets.Place(str(dvp), work, a.shared.resolve(), a.quick)
+    place = sets.Place(str(dvp), work, a.shared.resolve(), a.quick, a.seed or sets.FRESH_SEED, a.count or sets.FRESH_COUNT)
     found = {}
     for name in wanted:
         for title, pictures in sets.ALL[name](place):

@@ -18,10 +18,11 @@ from PIL import Image
 import charts
 import measure
 
-# Seeds and number of the generated scenes. Nobody debugs on them: whoever wants pictures to look at takes other seeds.
-FRESH = {"mds-hr": 915_402_117, "multi-dsprites": 915_402_118}
+# Seed and number of the generated scenes. Nobody debugs on them: whoever wants pictures to look at takes another seed (--seed).
+FRESH_SEED = 915_402_117
 FRESH_COUNT = 256
-NOISE_SEED = 915_402_119
+# Each preset has a seed of its own, and noise the one after them.
+PRESETS = ["mds-hr", "multi-dsprites"]
 FINISHES = ["clean", "noise 0.02", "noise 0.05", "jpeg 80"]
 REAL_SIZES = "128,256,512,400j"
 # Pictures per set with --quick.
@@ -31,8 +32,8 @@ QUICK = 6
 class Place:
     """Where things are, and what was left out."""
 
-    def __init__(self, dvp, work, shared, is_quick):
-        self.dvp, self.work, self.shared, self.is_quick = dvp, work, shared, is_quick
+    def __init__(self, dvp, work, shared, is_quick, seed=FRESH_SEED, count=FRESH_COUNT):
+        self.dvp, self.work, self.shared, self.is_quick, self.seed, self.count = dvp, work, shared, is_quick, seed, count
         self.skipped, self.hashes = [], {}
 
     def skip(self, what, why):
@@ -104,7 +105,7 @@ def val(place):
                                                               ("--npy", floats))
 
 
-def spoil(source, target, finish):
+def spoil(source, target, finish, seed):
     """Copies of pictures with Gaussian noise (standard deviation as a share of white) or as JPEG of quality 80, 4:2:0."""
     target.mkdir(parents=True)
     for number, path in enumerate(sorted(source.glob("*.png"))):
@@ -112,21 +113,24 @@ def spoil(source, target, finish):
         if finish == "jpeg 80":
             Image.fromarray(pixels).save(target / f"{path.stem}.jpg", quality=80, subsampling=2)
         else:
-            noise = np.random.default_rng([NOISE_SEED, number]).normal(0, 255 * float(finish.split()[1]), pixels.shape)
+            noise = np.random.default_rng([seed, number]).normal(0, 255 * float(finish.split()[1]), pixels.shape)
             Image.fromarray(np.clip(np.rint(pixels + noise), 0, 255).astype(np.uint8)).save(target / path.name)
 
 
 def fresh(place):
     """Scenes of MDS-HR and of the like of Multi-dSprites, clean, noisy and as JPEG; errors against the clean picture."""
-    for preset, seed in FRESH.items():
-        data = place.work / "fresh" / preset
+    # The scenes of every seed and number stay, so that records of one are about the same pictures.
+    reported = (place.seed, place.count) == (FRESH_SEED, FRESH_COUNT)
+    root = place.work / ("fresh" if reported else f"fresh-{place.seed}-{place.count}")
+    for number, preset in enumerate(PRESETS):
+        data = root / preset
         if not data.is_dir():
-            subprocess.run([place.dvp, "generate", "--preset", preset, "--count", str(FRESH_COUNT), "--seed", str(seed),
+            subprocess.run([place.dvp, "generate", "--preset", preset, "--count", str(place.count), "--seed", str(place.seed + number),
                             "--out", data], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         for finish in FINISHES:
-            source = data if finish == "clean" else place.work / "fresh" / f"{preset}-{finish.replace(' ', '-')}"
+            source = data if finish == "clean" else root / f"{preset}-{finish.replace(' ', '-')}"
             if not source.is_dir():
-                spoil(data, source, finish)
+                spoil(data, source, finish, place.seed + len(PRESETS))
             paths = place.some([p for p in source.iterdir() if p.suffix in (".png", ".jpg")])
             for known, options in [("", ()), (", bank", ("--bank", "mdshr"))]:
                 name = f"{preset} fresh, {finish}{known}"

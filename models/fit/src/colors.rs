@@ -11,15 +11,12 @@ use dvp_core::scene::Layer;
 use dvp_core::{ImageView, Real};
 
 use crate::cholesky::{factor, packed, solve};
+use crate::tuning::{MIXTURE_OUTLIER, SOFT_PIXEL_NOISE};
 
 /// Steps of an 8-bit channel.
 const STEPS: f64 = 255.0;
 /// How far from a multiple of 1/255 a value may be to count as rounded.
 const ROUNDED: f64 = 1e-5;
-/// Noise of a soft pixel beyond its own rounding: what the outline misses.
-const PIXEL_NOISE: f64 = 0.002;
-/// Residual above which a pixel is no mixture of the colors around.
-const OUTLIER: f64 = 0.015;
 /// Coverage planes of at most this many values are taken: beyond it, colors stay as they are.
 pub(crate) const MAX_COVERAGE_VALUES: usize = 1 << 22;
 
@@ -64,7 +61,7 @@ pub(crate) fn refine_colors<T: Real>(
     let step = T::one() / T::of(STEPS);
     // The rounded color is within a uniform half step: standard deviation step / sqrt(12).
     let prior = T::of(12.0) / (step * step);
-    let data = T::one() / T::of(PIXEL_NOISE * PIXEL_NOISE);
+    let data = T::one() / T::of(SOFT_PIXEL_NOISE * SOFT_PIXEL_NOISE);
     scratch.matrix.clear();
     scratch.matrix.resize(packed(n, 0), T::zero());
     for side in &mut scratch.sides {
@@ -91,7 +88,7 @@ pub(crate) fn refine_colors<T: Real>(
                 residual[c] -= share * color[c];
             }
         }
-        if residual.iter().any(|r| r.abs() > T::of(OUTLIER)) {
+        if residual.iter().any(|r| r.abs() > T::of(MIXTURE_OUTLIER)) {
             continue;
         }
         for i in 0..n {

@@ -8,13 +8,11 @@ use dvp_core::{ImageSize, Real, simd};
 
 use crate::free::foot::EdgeLanes;
 use crate::segment::EdgeSample;
+use crate::tuning::COVARIANCE_ASTRAY_PX;
 
 /// Variances of (x, y in scene units, log scale, rotation) assumed before looking: 1, 1, 1, and pi^2 / 3, that of a uniform
 /// angle. They keep the covariance finite where the image says nothing (the angle of a disk).
 pub(crate) const PRIOR_VARIANCE: [f64; 4] = [1.0, 1.0, 1.0, 3.29];
-
-/// Samples that miss the outline by more (px) are those of another object.
-const ASTRAY_PX: f64 = 1.5;
 
 /// Covariance of (x, y in scene units, log scale, rotation), row-major, from the normal equations of the samples.
 ///
@@ -72,7 +70,7 @@ impl<T: Real> simd::Kernel for Information<'_, T> {
             // Where the outline is hidden by another of its color, the samples nearest to it are that one's.
             let across = (n[0] * (sample.point[0] - a[0]) + n[1] * (sample.point[1] - a[1])).abs();
             let off = across - sample.distance.abs();
-            if off.abs() > T::of(ASTRAY_PX) {
+            if off.abs() > T::of(COVARIANCE_ASTRAY_PX) {
                 continue;
             }
             let arm = [sample.point[0] - center_px[0], sample.point[1] - center_px[1]];

@@ -20,6 +20,8 @@
 //! | [`opt_p`], [`opt_iter`], [`rand_opt_p`] | an image, for OptP and Rand-OptP a start | a [`Fit`] by the paper's Adam |
 //! | [`live`] | an image | a [`Fit`] of closed paths, layer by layer |
 //!
+//! `tuning` holds the numbers of the first five that were chosen.
+//!
 //! # Features
 //!
 //! `std` (default) brings the platform's maths and the faster kernels of `dvp-core`; without it everything works with `alloc`.
@@ -64,6 +66,7 @@ mod split;
 mod split_mix;
 #[cfg(test)]
 mod tests;
+mod tuning;
 mod verdict;
 
 use alloc::vec::Vec;
@@ -153,8 +156,6 @@ pub enum Completion {
         /// Symmetry order; 0 for a disk.
         order: usize,
     },
-    /// What is seen is its own mirror image.
-    Mirror,
     /// Nothing but the shortest way across.
     Straight,
 }

@@ -7,22 +7,8 @@ use dvp_core::render::Compositing;
 use dvp_core::{Efd, Object, Real, Scene};
 
 use crate::segment::color::distance;
+use crate::tuning::{FAINT_OBJECT, IDLE_SHARE, ONE_COLOR, UNEXPLAINED_SHARE, WIDE_POSITION, WIDE_SIZE};
 use crate::{Ambiguity, Fit, StopReason};
-
-/// A standard deviation of the position, in radii of the object, or of the logarithm of its size, that is wide: either makes
-/// the object agree with the true one to an IoU of 0.9 only.
-const WIDE_POSITION: f64 = 0.08;
-const WIDE_SIZE: f64 = 0.05;
-
-/// Of a picture that a scene explains, less is left.
-const UNEXPLAINED: f64 = 0.01;
-
-/// An object whose marginal gain is a smaller share of the picture's variance may as well not be there.
-const IDLE: f64 = 1e-3;
-/// Colors closer than this, in every channel, may be one.
-const ONE_COLOR: f64 = 0.02;
-/// Five steps of 8 bits: with less contrast, rounding hides what is wrong with an object from what is left unexplained.
-const FAINT: f64 = 5.0 / 255.0;
 
 /// What a fit says against itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -77,7 +63,7 @@ impl<T: Real> Fit<T> {
             is_loose || size > WIDE_SIZE * WIDE_SIZE
         };
         let is_open = |ambiguity: &Ambiguity| !matches!(ambiguity, Ambiguity::Symmetry { .. });
-        let is_faint = |object: &Object<T>| distance(object.color(), self.scene.background) < T::of(FAINT);
+        let is_faint = |object: &Object<T>| distance(object.color(), self.scene.background) < T::of(FAINT_OBJECT);
         Doubts {
             pose: self.covariance.iter().zip(&self.scene.objects).any(is_wide),
             ambiguity: self.ambiguity.iter().any(is_open),
@@ -86,8 +72,8 @@ impl<T: Real> Fit<T> {
                 StopReason::StepLimit => !self.covariance.is_empty(),
                 StopReason::Stalled | StopReason::NotFlat | StopReason::NoBetterThanFlat => true,
             },
-            unexplained: self.unexplained > UNEXPLAINED,
-            redundant: self.marginal_gain.iter().any(|&share| share < IDLE) || may_be_fewer(&self.scene),
+            unexplained: self.unexplained > UNEXPLAINED_SHARE,
+            redundant: self.marginal_gain.iter().any(|&share| share < IDLE_SHARE) || may_be_fewer(&self.scene),
             faint: self.scene.objects.iter().any(is_faint),
         }
     }

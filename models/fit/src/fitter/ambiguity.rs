@@ -11,9 +11,8 @@ use super::run::{Found, FoundObject, Run};
 use crate::Ambiguity;
 use crate::doubt::{hidden_share, visible_share};
 use crate::pose::search::symmetry_order;
+use crate::tuning::ALTERNATIVE_RATIO;
 
-/// A twin is worth telling if its squared error is below this many times that of the chosen prototype.
-const TWIN_RATIO: f64 = 4.0;
 /// An object of this confidence hides what is behind it.
 const OPAQUE: f64 = 0.99;
 
@@ -37,7 +36,7 @@ impl<T: Real> Run<'_, T> {
             }
             out.extend(self.hidden(scene, found, object));
             out.extend(self.merged(found, object));
-            if let Some((prototype, ratio)) = part.twin.filter(|&(_, ratio)| ratio < TWIN_RATIO) {
+            if let Some((prototype, ratio)) = part.twin.filter(|&(_, ratio)| ratio < ALTERNATIVE_RATIO) {
                 out.push(Ambiguity::Twin { object, prototype, ratio });
             }
         }

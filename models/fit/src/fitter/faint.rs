@@ -8,10 +8,9 @@ use dvp_core::{Image, ImageView, Object, Real, Scene};
 use super::{FitScratch, Fitter};
 use crate::colors::is_rounded;
 use crate::segment::{PIXEL_NOISE, SegmentOptions};
+use crate::tuning::FAINT_CONTRAST;
 use crate::{Fit, FitError};
 
-/// Pictures of more contrast are not faint: what is not found in them is not flat.
-const FAINT: f64 = 0.05;
 /// Half a step of 8 bits. Pictures of less contrast are one color, whatever their numbers.
 const HALF_STEP: f64 = 0.5 / 255.0;
 /// Of a step, the standard deviation of rounding.
@@ -34,7 +33,7 @@ impl<T: Real> Stretched<T> {
         };
         let ends = [0, 1, 2].map(|c| ends(image.channel(c)));
         let range = ends.iter().map(|(low, high)| *high - *low).fold(T::zero(), T::max);
-        if range <= T::of(HALF_STEP) || range > T::of(FAINT) {
+        if range <= T::of(HALF_STEP) || range > T::of(FAINT_CONTRAST) {
             return None;
         }
         let (lowest, gain) = (ends.map(|(low, _)| low), T::one() / range);

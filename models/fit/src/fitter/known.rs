@@ -9,19 +9,11 @@ use super::run::{Found, FoundObject, Run};
 use crate::joint::{JointObject, JointProblem, JointScene, refine};
 use crate::pose::gauss_newton::{Frame, wrapped};
 use crate::pose::search::{Candidate, Effort, search};
+use crate::tuning::{JOINT_PIXELS, JOINT_WIDTH, MISSED_PIXELS, SURE_COST};
 use crate::{Completion, FitError, StopReason};
 
-/// An object with more visibly missed pixels around is searched for again.
-const MISSED_PIXELS: usize = 4;
-/// Mean squared distance error (px^2) below which an outline is where it should be, whatever is missed around it.
-const SURE_COST: f64 = 1e-3;
 /// Candidates of the wide search that are rendered.
 const RENDERED_CANDIDATES: usize = 8;
-/// A joint refinement is worth its time if more pixels of the image are visibly missed. Its mean error would not tell:
-/// that of a perfect fit depends on rounding and on the seams of whoever drew the picture.
-const JOINT_PIXELS: usize = 8;
-/// Residual at which a pixel loses most of its say in the joint refinement.
-const JOINT_WIDTH: f64 = 0.05;
 
 /// Where a posed object came from.
 #[derive(Clone, Copy, Debug)]

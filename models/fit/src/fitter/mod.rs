@@ -1,7 +1,6 @@
 //! Segment-and-fit: the pipeline from an image to a [`Fit`].
 //!
-//! `pieces` joins what another object cuts in two, `order` decides which objects are in front (`junction`: by
-//! how their outlines meet), `known` poses the
+//! `pieces` joins what another object cuts in two, `order` decides which objects are in front, `known` poses the
 //! prototypes of a bank, `unknown` fits free outlines, `twins` splits what is several objects of one color; `run` is what
 //! they share: rendering (`shown`: only where something changed), colors, pruning, and the doubt that goes with the result
 //! (`ambiguity`: what it leaves open). `flat` puts one color in the place of a scene that is worse. `readings` chooses between clean, noisy and faint pictures (`faint`); `subsample` takes
@@ -10,7 +9,6 @@
 mod ambiguity;
 mod faint;
 mod flat;
-mod junction;
 mod known;
 mod order;
 mod pieces;

@@ -2,8 +2,7 @@
 //!
 //! The outline between them belongs to the one in front; the other goes on behind it, unseen. Each is fitted with and
 //! without the shared stretch: a disk keeps its circle, while the crescent left of the one behind needs many harmonics, or
-//! fits no prototype. The assignment with the shorter description wins; if they are as long, how the outlines meet decides
-//! (`junction`).
+//! fits no prototype. The assignment with the shorter description wins; if they are as long, the smaller object is in front.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -11,13 +10,11 @@ use alloc::vec::Vec;
 use dvp_core::Real;
 
 use super::run::Run;
-use super::unknown::Guess;
-use crate::free::grow::Freedom;
+use crate::free::grow::{Freedom, Thrift};
 use crate::pose::search::Effort;
 use crate::price::{coefficient_bits, misfit_bits};
+use crate::tuning::CLEARLY_SHORTER_BITS;
 
-/// Descriptions whose lengths differ by less say nothing.
-const CLEARLY_SHORTER_BITS: f64 = 8.0;
 /// What an object without any fit is taken to cost: more than any that fits.
 const NO_FIT_BITS: f64 = 1e6;
 
@@ -39,18 +36,16 @@ impl<T: Real> Run<'_, T> {
             let [a, b] = border.objects;
             let [behind_a, behind_b] = [a, b].map(|object| {
                 let held = alone[object as usize];
-                held.unwrap_or_else(|| *alone[object as usize].insert(self.part_bits(object, Guess::Likely)))
+                held.unwrap_or_else(|| *alone[object as usize].insert(self.part_bits(object, Thrift::Fitted)))
             });
             let [before_a, before_b] = [a, b].map(|object| {
                 self.scratch.segmentation.set_front(at, Some(object));
-                self.part_bits(object, Guess::Likely)
+                self.part_bits(object, Thrift::Fitted)
             });
             self.scratch.segmentation.set_front(at, None);
             let gain = (behind_a + before_b) - (before_a + behind_b);
-            let says_nothing = gain.abs() <= CLEARLY_SHORTER_BITS && self.fitter.prototypes.is_empty();
-            let junctions = if says_nothing { self.front_by_junctions(at) } else { None };
             // Objects are numbered by size: of two that could both be in front, the smaller is taken to be.
-            decided.push((at, junctions.unwrap_or(if gain > CLEARLY_SHORTER_BITS { a } else { b })));
+            decided.push((at, if gain > CLEARLY_SHORTER_BITS { a } else { b }));
         }
         for (at, front) in decided {
             self.scratch.segmentation.set_front(at, Some(front));
@@ -58,13 +53,13 @@ impl<T: Real> Run<'_, T> {
     }
 
     /// Bits of the shape of an object and of what its samples miss, from the borders that are decided for it.
-    pub(super) fn part_bits(&mut self, object: u32, guess: Guess) -> f64 {
+    pub(super) fn part_bits(&mut self, object: u32, thrift: Thrift) -> f64 {
         let size = self.image.size();
         self.scratch.segmentation.gather_object(object, size, &self.kind);
         if self.fitter.prototypes.is_empty() {
             let prices = self.fitter.options.prices;
-            let grown = self.outline_of(object as usize, Freedom::Full, guess);
-            return grown.map_or(NO_FIT_BITS, |(grown, _)| {
+            let grown = self.outline_of(object as usize, Freedom::Full, thrift);
+            return grown.map_or(NO_FIT_BITS, |grown| {
                 let rows = &grown.outline.rows;
                 grown.bits.as_f64() - prices.equal_bits(rows.len()) + coefficient_bits(rows)
             });

@@ -9,13 +9,12 @@ use alloc::vec::Vec;
 use dvp_core::Real;
 
 use super::run::Run;
-use super::unknown::Guess;
+use crate::free::grow::Thrift;
 use crate::segment::color::may_be_same;
+use crate::tuning::MIXED_ORDER_BITS;
 
 /// Most pieces that are tried together.
 const MOST_PIECES: usize = 8;
-/// Pieces some of which are in front and some behind must explain the outlines by so much better than one object does.
-const MIXED_BITS: f64 = 72.0;
 
 impl<T: Real> Run<'_, T> {
     /// Joins pieces while that makes the description shorter. To be done before the order is decided.
@@ -91,7 +90,7 @@ impl<T: Real> Run<'_, T> {
         // Pieces on their own may be behind all covers, in front of all, or each where it fits best.
         let (mut front, mut apart) = (Vec::new(), [0.0; 3]);
         for &piece in pieces {
-            let behind = [self.part_bits(piece, Guess::Shortest), self.bits_around(&covers, &[piece])];
+            let behind = [self.part_bits(piece, Thrift::Foretold), self.bits_around(&covers, &[piece])];
             let before = [self.bits_if_front(piece, &covers), self.bits_around(&covers, &[])];
             apart[0] += behind[0];
             apart[1] += before[0];
@@ -105,11 +104,11 @@ impl<T: Real> Run<'_, T> {
         let behind: Vec<u32> = pieces.iter().copied().filter(|piece| !front.contains(piece)).collect();
         apart[0] += around;
         apart[1] += self.bits_around(&covers, &[]);
-        apart[2] += self.bits_around(&covers, &behind) + MIXED_BITS;
+        apart[2] += self.bits_around(&covers, &behind) + MIXED_ORDER_BITS;
         let others = f64::from(u32::try_from(pieces.len() - 1).unwrap_or(u32::MAX));
         let apart = self.fitter.options.prices.object_bits() * others + apart.into_iter().fold(f64::INFINITY, f64::min);
         let before = self.scratch.segmentation.join(pieces);
-        let joined = self.part_bits(pieces[0], Guess::Shortest) + around;
+        let joined = self.part_bits(pieces[0], Thrift::Foretold) + around;
         if joined < apart {
             return true;
         }
@@ -133,7 +132,7 @@ impl<T: Real> Run<'_, T> {
                 self.scratch.segmentation.set_front(at, Some(object));
             }
         }
-        let bits = self.part_bits(object, Guess::Shortest);
+        let bits = self.part_bits(object, Thrift::Foretold);
         for (at, front) in changed {
             self.scratch.segmentation.set_front(at, front);
         }

@@ -15,30 +15,11 @@ use super::{DIRECT_PIXELS, FitScratch, Fitter};
 use crate::block_code::BlockCode;
 use crate::colors::{is_rounded, round_color};
 use crate::segment::{EdgeKind, NoisyOptions, SegmentOptions, noise_level};
+use crate::tuning::{
+    CODED_NOISE, COMPRESSED_BLUR_PX, COMPRESSED_NOISE, FINE_ZONE, MANY_REGIONS, MISSED_SHARE, MOST_CLEAN_REGIONS,
+    NOT_FLAT_SHARE, QUIET_NOISE, STILL_SOFT_SHARE, TEXTURE_NOISE,
+};
 use crate::{Fit, FitError, StopReason};
-
-/// Below this noise a picture is read as if it had none.
-const QUIET: f64 = 0.0015;
-/// What compression leaves beside edges is averaged away as noise of this standard deviation.
-const COMPRESSED: f64 = 0.06;
-/// In a picture whose coder is known, this much is averaged away in a second reading, for faint objects.
-const CODED: f64 = 0.03;
-/// A picture with more regions than this is not fitted as clean if most of its soft pixels lie between no two regions.
-const MOST_CLEAN_REGIONS: usize = 64;
-/// Compression it was if less than this share of the soft pixels is still soft when it is averaged away.
-const STILL_SOFT: f64 = 0.8;
-/// Compression blurs edges by up to about this much (scale of a logistic curve, px).
-const COMPRESSED_BLUR: f64 = 1.0;
-/// A picture of which flat objects leave a larger share of the variance is not flat.
-const NOT_FLAT: f64 = 0.05;
-/// Pictures with noise and more regions than this may be of another kind.
-const MANY_REGIONS: usize = 64;
-/// A picture that is not flat is cut between pixels that differ by more than this: a tenth of a step of 8 bits.
-const FINE_ZONE: f64 = 0.0004;
-/// A picture read with the wrong kind of edges leaves more than this share of its variance unexplained.
-const MISSED: f64 = 0.002;
-/// Texture finer than this is averaged away in a picture that is not flat.
-const TEXTURE: f64 = 0.03;
 
 impl<T: Real> Fitter<T> {
     /// Fits the readings that the picture may need; the best one wins.
@@ -50,7 +31,7 @@ impl<T: Real> Fitter<T> {
         let most_regions = self.options.max_objects.saturating_add(1);
         let noise = noise_level(&image, &mut scratch.differences);
         let mut clean = false;
-        let fit = if noise >= T::of(QUIET) {
+        let fit = if noise >= T::of(QUIET_NOISE) {
             let boundary = self.options.prices.boundary;
             let options = NoisyOptions { noise, compressed: false, zone: None, most_regions, boundary };
             let readable = scratch.segmentation.read_noisy(&image, options);
@@ -66,12 +47,12 @@ impl<T: Real> Fitter<T> {
             }
         };
         if fit.scene.objects.is_empty()
-            && noise < T::of(QUIET)
+            && noise < T::of(QUIET_NOISE)
             && let Some(fit) = self.or_faint(image, &fit, scratch)?
         {
             return Ok(fit);
         }
-        if fit.unexplained > NOT_FLAT && fit.stop != StopReason::NotFlat {
+        if fit.unexplained > NOT_FLAT_SHARE && fit.stop != StopReason::NotFlat {
             return self.or_not_flat(image, fit, clean, most_regions, scratch);
         }
         Ok(fit)
@@ -86,7 +67,7 @@ impl<T: Real> Fitter<T> {
     ) -> Result<Fit<T>, FitError> {
         if readable && scratch.segmentation.region_count() > MANY_REGIONS {
             let segments = self.fit_segments(image, scratch)?;
-            if segments.unexplained > NOT_FLAT {
+            if segments.unexplained > NOT_FLAT_SHARE {
                 return Ok(segments);
             }
         }
@@ -105,7 +86,7 @@ impl<T: Real> Fitter<T> {
         scratch.code = BlockCode::of(&image);
         let (soft, regions) = (scratch.segmentation.soft_count(), scratch.segmentation.region_count());
         let options = NoisyOptions {
-            noise: T::of(COMPRESSED),
+            noise: T::of(COMPRESSED_NOISE),
             compressed: true,
             zone: None,
             most_regions,
@@ -113,11 +94,11 @@ impl<T: Real> Fitter<T> {
         };
         let readable = scratch.segmentation.read_noisy(&image, options);
         // What was soft in between edges is flat now: that was no edge.
-        let surely = T::of_usize(scratch.segmentation.soft_count()) < T::of(STILL_SOFT) * T::of_usize(soft);
+        let surely = T::of_usize(scratch.segmentation.soft_count()) < T::of(STILL_SOFT_SHARE) * T::of_usize(soft);
         let mut freed = self.fit_noisy(image, readable, scratch)?;
         if scratch.code.is_some() {
             // Faint objects are averaged away with the rest; the coder tells whether they are there.
-            let options = NoisyOptions { noise: T::of(CODED), ..options };
+            let options = NoisyOptions { noise: T::of(CODED_NOISE), ..options };
             let readable = scratch.segmentation.read_noisy(&image, options);
             let finer = self.fit_noisy(image, readable, scratch)?;
             if finer.bits < freed.bits {
@@ -144,7 +125,7 @@ impl<T: Real> Fitter<T> {
         most_regions: usize,
         scratch: &mut FitScratch<T>,
     ) -> Result<Fit<T>, FitError> {
-        let noise = T::of(TEXTURE).max(fit.noise);
+        let noise = T::of(TEXTURE_NOISE).max(fit.noise);
         let boundary = self.options.prices.boundary;
         let options = NoisyOptions { noise, compressed: false, zone: Some(T::of(FINE_ZONE)), most_regions, boundary };
         if !scratch.segmentation.read_noisy(&image, options) {
@@ -193,7 +174,7 @@ impl<T: Real> Fitter<T> {
         // In doubt several readings are fitted; the shortest description wins.
         let mut best: Option<Fit<T>> = None;
         for EdgeReading { kind, only_if_missed } in kinds {
-            if only_if_missed && best.as_ref().is_some_and(|best| best.unexplained < MISSED) {
+            if only_if_missed && best.as_ref().is_some_and(|best| best.unexplained < MISSED_SHARE) {
                 continue;
             }
             let (compositing, second) = self.compositings(evidence, &kind);
@@ -289,6 +270,6 @@ struct EdgeReading<T> {
 /// Whether edges are softer than compression alone makes them.
 fn is_blur<T: Real>(kind: &EdgeKind<T>, unit_px: T) -> bool {
     // Sigma is that of twice the distance.
-    let most = T::of(2.0 * COMPRESSED_BLUR);
+    let most = T::of(2.0 * COMPRESSED_BLUR_PX);
     matches!(kind, EdgeKind::Profile(edge) if edge.law == EdgeLaw::Distance && edge.sigma * unit_px > most)
 }

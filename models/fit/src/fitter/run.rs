@@ -14,6 +14,9 @@ use crate::marginal_gain::{marginal_gains, ranking, squared_errors};
 use crate::residual::Residual;
 use crate::segment::EdgeKind;
 use crate::segment::color::distance;
+use crate::tuning::{
+    MEAN_OF_TWO_COLOR, PLAIN_HARMONICS, ROUGH_NOISE, SURE_CONTRAST, SURE_PIXELS, VISIBLE_ERROR, VISIBLE_NOISE,
+};
 use crate::{Completion, Fit, FitError, StopReason};
 
 /// One image being fitted.
@@ -57,23 +60,6 @@ pub(super) struct FoundObject<T> {
     /// What goes on where it is hidden, if it is.
     pub(super) completion: Completion,
 }
-
-/// A rendering that misses a pixel by this much in some channel does so visibly.
-const VISIBLE_ERROR: f64 = 0.03;
-/// Under noise, this many standard deviations are visible; a picture has about one such pixel in 5000 by chance.
-const VISIBLE_NOISE: f64 = 4.0;
-/// Objects of fewer flat pixels, or of less contrast, must show that they pay for their description.
-const SURE_PIXELS: usize = 12;
-const SURE_CONTRAST: f64 = 0.03;
-/// Standard deviation of what the outlines of such objects miss: those of a few pixels are not fitted as exactly as those of
-/// many.
-const ROUGH_NOISE: f64 = 0.015;
-
-/// A color closer than this to the mean of two others, in every channel, may be their mixture.
-const MIXED_COLOR: f64 = 0.02;
-
-/// Harmonics of a plain shape.
-const PLAIN_HARMONICS: usize = 3;
 
 /// Residual that is visible at the given noise (standard deviation of a channel).
 pub(super) fn visible_error<T: Real>(noise: T) -> T {
@@ -284,7 +270,7 @@ impl<T: Real> Run<'_, T> {
             && self.care == Care::Full
             && others()
                 .enumerate()
-                .any(|(k, a)| others().skip(k + 1).any(|b| distance(own, mean(a, b)) < T::of(MIXED_COLOR)))
+                .any(|(k, a)| others().skip(k + 1).any(|b| distance(own, mean(a, b)) < T::of(MEAN_OF_TWO_COLOR)))
     }
 
     fn covariances(&mut self, scene: &Scene<T>, found: &Found<T>) -> Result<Vec<[T; 16]>, FitError> {

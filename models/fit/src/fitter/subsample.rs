@@ -10,25 +10,15 @@ use dvp_core::{Image, ImageSize, ImageView, Real};
 use super::run::visible_error;
 use super::{FitScratch, Fitter};
 use crate::segment::EdgeSample;
+use crate::tuning::{MISSES, MISSES_EACH, SHARP_BEND, SUBSAMPLED_UNIT_PX, WIDE_EDGES_FEW};
 use crate::{Fit, FitError, StopReason};
 
-/// The shorter side of what is left has at least so many pixels.
-const MIN_UNIT_PX: usize = 256;
 /// What rounding to 8 bits may add to a difference of two pixels.
 const ROUNDING: f64 = 1.1 / 255.0;
-/// A pixel is sharp if it is off the middle between its neighbors by this share of the contrast around it. Of the pixels on
-/// the reference's edges that are 2.6 pixels wide 1 % are, 1.3 pixels wide 20 %.
-const BEND: f64 = 0.15;
 /// Neighbors to each side over which contrast is taken.
 const AROUND: usize = 3;
-/// Edges are wide if of their pixels at most one in so many is sharp.
-const FEW: usize = 10;
 /// Rows and columns that are looked at to judge edges: one in so many.
 const LINES: usize = 4;
-/// Pixels that may be missed in the whole picture although none was among those looked at, and what may be missed per
-/// pixel that was.
-const MISSES: f64 = 4.0;
-const MISSES_EACH: f64 = 1.5;
 
 /// Which pixels of an image are looked at: those at `first` + k `stride` in both directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,7 +34,7 @@ impl Subsampling {
     pub(super) fn of<T: Real>(image: &ImageView<'_, T>) -> Option<Self> {
         let size = image.size();
         let mut stride = 1;
-        while size.unit_px() / (2 * stride) >= MIN_UNIT_PX && has_wide_edges(image, stride) {
+        while size.unit_px() / (2 * stride) >= SUBSAMPLED_UNIT_PX && has_wide_edges(image, stride) {
             stride *= 2;
         }
         Self::every(stride, size)
@@ -189,7 +179,7 @@ fn has_wide_edges<T: Real>(image: &ImageView<'_, T>, stride: usize) -> bool {
             count_sharp(|at| plane[at * stride * width + x], height / stride, &mut sharp, &mut sloped);
         }
     }
-    sharp * FEW <= sloped
+    sharp * WIDE_EDGES_FEW <= sloped
 }
 
 /// Counts the values of a line that are on a slope, and those of them that are sharp.
@@ -206,7 +196,7 @@ fn count_sharp<T: Real>(value: impl Fn(usize) -> T, len: usize, sharp: &mut usiz
             let ends = (T::infinity(), T::neg_infinity());
             let window = (at - AROUND..=at + AROUND).map(&value);
             let (low, high) = window.fold(ends, |(low, high), value| (low.min(value), high.max(value)));
-            *sharp += usize::from(off > T::of(BEND) * (high - low));
+            *sharp += usize::from(off > T::of(SHARP_BEND) * (high - low));
         }
     }
 }

@@ -112,8 +112,9 @@ fn a_sharp_dot_among_wide_edges_is_found() {
     }
     assert!(Subsampling::of(&image.view()).is_some());
     let fit = Fitter::new(FitOptions::default()).unwrap().fit(image.view(), &mut FitScratch::default()).unwrap();
-    let found = fit.scene.objects.iter().map(|object| object.pose.translation);
-    assert!(found.into_iter().any(|[x, y]| (x - 1005.5 / 1131.0).abs() < 2e-3 && (y - 303.0 / 1131.0).abs() < 2e-3));
+    let found: Vec<[f64; 2]> = fit.scene.objects.iter().map(|object| object.pose.translation).collect();
+    let is_dot = |&[x, y]: &[f64; 2]| (x - 1005.5 / 1131.0).abs() < 2e-3 && (y - 303.0 / 1131.0).abs() < 2e-3;
+    assert!(found.iter().any(is_dot), "{found:?}");
 }
 
 /// A square along the pixel grid shows few coverages, and a small ellipse only some more: those of area coverage as well

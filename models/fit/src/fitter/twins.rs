@@ -18,13 +18,7 @@ use crate::pose::search::{Effort, search};
 use crate::split::twins::{Union, misfit, repeats};
 use crate::split::waist::{is_convex, is_waisted};
 use crate::split::{Explanation, split};
-
-/// Noise of a pixel value that free outlines leave: harmonics cut corners, by more the sharper they are, which says nothing of
-/// how many objects there are.
-const CORNER_NOISE: f64 = 0.01;
-/// A union may miss the samples by this many times as much as the single outline did, and by so much (px^2) in any case.
-const MISFIT_RATIO: f64 = 2.0;
-const MISFIT_SLACK: f64 = 0.004;
+use crate::tuning::{CORNER_NOISE, MISFIT_RATIO, MISFIT_SLACK};
 
 /// After so many outlines with a waist that were no unions, those left are taken as they are: the picture is made of such shapes.
 const MOST_FAILURES: usize = 3;

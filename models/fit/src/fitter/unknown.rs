@@ -8,40 +8,11 @@ use dvp_core::shape::REFERENCE_VERTICES;
 use dvp_core::{Efd, Object, Real};
 
 use super::run::{Care, Found, FoundObject, Run};
-use crate::free::conic::ellipse_through;
-use crate::free::foot::{EdgeLanes, foot};
-use crate::free::grow::{Freedom, GrowSettings, Grown, Thrift, grow, hold, hold_outside};
-use crate::free::repeat::complete;
-use crate::free::sight::Sight;
+use crate::free::grow::{Freedom, GrowSettings, Grown, Thrift, grow, hold_outside};
 use crate::free::start::{shrink, trace};
 use crate::pose::search::symmetry_order;
+use crate::tuning::{CLEARLY_LESS_LOSS, CODED_ALIKE, FOLDED_PIXELS, SEGMENT_HARMONIC_PX};
 use crate::{Completion, FitError, StopReason};
-
-/// An outline with more visibly missed pixels around may have folded; a corner that is cut misses fewer.
-const MISSED_PIXELS: usize = 16;
-/// An outline with less freedom has more harmonics: it must miss clearly less.
-const CLEARLY_LESS: f64 = 0.8;
-
-/// An outline of which a larger share is seen needs no completion.
-const MOSTLY_SEEN: f64 = 0.97;
-
-/// Outline (px) per harmonic of a segment of a picture that is not flat.
-const SEGMENT_HARMONIC_PX: f64 = 6.0;
-
-/// Points of a completed outline this close (px) to the shortest way are no other guess.
-const SAME_PX: f64 = 1.5;
-
-/// Noise of independent samples that says as little of an outline as that of a coded picture, in units of the latter.
-const CODED_ALIKE: f64 = 2.0;
-
-/// How an outline goes on where it is hidden.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Guess {
-    /// The shortest way.
-    Shortest,
-    /// As what is seen has it, if that is an ellipse or repeats itself.
-    Likely,
-}
 
 impl<T: Real> Run<'_, T> {
     /// Fits an outline to every segment.
@@ -74,7 +45,7 @@ impl<T: Real> Run<'_, T> {
             // The first harmonic has size 1; the others of a sane outline do not reach twice as far.
             let center = part.object.pose.translation.map(|v| v * self.unit_px());
             let reach = part.object.pose.scale * self.unit_px() * T::of(2.0);
-            if self.missed_pixels(center, reach) <= MISSED_PIXELS {
+            if self.missed_pixels(center, reach) <= FOLDED_PIXELS {
                 continue;
             }
             let segment = part.segment;
@@ -84,7 +55,7 @@ impl<T: Real> Run<'_, T> {
                     found.steps += steps;
                     found.objects[at].object = object;
                     let tried = self.compare_found(found)?;
-                    if tried < T::of(CLEARLY_LESS) * loss {
+                    if tried < T::of(CLEARLY_LESS_LOSS) * loss {
                         loss = tried;
                         best = (found.objects[at].object.clone(), completion);
                     }
@@ -103,7 +74,8 @@ impl<T: Real> Run<'_, T> {
 
     /// The object of a segment, the steps it took, and what completes it; none if it encloses nothing.
     fn object_of(&mut self, segment: usize, freedom: Freedom) -> Option<(Object<T>, usize, Completion)> {
-        let (grown, completion) = self.outline_of(segment, freedom, Guess::Likely)?;
+        let grown = self.outline_of(segment, freedom, Thrift::Fitted)?;
+        let completion = completion(&grown.outline.rows);
         // A first harmonic of size 0 has no pose.
         let normal = Efd::new(grown.outline.rows).normalize().ok()?;
         let unit = self.unit_px();
@@ -127,13 +99,8 @@ impl<T: Real> Run<'_, T> {
         Some(shrink(&contour, half_coverage_px))
     }
 
-    /// The outline of a segment, and what completes it where it is hidden.
-    pub(super) fn outline_of(
-        &mut self,
-        segment: usize,
-        freedom: Freedom,
-        guess: Guess,
-    ) -> Option<(Grown<T>, Completion)> {
+    /// The outline of a segment; where it is hidden, it goes on the shortest way.
+    pub(super) fn outline_of(&mut self, segment: usize, freedom: Freedom, thrift: Thrift) -> Option<Grown<T>> {
         let size = self.image.size();
         let contour = self.contour_of(segment)?;
         let scratch = &mut *self.scratch;
@@ -156,57 +123,18 @@ impl<T: Real> Run<'_, T> {
             vertex_count: REFERENCE_VERTICES,
             max_harmonics,
             freedom,
-            // Pieces and the whole are compared alike.
-            thrift: if guess == Guess::Shortest { Thrift::Foretold } else { Thrift::Fitted },
+            thrift,
             noise,
             prices: self.fitter.options.prices,
         };
-        let straight = grow(&contour, &scratch.samples, basis, settings, &mut scratch.free)?;
-        let object = u32::try_from(segment).ok()?;
-        let whole = freedom != Freedom::Full || guess == Guess::Shortest || !scratch.segmentation.may_go_on(object);
-        if whole || straight.outline.rows.len() == 1 {
-            return Some(with_completion(straight));
-        }
-        let sight = Sight::new(&part.rim, object, &scratch.segmentation, size);
-        let seen: Vec<[T; 2]> = contour.iter().copied().filter(|&point| sight.shows(point)).collect();
-        if T::of_usize(seen.len()) > T::of(MOSTLY_SEEN) * T::of_usize(contour.len()) {
-            return Some(with_completion(straight));
-        }
-        if let Some(ellipse) = ellipse_through(&seen).filter(|outline| outline.iter().all(|&point| sight.allows(point)))
-        {
-            let settings = GrowSettings { max_harmonics: 1, ..settings };
-            let grown = grow(&ellipse, &scratch.samples, basis, settings, &mut scratch.free)?;
-            if grown.bits < straight.bits {
-                return Some(with_completion(grown));
-            }
-        }
-        let Some((outline, completion)) = complete(&contour, |point| sight.shows(point), &|point| sight.allows(point))
-        else {
-            return Some(with_completion(straight));
-        };
-        if is_near(&outline, &contour) {
-            // The shortest way is that of the symmetry.
-            return Some((straight, completion));
-        }
-        hold(outline.iter().copied().filter(|&point| !sight.shows(point)), &mut scratch.samples);
-        let grown = grow(&outline, &scratch.samples, basis, settings, &mut scratch.free)?;
-        Some((grown, completion))
+        grow(&contour, &scratch.samples, basis, settings, &mut scratch.free)
     }
 }
 
-/// An outline that nothing but its harmonics completes: an ellipse goes on as it must, any other the shortest way.
-fn with_completion<T: Real>(grown: Grown<T>) -> (Grown<T>, Completion) {
-    let completion = match &*grown.outline.rows {
+/// What completes an outline where it is hidden: nothing but its harmonics. An ellipse goes on as it must, any other the shortest way.
+fn completion<T: Real>(rows: &[[T; 4]]) -> Completion {
+    match rows {
         &[row] => Completion::Rotation { order: symmetry_order(&Efd::new(Vec::from([row]))) },
         _ => Completion::Straight,
-    };
-    (grown, completion)
-}
-
-/// Whether all points of one outline are close to the other.
-fn is_near<T: Real>(outline: &[[T; 2]], other: &[[T; 2]]) -> bool {
-    let mut lanes = EdgeLanes::default();
-    let closed: Vec<[T; 2]> = other.iter().chain(other.first()).copied().collect();
-    lanes.set(&closed);
-    outline.iter().all(|&point| foot(&closed, &lanes, point).distance.abs() < T::of(SAME_PX))
+    }
 }

@@ -10,13 +10,12 @@ use super::outline_fit::{FreeOutline, OutlineScratch, OutlineSettings, refine};
 use super::polygon_fit::{PolygonScratch, move_vertices, transform};
 use crate::price::{Prices, misfit_bits};
 use crate::segment::EdgeSample;
+use crate::tuning::{HOLD_WEIGHT, LEAST_FORETOLD_GAIN};
 
 /// Numbers of harmonics that a forecast chooses among, beside all of them.
 const FORECAST: [usize; 10] = [2, 3, 4, 6, 8, 10, 12, 16, 20, 24];
 /// Numbers of harmonics that are tried before all of them: steps of four, as a square gains at every fourth.
 const LADDER: [usize; 7] = [3, 6, 10, 14, 18, 22, 26];
-/// A number that is foretold to gain less than this share of what is missed is left out: more may gain it at once.
-const LEAST_GAIN: f64 = 0.1;
 /// After so many in a row that do not pay, no more are tried.
 const MOST_FAILURES: usize = 2;
 /// Steps of the polygon after the first two.
@@ -132,7 +131,7 @@ pub(crate) fn grow<T: Real>(
         let (mut last, mut failures) = (1, 0);
         for harmonics in LADDER.into_iter().filter(|&harmonics| harmonics < max_harmonics) {
             let gain = missed[last] - missed[harmonics];
-            if gain < price(harmonics - last) || gain < T::of(LEAST_GAIN) * missed[last] {
+            if gain < price(harmonics - last) || gain < T::of(LEAST_FORETOLD_GAIN) * missed[last] {
                 continue;
             }
             last = harmonics;
@@ -200,16 +199,9 @@ fn cut_bits<T: Real>(
     bits
 }
 
-/// Weight of samples that hold an outline where nothing is seen of it.
-const HOLD: f64 = 0.02;
-
 /// Samples that hold the invisible part of a cropped outline where it was traced, beyond the image border.
 pub(crate) fn hold_outside<T: Real>(contour: &[[T; 2]], width: T, height: T, samples: &mut Vec<EdgeSample<T>>) {
     let beyond = |&[x, y]: &[T; 2]| (-x).max(-y).max(x - width).max(y - height) > T::of(0.5);
-    hold(resample(contour, 96).into_iter().filter(beyond), samples);
-}
-
-/// Samples that hold an outline at points.
-pub(crate) fn hold<T: Real>(points: impl Iterator<Item = [T; 2]>, samples: &mut Vec<EdgeSample<T>>) {
-    samples.extend(points.map(|point| EdgeSample { point, distance: T::zero(), weight: T::of(HOLD) }));
+    let held = resample(contour, 96).into_iter().filter(beyond);
+    samples.extend(held.map(|point| EdgeSample { point, distance: T::zero(), weight: T::of(HOLD_WEIGHT) }));
 }

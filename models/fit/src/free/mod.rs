@@ -3,17 +3,13 @@
 //! In: the samples of one segment. Out: an [`Efd`](dvp_core::Efd) with its pose, with as few harmonics as the samples
 //! support. `start` traces a first outline, `polygon_fit` moves its vertices and `outline_fit` its center and
 //! coefficients until it lies at the sampled distances (`foot` measures them, `basis` is the Fourier basis), `grow` decides
-//! how many harmonics pay. Where others hide the outline (`sight`), it goes on as an ellipse (`conic`) or as a symmetry has it
-//! (`repeat`), if what is seen says so.
+//! how many harmonics pay. Where others hide the outline, it goes on the shortest way.
 
 pub(crate) mod basis;
-pub(crate) mod conic;
 pub(crate) mod foot;
 pub(crate) mod grow;
 pub(crate) mod outline_fit;
 pub(crate) mod polygon_fit;
-pub(crate) mod repeat;
-pub(crate) mod sight;
 pub(crate) mod start;
 #[cfg(test)]
 mod tests;

@@ -12,9 +12,7 @@ use super::foot::{EdgeLanes, foot};
 use super::outline_fit::FreeOutline;
 use crate::cholesky::{factor, packed, solve};
 use crate::segment::EdgeSample;
-
-/// Coupling of neighboring displacements relative to the mean weight of a vertex: bridges stretches without samples.
-const COUPLING: f64 = 1e-3;
+use crate::tuning::VERTEX_COUPLING;
 
 /// Memory of [`move_vertices`].
 #[derive(Clone, Debug, Default)]
@@ -101,7 +99,7 @@ impl<T: Real> Move<'_, T> {
             matrix[packed(j, j)] += weight * q * q;
             matrix[packed(i.max(j), i.min(j))] += weight * p * q;
         }
-        let coupling = T::of(COUPLING) * total / T::of_usize(n) + T::of(1e-3);
+        let coupling = T::of(VERTEX_COUPLING) * total / T::of_usize(n) + T::of(1e-3);
         for i in 0..n {
             let j = if i + 1 == n { 0 } else { i + 1 };
             matrix[packed(i, i)] += T::of(2.01) * coupling;

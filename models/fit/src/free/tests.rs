@@ -1,15 +1,10 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use dvp_core::contour::signed_area;
-
 use super::basis::Basis;
-use super::conic::ellipse_through;
 use super::foot::EdgeLanes;
 use super::grow::{Freedom, GrowScratch, GrowSettings, Grown, Thrift, grow};
 use super::outline_fit::{FreeOutline, OutlineScratch, OutlineSettings, expand, gather};
-use super::repeat::complete;
-use crate::Completion;
 use crate::price::Prices;
 use crate::segment::EdgeSample;
 
@@ -168,50 +163,4 @@ fn the_basis_holds_cosines_and_sines() {
     assert!(basis.row(1, 2).iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-15), "{:?}", basis.row(1, 2));
     assert_eq!(basis.row(0, 2), basis.row(4, 2));
     assert_eq!(basis.row(3, 1).len(), 3);
-}
-
-/// Points at equal distances along a closed polygon.
-fn along(corners: &[[f64; 2]]) -> Vec<[f64; 2]> {
-    dvp_core::contour::resample(corners, 200)
-}
-
-#[test]
-fn a_square_without_a_corner_gets_it_back() {
-    // The corner at (50, 50) is cut and hidden.
-    let cut = along(&[[10.0, 10.0], [50.0, 10.0], [50.0, 35.0], [35.0, 50.0], [10.0, 50.0]]);
-    let is_hidden = |[x, y]: [f64; 2]| x + y > 84.0 && x > 34.0 && y > 34.0;
-    let allows = |[x, y]: [f64; 2]| {
-        let beside = [x - 10.0, y - 10.0, x - 50.0, y - 50.0].into_iter().any(|off| off.abs() < 2.0);
-        is_hidden([x, y]) || (beside && (8.0..=52.0).contains(&x) && (8.0..=52.0).contains(&y))
-    };
-    let (whole, completion) = complete(&cut, |point| !is_hidden(point), &allows).unwrap();
-    assert_eq!(completion, Completion::Rotation { order: 4 });
-    // 40 x 40, but for what corners lose between points.
-    assert!((signed_area(&whole).abs() - 1600.0).abs() < 10.0, "{}", signed_area(&whole));
-    let nearest = whole.iter().map(|v| (v[0] - 50.0).hypot(v[1] - 50.0)).fold(f64::INFINITY, f64::min);
-    assert!(nearest < 1.5, "{nearest}");
-    // If that corner could be seen not to be there, nothing repeats.
-    assert!(complete(&cut, |point| !is_hidden(point), &|point| allows(point) && !is_hidden(point)).is_none());
-}
-
-#[test]
-fn what_does_not_repeat_is_left_alone() {
-    let corners = [[40.0, 80.0], [75.0, 50.0], [128.0, 66.0], [140.0, 120.0], [100.0, 116.0], [66.0, 148.0]];
-    let seen = |[x, y]: [f64; 2]| x + y < 200.0;
-    let contour = along(&corners);
-    let near = |[x, y]: [f64; 2]| contour.iter().any(|v| (v[0] - x).hypot(v[1] - y) < 2.0);
-    assert!(complete(&contour, seen, &|point| near(point) || !seen(point)).is_none());
-}
-
-#[test]
-fn an_ellipse_is_found_from_a_third_of_it() {
-    let at = |t: f64| [30.0 + 20.0 * t.cos() - 3.0 * t.sin(), 40.0 + 5.0 * t.cos() + 12.0 * t.sin()];
-    let part: Vec<[f64; 2]> = (0..40).map(|i| at(0.05 * f64::from(i))).collect();
-    let found = ellipse_through(&part).unwrap();
-    // Area pi |20 x 12 + 3 x 5|, less what 64 chords cut.
-    let expected = core::f64::consts::PI * 255.0;
-    assert!((signed_area(&found).abs() / expected - 1.0).abs() < 3e-3, "{}", signed_area(&found));
-    assert!(ellipse_through(&[[0.0, 0.0]; 20]).is_none());
-    let line: Vec<[f64; 2]> = (0..20).map(|i| [f64::from(i), 2.0 * f64::from(i)]).collect();
-    assert!(ellipse_through(&line).is_none());
 }

@@ -13,11 +13,9 @@ use dvp_core::shape::{Rectangle, ShapeError};
 use dvp_core::{ImageSize, ImageView, Object, Pose, Real as _, Scene};
 
 use crate::paint::Canvas;
+use crate::tuning::OPENING_COLOR;
 use crate::{Fit, FitError};
 
-/// Colors that differ from the matte by less than this in every channel are the matte: it is chosen to be much farther from the
-/// colors of the picture, and fits find flat colors to a hundredth.
-const SAME_COLOR: f64 = 0.1;
 /// How closely the polygons of what is cut follow its curves, pixels.
 const TOLERANCE_PX: f64 = 1.0 / 128.0;
 /// What rounding leaves where edges coincide has less area, square pixels.
@@ -36,7 +34,7 @@ pub fn cut_openings(
     matte: [f32; 3],
     canvas: &mut Canvas<f32>,
 ) -> Result<Fit<f32>, FitError> {
-    let is_matte = |color: [f32; 3]| color.iter().zip(matte).all(|(a, b)| f64::from((a - b).abs()) < SAME_COLOR);
+    let is_matte = |color: [f32; 3]| color.iter().zip(matte).all(|(a, b)| f64::from((a - b).abs()) < OPENING_COLOR);
     let scene = &fit.scene;
     if is_matte(scene.background) && !scene.objects.iter().any(|object| is_matte(object.color())) {
         fit.scene.transparent = true;

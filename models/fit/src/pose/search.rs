@@ -9,13 +9,8 @@ use super::equations::{Robustness, SampleLanes};
 use super::field::OutlineField;
 use super::gauss_newton::{Frame, PosePx};
 use crate::segment::{Segment, Segmentation};
+use crate::tuning::{FINISH_SAMPLES, FULL_TURN_STARTS, SEARCH_SAMPLES};
 
-/// Samples used while searching; all are used at the end.
-const SEARCH_SAMPLES: usize = 32;
-/// Samples of the last steps but two.
-const FINISH_SAMPLES: usize = 80;
-/// Start angles over a full turn.
-const FULL_TURN_STARTS: usize = 12;
 /// Sizes tried for an object that leaves the image, relative to its visible part.
 const CROPPED_SIZES: [f64; 4] = [1.0, 1.3, 1.7, 2.4];
 
@@ -23,9 +18,6 @@ const CROPPED_SIZES: [f64; 4] = [1.0, 1.3, 1.7, 2.4];
 const WIDE_SIZES: [f64; 9] = [0.6, 0.8, 1.0, 1.25, 1.5, 1.8, 2.2, 2.7, 3.3];
 /// Most starts of one prototype that are refined.
 const MOST_KEPT: usize = 10;
-
-/// Cost, relative to the best so far, from which a candidate is not refined to the end.
-const HOPELESS: f64 = 16.0;
 
 /// How residuals count in the last steps.
 fn fine<T: Real>() -> Robustness<T> {
@@ -131,22 +123,12 @@ pub(crate) fn search<T: Real>(
     out.retain(|candidate| candidate.cost <= T::of(8.0) * best + worth);
     let [most, all] = [1 + samples.len() / FINISH_SAMPLES, 1].map(|stride| SampleLanes::new(samples, stride, true));
     let mut kept = 0;
-    let mut leader = T::infinity();
     for i in 0..out.len() {
         // Two starts that ended in one pose are one candidate, now or at the end.
         if out[..kept].iter().any(|c| same(c, &out[i])) {
             continue;
         }
-        // The rough poses are nearly right: what misses samples by far now is not worth the last steps.
-        let shape = &prototypes[out[i].prototype];
-        let now = out[i].pose.cost(&shape.field, &most, fine());
-        let hopeless = effort == Effort::Usual && now > T::of(HOPELESS) * leader + T::of(1e-3);
-        let refined = if hopeless {
-            Candidate { cost: now, ..out[i] }
-        } else {
-            finish(out[i], (&most, plan.rough), &all, object, prototypes, size, segmentation)
-        };
-        leader = leader.min(refined.cost);
+        let refined = finish(out[i], (&most, plan.rough), &all, object, prototypes, size, segmentation);
         let twin = out[..kept].iter().any(|c| same(c, &refined));
         if !twin {
             out[kept] = refined;
@@ -193,16 +175,10 @@ fn rough<T: Real>(
             insert(&mut best[..plan.keep], pose.cost(field, samples, Robustness { rough: true, ..wide }), pose);
         }
     }
-    // Starts that stay far behind the best so far are left at that.
-    let mut leader = out.iter().fold(T::infinity(), |least, candidate| least.min(candidate.cost));
     for (_, pose) in best.into_iter().flatten() {
         let narrow = Robustness { width_px: T::of(1.5), rough: plan.rough };
-        let (pose, wide_cost, first) = pose.refine(field, samples, wide, plan.steps[0]);
-        if wide_cost > T::of(HOPELESS) * leader + T::of(0.1) {
-            continue;
-        }
+        let (pose, _, first) = pose.refine(field, samples, wide, plan.steps[0]);
         let (pose, cost, second) = pose.refine(field, samples, narrow, plan.steps[1]);
-        leader = leader.min(cost);
         out.push(Candidate { prototype: index, pose, cost, steps: first + second });
     }
 }

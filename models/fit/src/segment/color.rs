@@ -1,5 +1,6 @@
 //! Colors compared channel by channel.
 
+use crate::tuning::SAME_COLOR_DOUBT;
 use dvp_core::Real;
 
 /// Colors closer than this in every channel are one color (two rounding errors of 8 bits).
@@ -11,13 +12,10 @@ pub(crate) fn distance<T: Real>(a: [T; 3], b: [T; 3]) -> T {
     (a[0] - b[0]).abs().max((a[1] - b[1]).abs()).max((a[2] - b[2]).abs())
 }
 
-/// Standard deviations that noise may move a color by: one in 27 pairs of one color goes farther in one of its channels.
-const DOUBT: f64 = 2.5;
-
 /// Whether two colors may be one, each with the standard deviation of its channels.
 #[inline]
 pub(crate) fn may_be_same<T: Real>(a: ([T; 3], T), b: ([T; 3], T)) -> bool {
-    distance(a.0, b.0) <= T::of(SAME_COLOR) + T::of(DOUBT) * a.1.hypot(b.1)
+    distance(a.0, b.0) <= T::of(SAME_COLOR) + T::of(SAME_COLOR_DOUBT) * a.1.hypot(b.1)
 }
 
 /// Whether two colors are one.

@@ -4,24 +4,10 @@ use dvp_core::{ImageView, Real};
 
 use super::robust::RobustSettings;
 use super::{PIXEL_NOISE, Segmentation, region, robust, transition};
-
-/// How far from the line between two colors a denoised pixel may lie, in units of the noise.
-const LINE_NOISE: f64 = 2.0;
-/// Compression moves the color of a whole region by up to a step of its coarsest quantization, about this.
-const COMPRESSED_COLOR: f64 = 0.004;
-/// In a clean picture this share of the soft pixels lies between two regions or shows the color of one, at least.
-const CLEAN_SHARE: f64 = 0.8;
-/// A soft pixel off the color of a region by this share of the contrast of an edge, away from the other side, is part of a
-/// rim. Filters that scale pictures down leave 4 % and more; of a picture with rims, this share of the soft pixels is.
-const RIM: f64 = 0.02;
-const RIM_SHARE: f64 = 0.05;
-/// Noise that compression leaves along edges, at least: it is measured across the lines between two colors only.
-const LEAST_COMPRESSED: f64 = 0.03;
-
-/// Compression leaves differences beside an edge, in units of the edge's contrast.
-const HALO: f64 = 0.8;
-/// Compression that halves the resolution of color leaves strips of mixed color as wide as this (px).
-const COMPRESSED_STRIP: f64 = 6.0;
+use crate::tuning::{
+    CLEAN_SHARE, COMPRESSED_COLOR, COMPRESSED_STRIP_PX, HALO_SHARE, LEAST_COMPRESSED_NOISE, LINE_NOISES, RIM_BEYOND,
+    RIM_SHARE,
+};
 
 /// Settings of [`Segmentation::read_noisy`].
 #[derive(Clone, Copy, Debug)]
@@ -43,7 +29,11 @@ impl<T: Real> Segmentation<T> {
     pub(crate) fn read_noisy(&mut self, image: &ImageView<'_, T>, options: NoisyOptions<T>) -> bool {
         let noise = options.noise.max(T::of(PIXEL_NOISE));
         let settings = if options.compressed {
-            RobustSettings { halo: T::of(HALO), strip_width: T::of(COMPRESSED_STRIP), ..RobustSettings::of(noise) }
+            RobustSettings {
+                halo: T::of(HALO_SHARE),
+                strip_width: T::of(COMPRESSED_STRIP_PX),
+                ..RobustSettings::of(noise)
+            }
         } else {
             RobustSettings::of(noise)
         };
@@ -56,14 +46,14 @@ impl<T: Real> Segmentation<T> {
         // Clipping at black and white moves means, and the denoised picture with them: soft pixels lie between its colors.
         let Ok(smooth) = ImageView::new(image.size(), &self.robust.smooth) else { return false };
         region::measure(&smooth, &self.map, noise, &mut self.regions, &mut self.region_scratch);
-        let tolerance = T::of(LINE_NOISE) * noise + T::of(0.012);
+        let tolerance = T::of(LINE_NOISES) * noise + T::of(0.012);
         transition::find(&smooth, &self.map, &self.regions, tolerance, &mut self.soft, &mut self.transitions);
         region::measure(image, &self.map, noise, &mut self.regions, &mut self.region_scratch);
         self.noise = noise;
         self.compressed = options.compressed;
         if options.compressed {
             let beside_edges = self.soft.noise_across(image, &self.regions, &self.transitions);
-            self.noise = beside_edges.max(T::of(LEAST_COMPRESSED)).min(noise);
+            self.noise = beside_edges.max(T::of(LEAST_COMPRESSED_NOISE)).min(noise);
             for region in &mut self.regions {
                 region.doubt = T::of(COMPRESSED_COLOR);
             }
@@ -81,7 +71,7 @@ impl<T: Real> Segmentation<T> {
     pub(crate) fn is_sharpened(&self) -> bool {
         let rim = |transition: &&transition::Transition<T>| {
             let beyond = (T::of(0.5) - transition.weight).abs() - T::of(0.5);
-            beyond > T::of(RIM)
+            beyond > T::of(RIM_BEYOND)
         };
         let rims = self.transitions.iter().filter(rim).count();
         T::of_usize(rims) > T::of(RIM_SHARE) * T::of_usize(self.soft.len())

@@ -6,6 +6,7 @@ use dvp_core::{ImageView, Real};
 
 use super::flat::FlatMap;
 use super::median::median_by;
+use crate::tuning::{CORE_PIXELS, RIM_COLOR};
 
 /// Pixels looked at for the color of a region of a picture without noise.
 const COLOR_SAMPLES: usize = 63;
@@ -13,11 +14,6 @@ const COLOR_SAMPLES: usize = 63;
 const NOISY_SAMPLES: usize = 4095;
 /// Standard deviation of a median in units of that of a mean.
 const MEDIAN_SPREAD: f64 = 1.25;
-
-/// Regions of fewer pixels have no core in which neighbors agree: their colors are those of pixels that edges reach.
-const CORE_PIXELS: usize = 32;
-/// How far edges move the color of a region that is all rim, by the number of its pixels.
-const RIM_COLOR: f64 = 0.08;
 
 /// A connected region of flat pixels.
 #[derive(Clone, Copy, Debug, Default)]

@@ -15,20 +15,7 @@ use super::color::{distance, is_same};
 use super::flat::{FlatMap, Run};
 use super::region::Region;
 use super::transition::{Soft, SoftScratch, along, off_overshoot};
-
-/// Least channel contrast of a pixel of a thin region with the region around it.
-const CONTRAST: f64 = 0.05;
-/// From this share of the full contrast on a pixel counts as covered.
-const CORE: f64 = 0.8;
-/// At most this share of the pixels of a group may be off the line between its two colors.
-const STRAY: f64 = 0.25;
-/// Pixels that a group must cover together.
-const LEAST_COVERAGE: f64 = 1.9;
-/// A group this near to another region (px) is a part of it if it has its color, or a tip if its colors are on the way there.
-const TIP_REACH: usize = 2;
-
-/// The rim that a filter leaves along an edge is this near to the flat pixels beyond the edge (px).
-const RIM_REACH: usize = 4;
+use crate::tuning::{RIM_REACH_PX, THIN_CONTRAST, THIN_CORE, THIN_COVERAGE, THIN_STRAY, TIP_REACH_PX};
 
 /// A soft pixel that lies between no two regions.
 #[derive(Clone, Copy, Debug)]
@@ -96,7 +83,8 @@ pub(crate) fn label_thin<T: Real>(
     let (width, height) = (image.size().width(), image.size().height());
     let at = |[x, y]: [u32; 2]| y as usize * width + x as usize;
     let contrast = |one: &Leftover| distance(image.pixel(at(one.pixel)), regions[one.host as usize - 1].color);
-    let open: Vec<Leftover> = scratch.leftover.iter().filter(|one| contrast(one) > T::of(CONTRAST)).copied().collect();
+    let open: Vec<Leftover> =
+        scratch.leftover.iter().filter(|one| contrast(one) > T::of(THIN_CONTRAST)).copied().collect();
     if open.is_empty() {
         return None;
     }
@@ -157,26 +145,26 @@ fn read_group<T: Real>(
             stray += 1;
         } else {
             total += share;
-            if share >= T::of(CORE) {
+            if share >= T::of(THIN_CORE) {
                 covered.push(one.pixel);
             }
         }
     }
-    if T::of_usize(stray) > T::of(STRAY) * T::of_usize(group.len()) {
+    if T::of_usize(stray) > T::of(THIN_STRAY) * T::of_usize(group.len()) {
         return None;
     }
     let mut thin = Thin { color, covered, parts: Vec::new() };
     let mut tip = false;
     for one in group {
         let [x, y] = one.pixel.map(|v| v as usize);
-        for row in y.saturating_sub(RIM_REACH)..(y + RIM_REACH + 1).min(image.size().height()) {
-            for column in x.saturating_sub(RIM_REACH)..(x + RIM_REACH + 1).min(width) {
+        for row in y.saturating_sub(RIM_REACH_PX)..(y + RIM_REACH_PX + 1).min(image.size().height()) {
+            for column in x.saturating_sub(RIM_REACH_PX)..(x + RIM_REACH_PX + 1).min(width) {
                 let label = map.labels[row * width + column].max(fringe.regions[row * width + column]);
                 if label == 0 || label == one.host || thin.parts.contains(&label) {
                     continue;
                 }
                 let beside = regions[label as usize - 1].color;
-                let near = row.abs_diff(y).max(column.abs_diff(x)) <= TIP_REACH;
+                let near = row.abs_diff(y).max(column.abs_diff(x)) <= TIP_REACH_PX;
                 if is_same(beside, color) {
                     if near {
                         thin.parts.push(label);
@@ -189,7 +177,7 @@ fn read_group<T: Real>(
             }
         }
     }
-    let alone = !tip && total >= T::of(LEAST_COVERAGE);
+    let alone = !tip && total >= T::of(THIN_COVERAGE);
     (alone || !thin.parts.is_empty()).then_some(thin)
 }
 

@@ -9,9 +9,7 @@ use super::flat::FlatMap;
 use super::median::median_by;
 use super::region::Region;
 use super::thin::Leftover;
-
-/// Filters that sharpen leave a rim along an edge, off its color by at most this share of the edge's contrast.
-const OVERSHOOT: f64 = 0.25;
+use crate::tuning::OVERSHOOT;
 
 /// A pixel whose color lies on the line between the colors of two regions.
 #[derive(Clone, Copy, Debug)]

@@ -10,14 +10,13 @@ use crate::pose::field::OutlineField;
 use crate::pose::gauss_newton::Frame;
 use crate::pose::search::Prototype;
 use crate::segment::EdgeSample;
+use crate::tuning::UNION_WIDTH_PX;
 
 /// Rounds of assignment and refinement, and the steps of each part per round.
 const ROUNDS: usize = 6;
 const STEPS: usize = 3;
 /// Width (px) of residuals: the first rounds reach farther.
 const WIDTHS: [f64; ROUNDS] = [1.0, 1.0, 0.5, 0.5, 0.3, 0.3];
-/// Distance error (px) at which a sample counts as missed.
-const WIDTH: f64 = 0.5;
 
 impl<T: Real> Part<T> {
     /// Distance of the posed outline minus the sampled one (px), per sample; negative: the outline stands out.
@@ -85,9 +84,9 @@ fn cost<T: Real>(parts: &[Part<T>], samples: &[EdgeSample<T>], prototypes: &[Pro
     robust_mean(nearest.into_iter())
 }
 
-/// Mean of squared residuals (px^2), those beyond [`WIDTH`] counting little.
+/// Mean of squared residuals (px^2), those beyond [`UNION_WIDTH_PX`] counting little.
 pub(super) fn robust_mean<T: Real>(residuals: impl ExactSizeIterator<Item = T>) -> T {
     let count = T::of_usize(residuals.len().max(1));
-    let inverse = T::of(1.0 / (WIDTH * WIDTH));
+    let inverse = T::of(1.0 / (UNION_WIDTH_PX * UNION_WIDTH_PX));
     residuals.map(|r| r * r / (T::one() + r * r * inverse)).sum::<T>() / count
 }

@@ -4,13 +4,12 @@ use alloc::vec::Vec;
 
 use super::Part;
 use super::partial::Candidate;
+use crate::tuning::PART_GAIN;
 
 /// Parts considered.
 const MOST_PARTS: usize = 80;
 /// Sets of each size that go on to be refined.
 const MOST_SETS: usize = 6;
-/// Least share of all samples by which each part must add to a set, and a set to the best part alone.
-const LEAST_GAIN: f64 = 0.08;
 
 /// Indices of candidates and the samples they explain together.
 #[derive(Clone, Debug)]
@@ -59,5 +58,5 @@ fn extended<T>(sets: &[Set], candidates: &[Candidate<T>], samples: usize) -> Vec
 
 #[expect(clippy::cast_precision_loss, reason = "an outline has few samples")]
 fn worth_a_part(gain: usize, samples: usize) -> bool {
-    gain as f64 >= LEAST_GAIN * samples as f64
+    gain as f64 >= PART_GAIN * samples as f64
 }

@@ -28,15 +28,10 @@ use crate::free::outline_fit::FreeOutline;
 use crate::pose::gauss_newton::PosePx;
 use crate::pose::search::Prototype;
 use crate::segment::Segment;
+use crate::tuning::{CROSSING_PX, EXPLAINED_PX, THIRD_PART};
 
 /// Sets of poses that are handed back.
 const MOST_SETS: usize = 3;
-/// A set of three must miss the samples by so many times less than one of two.
-const THIRD_PART: f64 = 4.0;
-/// Distance error (px) up to which an outline explains a sample.
-const EXPLAINED_PX: f64 = 0.3;
-/// Where two outlines pass within this distance (px) of a sample both cover its pixel, and its color tells neither distance.
-const CROSSING_PX: f64 = 2.5;
 
 /// A prototype at a pose.
 #[derive(Clone, Copy, Debug, PartialEq)]

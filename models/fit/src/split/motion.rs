@@ -12,22 +12,12 @@ use crate::pose::equations::{Robustness, SampleLanes};
 use crate::pose::field::OutlineField;
 use crate::pose::gauss_newton::{Frame, PosePx, wrapped};
 use crate::segment::EdgeSample;
+use crate::tuning::{FAR_PX, INSIDE_PX, LEAST_SHIFT, MOST_INSIDE_TWICE, MOST_UNEXPLAINED, ROUGHLY_INSIDE_PX};
 
 /// Points of the outline that starts are made of.
 const ANCHORS: usize = 56;
 /// Starts that are refined.
 const KEPT: usize = 40;
-/// Least mean displacement of the outline, relative to the square root of its area.
-const LEAST_SHIFT: f64 = 0.2;
-/// A motion that leaves more of the outline inside in both directions is a symmetry of the union.
-const MOST_INSIDE_TWICE: f64 = 0.8;
-/// Distance (px) up to which a point lies inside while starts are compared, and after refinement.
-const ROUGHLY_INSIDE: f64 = 1.5;
-const INSIDE: f64 = 0.7;
-/// Distances count up to this (px).
-const FAR: f64 = 5.0;
-/// Share of the outline that a motion may leave unexplained.
-const MOST_UNEXPLAINED: f64 = 0.08;
 /// Widths (px) of residuals while a motion is refined, and steps.
 const WIDTHS: [f64; 2] = [1.5, 0.7];
 const STEPS: usize = 6;
@@ -65,7 +55,7 @@ pub(super) fn search<T: Real>(contour: &[[T; 2]], field: &OutlineField<T>) -> Ve
     let anchors = anchors(contour);
     let mut kept: Vec<(T, PosePx<T>)> = Vec::with_capacity(KEPT + 1);
     let least_shift = T::of(LEAST_SHIFT) * field.area.sqrt();
-    let rough = T::of(ROUGHLY_INSIDE);
+    let rough = T::of(ROUGHLY_INSIDE_PX);
     for (i, a) in anchors.iter().enumerate() {
         for b in &anchors[i + 1..] {
             let pose = laid_on(*a, *b);
@@ -88,7 +78,7 @@ pub(super) fn search<T: Real>(contour: &[[T; 2]], field: &OutlineField<T>) -> Ve
             let robustness = Robustness { width_px: T::of(width), rough: false };
             pose = pose.refine(field, &samples, robustness, STEPS).0;
         }
-        let merit = merit(&pose, &anchors, field, T::of(INSIDE));
+        let merit = merit(&pose, &anchors, field, T::of(INSIDE_PX));
         let credible = merit.unexplained <= T::of(MOST_UNEXPLAINED) && merit.twice <= T::of(MOST_INSIDE_TWICE);
         if credible && pose.log_scale.abs() < T::of(0.1) && shift(&pose, &anchors) >= least_shift {
             keep(&mut found, merit.outside, pose, field.centroid);
@@ -144,7 +134,7 @@ fn outside<T: Real>(pose: &PosePx<T>, anchors: &[Anchor<T>], field: &OutlineFiel
         let point = anchors[(k * 23) % anchors.len()].point;
         let beyond = nearest(&frame, field, point).0 - limit;
         if beyond > T::zero() {
-            let beyond = beyond.min(T::of(FAR));
+            let beyond = beyond.min(T::of(FAR_PX));
             cost += beyond * beyond * share;
             if cost > worst {
                 return None;
@@ -167,7 +157,7 @@ fn merit<T: Real>(pose: &PosePx<T>, anchors: &[Anchor<T>], field: &OutlineField<
     let mut merit = Merit { outside: T::zero(), unexplained: T::zero(), twice: T::zero() };
     for anchor in anchors {
         let (near, far) = nearest(&frame, field, anchor.point);
-        let beyond = near.max(T::zero()).min(T::of(FAR));
+        let beyond = near.max(T::zero()).min(T::of(FAR_PX));
         merit.outside += beyond * beyond * share;
         merit.unexplained += if near > limit { share } else { T::zero() };
         merit.twice += if far <= limit { share } else { T::zero() };

@@ -13,6 +13,7 @@ use crate::pose::field::OutlineField;
 use crate::pose::gauss_newton::{LEAST_GAIN, PosePx, wrapped};
 use crate::pose::search::{Prototype, insert};
 use crate::segment::{EdgeSample, Segment};
+use crate::tuning::{DIRECTION_REACH_PX, LEAST_EXPLAINED, MOST_STANDING_OUT, STANDING_OUT_PX};
 
 /// Samples that starts are laid on.
 const SEEDS: usize = 16;
@@ -27,14 +28,6 @@ const SIZES: [f64; 7] = [0.3, 0.42, 0.54, 0.66, 0.78, 0.9, 1.02];
 const KEPT: usize = 2;
 /// Widths (px) of residuals behind the outline, stage by stage, and the steps of each.
 const STAGES: [(f64, usize); 3] = [(2.0, 5), (1.0, 5), (0.4, 6)];
-/// Width (px) of residuals that stand out.
-const STANDING_OUT: f64 = 4.0;
-/// Radius (px) around a seed whose samples tell its outward direction.
-const DIRECTION_REACH: f64 = 3.0;
-/// Share of the samples beyond which an outline may not stand out.
-const MOST_STANDING_OUT: f64 = 0.04;
-/// Least share of the samples that a part must explain.
-const LEAST_EXPLAINED: f64 = 0.1;
 
 /// A part with the samples it explains.
 #[derive(Clone, Debug)]
@@ -96,7 +89,7 @@ fn squared<T: Real>(a: [T; 2], b: [T; 2]) -> T {
 /// The direction in which distances grow around a sample; none where they are not those of a smooth outline.
 fn outward<T: Real>(samples: &[EdgeSample<T>], at: EdgeSample<T>) -> Option<[T; 2]> {
     // Least squares of distance = n.(p - p0) + c over the neighbors: means first, then a 2 x 2 system.
-    let reach = T::of(DIRECTION_REACH * DIRECTION_REACH);
+    let reach = T::of(DIRECTION_REACH_PX * DIRECTION_REACH_PX);
     let near = || samples.iter().filter(move |sample| squared(sample.point, at.point) <= reach);
     let count = T::of_usize(near().count());
     let mut mean = [T::zero(); 3];
@@ -157,11 +150,11 @@ fn starts<T: Real>(
 }
 
 /// Normal equations of a pose that may lie behind the samples: residuals beyond `width_px` stop counting there, and only
-/// beyond [`STANDING_OUT`] in front.
+/// beyond [`STANDING_OUT_PX`] in front.
 fn lopsided<T: Real>(pose: &PosePx<T>, field: &OutlineField<T>, samples: &SampleLanes<T>, width_px: T) -> Normal<T> {
     let one = T::one();
     let behind = one / (width_px * width_px);
-    let before = T::of(1.0 / (STANDING_OUT * STANDING_OUT));
+    let before = T::of(1.0 / (STANDING_OUT_PX * STANDING_OUT_PX));
     let robustness = Robustness { width_px, rough: false };
     pose.normal_by(field, samples, robustness, |residual| if residual < T::zero() { before } else { behind })
 }

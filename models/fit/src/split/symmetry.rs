@@ -13,6 +13,7 @@ use crate::pose::equations::{Robustness, SampleLanes};
 use crate::pose::field::OutlineField;
 use crate::pose::gauss_newton::PosePx;
 use crate::segment::EdgeSample;
+use crate::tuning::{AGREES_PX, LEAST_AGREEING, LEAST_TESTED, MOST_FORBIDDEN};
 
 /// Rotational symmetries looked for, the highest first.
 const ORDERS: [usize; 5] = [6, 5, 4, 3, 2];
@@ -21,13 +22,6 @@ const AXES: usize = 36;
 const REFINED_AXES: usize = 3;
 /// Samples used to look for symmetries.
 const SEARCH_SAMPLES: usize = 120;
-/// Distance error (px) of a sample that agrees.
-const AGREES_PX: f64 = 0.6;
-/// Least share of the samples that must be carried to supported stretches, and of those that must agree.
-const LEAST_TESTED: f64 = 0.25;
-const LEAST_AGREEING: f64 = 0.9;
-/// Most samples that may be carried to where they are not allowed, as a share of all.
-const MOST_FORBIDDEN: f64 = 0.06;
 /// Edges around that of a sample which it supports.
 const SUPPORTED_EDGES: usize = 1;
 

@@ -21,6 +21,7 @@ use crate::pose::field::OutlineField;
 use crate::pose::gauss_newton::{Frame, PosePx};
 use crate::pose::search::Prototype;
 use crate::segment::EdgeSample;
+use crate::tuning::{STANDS_OUT_PX, TWINS_ASTRAY_PX};
 
 /// Motions whose shape is fitted.
 const TRIED: usize = 6;
@@ -32,10 +33,6 @@ const ROUNDS: usize = 2;
 const START_VERTICES: usize = 96;
 /// Rows and columns around the union while the intersection is traced.
 const MARGIN: usize = 2;
-/// Distance (px) by which an outline may stand out of the union.
-const STANDS_OUT_PX: f64 = 0.8;
-/// Distance (px) beyond which a sample lies on neither outline.
-const ASTRAY_PX: f64 = 1.5;
 
 /// Memory of [`Union::twins`].
 #[derive(Clone, Debug, Default)]
@@ -198,7 +195,7 @@ fn gather<T: Real>(
         let back = frames.map(|frame| frame.to_unit(sample.point));
         let distances: [T; 2] = core::array::from_fn(|k| frames[k].scale * field.distance(back[k]).0);
         let own = usize::from(distances[1] < distances[0]);
-        let astray = (distances[own] - sample.distance).abs() > T::of(ASTRAY_PX);
+        let astray = (distances[own] - sample.distance).abs() > T::of(TWINS_ASTRAY_PX);
         if !astray && distances[1 - own] > T::of(CROSSING_PX) {
             let scale = frames[own].scale;
             out.push(EdgeSample { point: back[own], distance: sample.distance / scale, weight: sample.weight * scale });

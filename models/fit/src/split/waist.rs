@@ -2,18 +2,10 @@
 
 use alloc::vec::Vec;
 
+use crate::tuning::{WAIST_BORDER_PX, WAIST_HOLLOW_PX, WAIST_SHARP_TURN, WAIST_TURN};
 use dvp_core::contour::signed_area;
 use dvp_core::geometry::{LineSegment, Vec2, convex_hull};
 use dvp_core::{ImageSize, Real};
-
-/// Turn (radians) over four edges from which an outline bends inward.
-const INWARD: f64 = 0.12;
-const SHARPLY_INWARD: f64 = 0.2;
-/// Depth (px) below its convex hull at which a traced outline is surely not convex: soft pixels place it to a part of a
-/// pixel.
-const HOLLOW_PX: f64 = 0.75;
-/// Nearer to the image border (px) an outline is held by samples on one side only.
-const BORDER_PX: f64 = 3.0;
 
 /// Whether a closed outline (px, the last vertex repeats the first) bends inward in at least two places that show, sharply in
 /// one; beyond the image border an outline is a guess.
@@ -29,13 +21,15 @@ pub(crate) fn is_waisted<T: Real>(outline: &[[T; 2]], size: ImageSize) -> bool {
         (p[0] * q[1] - p[1] * q[0]).atan2(p[0] * q[0] + p[1] * q[1]) * sign
     };
     let turns: Vec<T> = (0..n).map(turn).collect();
-    let (margin, extents) = (T::of(BORDER_PX), [size.width(), size.height()].map(T::of_usize));
+    let (margin, extents) = (T::of(WAIST_BORDER_PX), [size.width(), size.height()].map(T::of_usize));
     let shows = |i: usize| (0..2).all(|c| outline[i][c] > margin && outline[i][c] < extents[c] - margin);
     let inward = |i: &usize| {
         let own = turns[*i];
-        shows(*i) && own < T::of(-INWARD) && (1..=2).all(|k| own <= turns[(i + k) % n] && own < turns[(i + n - k) % n])
+        shows(*i)
+            && own < T::of(-WAIST_TURN)
+            && (1..=2).all(|k| own <= turns[(i + k) % n] && own < turns[(i + n - k) % n])
     };
-    let sharp = (0..n).filter(inward).any(|i| turns[i] < T::of(-SHARPLY_INWARD));
+    let sharp = (0..n).filter(inward).any(|i| turns[i] < T::of(-WAIST_SHARP_TURN));
     sharp && (0..n).filter(inward).count() >= 2
 }
 
@@ -43,7 +37,7 @@ pub(crate) fn is_waisted<T: Real>(outline: &[[T; 2]], size: ImageSize) -> bool {
 /// objects that overlap leave hollows where their outlines cross.
 pub(crate) fn is_convex<T: Real>(contour: &[[T; 2]]) -> bool {
     let hull = convex_hull(contour);
-    contour.iter().all(|&point| depth(&hull, point) <= T::of(HOLLOW_PX))
+    contour.iter().all(|&point| depth(&hull, point) <= T::of(WAIST_HOLLOW_PX))
 }
 
 /// How far inside a convex polygon of [`convex_hull`] a point lies.

@@ -12,18 +12,10 @@ use dvp_core::render::EdgeProfile;
 use dvp_core::{ImageView, Real};
 
 use super::EdgeKind;
+use crate::tuning::{
+    AREA_SOFTNESS_PX, EDGE_LINE, EDGE_LINE_NOISES, EDGE_PIXELS, HARD_SOFTNESS_PX, LOPSIDED_LEAST, LOPSIDED_SURELY,
+};
 
-/// A neighbor farther from the line between the two colors than this, and than so many times the noise, belongs to
-/// something else.
-const LINE_TOLERANCE: f64 = 0.05;
-const LINE_NOISE: f64 = 3.0;
-/// Fewer pixels than this tell nothing.
-const FEW: usize = 12;
-/// Softness (px) up to which pixels are hard.
-const HARD: f64 = 0.02;
-/// Softness (px) up to which coverage is that of areas: at random positions it is 0.15 to 0.19, along the grid 0 to 0.25;
-/// 0.24 is a further Gaussian blur of 0.3 px, which changes no coverage by more than 0.05.
-const AREA: f64 = 0.24;
 /// Sigma of the nearest logistic over the softness of a Gaussian: sqrt(pi) / 1.702.
 const LOGISTIC: f64 = 1.041;
 /// Softness of the reference renderer per pixel of the shorter image side.
@@ -33,10 +25,6 @@ const REFERENCE_RANGE: [f64; 2] = [0.55, 1.65];
 /// (high - low) / soft of the reference, and its standard deviation times the root of the number of soft pixels.
 const LOPSIDED: f64 = 0.2;
 const LOPSIDED_NOISE: f64 = 0.7;
-/// Edges along the grid may hide this much of it.
-const LOPSIDED_LEAST: f64 = 0.06;
-/// No blur comes near this.
-const LOPSIDED_SURELY: f64 = 0.1;
 
 /// Counts and sums over soft pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -80,7 +68,7 @@ impl<T: Real> EdgeEvidence<T> {
     pub(crate) fn may_be_reference(&self, unit_px: T) -> bool {
         let ratio = |softness: T| (softness / (unit_px * T::of(REFERENCE_SOFTNESS))).as_f64();
         let in_range = |softness| (REFERENCE_RANGE[0]..REFERENCE_RANGE[1]).contains(&ratio(softness));
-        self.low + self.middle + self.high >= FEW && self.softness().is_some_and(in_range)
+        self.low + self.middle + self.high >= EDGE_PIXELS && self.softness().is_some_and(in_range)
     }
 
     /// The kind that the pixels speak for, and another one to try where they leave a doubt, at `unit_px` pixels per scene
@@ -88,10 +76,12 @@ impl<T: Real> EdgeEvidence<T> {
     pub(crate) fn kinds(&self, unit_px: T) -> (EdgeKind<T>, Option<EdgeKind<T>>) {
         let reference = EdgeKind::Profile(EdgeProfile::reference());
         let soft = self.low + self.middle + self.high;
-        let Some(softness) = self.softness().filter(|_| soft + self.settled >= FEW) else { return (reference, None) };
-        let other = if softness < T::of(HARD) {
+        let Some(softness) = self.softness().filter(|_| soft + self.settled >= EDGE_PIXELS) else {
+            return (reference, None);
+        };
+        let other = if softness < T::of(HARD_SOFTNESS_PX) {
             EdgeKind::Hard
-        } else if softness < T::of(AREA) {
+        } else if softness < T::of(AREA_SOFTNESS_PX) {
             EdgeKind::Area
         } else {
             let sigma_px = softness * T::of(LOGISTIC);
@@ -127,7 +117,7 @@ impl<T: Real> EdgeEvidence<T> {
         let line: [T; 3] = core::array::from_fn(|c| to[c] - from[c]);
         let per_length = line.iter().map(|&d| d * d).sum::<T>().recip();
         let at = y * width + x;
-        let tolerance = (self.noise * T::of(LINE_NOISE)).max(T::of(LINE_TOLERANCE)).powi(2);
+        let tolerance = (self.noise * T::of(EDGE_LINE_NOISES)).max(T::of(EDGE_LINE)).powi(2);
         let share = |index: usize| {
             let color = image.pixel(index);
             let from_start: [T; 3] = core::array::from_fn(|c| color[c] - from[c]);

@@ -4,12 +4,10 @@ use dvp_core::{ImageView, Real};
 
 use super::EdgeEvidence;
 use crate::segment::Segmentation;
+use crate::tuning::{EDGE_CONTRAST, EDGE_NOISES};
 
 /// Soft pixels whose neighbors are looked at.
 const MEASURED_PIXELS: usize = 320;
-/// Least distance between two colors whose soft pixels are looked at, and the same in units of the noise.
-const LEAST_CONTRAST: f64 = 0.06;
-const LEAST_NOISES: f64 = 5.0;
 /// Multiples of it, without their whole parts, are spread evenly however many there are.
 const GOLDEN_SECTION: f64 = 0.618_033_988_749_895;
 
@@ -21,7 +19,7 @@ impl<T: Real> Segmentation<T> {
         // That of rounding changes nothing.
         let noise = if self.is_noisy() { self.noise } else { T::zero() };
         let mut evidence = EdgeEvidence { noise, ..EdgeEvidence::default() };
-        let least_contrast = (T::of(LEAST_NOISES) * noise).max(T::of(LEAST_CONTRAST));
+        let least_contrast = (T::of(EDGE_NOISES) * noise).max(T::of(EDGE_CONTRAST));
         for transition in &self.transitions {
             if let Some(rim) = self.rim(transition)
                 && rim.others == 0

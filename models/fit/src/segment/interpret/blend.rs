@@ -7,9 +7,7 @@ use dvp_core::render::Compositing;
 use super::{Cover, MAX_COVER, Reading, is_color, mean, mixed_in, slack, within_unit};
 use crate::segment::color::distance;
 use crate::segment::region::Region;
-
-/// How exactly an overlap shows the mean of its colors.
-const MEAN_COLOR: f64 = 0.006;
+use crate::tuning::MEAN_COLOR;
 
 impl<T: Real> Reading<T> {
     /// Reads the prepared regions as blended.

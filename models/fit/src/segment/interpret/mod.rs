@@ -17,6 +17,7 @@ use dvp_core::render::Compositing;
 use super::color::{SAME_COLOR, distance};
 use super::region::Region;
 use super::transition::Transition;
+use crate::tuning::{BACKGROUND_CONTACT, HOLE_CONTACT, MIN_BORDER, MOSTLY_INSIDE};
 pub(crate) use evidence::Evidence;
 
 /// The most objects one region may be covered by.
@@ -98,15 +99,6 @@ pub(crate) struct Reading<T> {
     /// Regions of one object.
     sets: DisjointSets,
 }
-
-/// Two objects with fewer soft pixels between them merely touch in a point.
-const MIN_BORDER: u32 = 3;
-/// An overlap touches the background at most with this share of its contacts (outlines cross in points).
-const BACKGROUND_CONTACT: f64 = 0.34;
-/// A hole touches the object around it with at least this share of its contacts.
-const HOLE_CONTACT: f64 = 0.6;
-/// What lies inside another region touches it with at least this share of its contacts.
-const MOSTLY_INSIDE: f64 = 0.75;
 
 /// Twice the standard deviation of a difference between the colors of regions that noise has left in doubt.
 fn slack<T: Real>(regions: &[Region<T>], compared: &[usize]) -> T {

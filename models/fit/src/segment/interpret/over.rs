@@ -13,15 +13,10 @@ use dvp_core::render::Compositing;
 use super::{Border, Cover, MAX_COVER, MIN_BORDER, Reading, Stacking, is_color, slack, within_unit};
 use crate::segment::color::distance;
 use crate::segment::region::Region;
+use crate::tuning::{CROSSING_CONTACT, OVERLAP_COLOR, SHADOW_CONTRAST};
 
-/// How exactly an overlap shows the color that opacity foretells.
-const MIXED_COLOR: f64 = 0.008;
-/// Least contrast of an object with the background, for its shadow in an overlap to tell the opacity.
-const SHADOW_CONTRAST: f64 = 0.1;
 /// What shows through a translucent object, at least and at most.
 const THROUGH: [f64; 2] = [0.06, 0.94];
-/// Two objects that overlap meet in points; longer contacts, relative to those of the overlap, speak against it.
-const CROSSING_CONTACT: f64 = 0.25;
 
 /// An overlap of region `top` over region `bottom`.
 #[derive(Clone, Copy, Debug)]
@@ -99,7 +94,7 @@ impl<T: Real> Reading<T> {
         let foretold: [T; 3] = core::array::from_fn(|c| top[c] + through * (bottom[c] - ground[c]));
         let off = distance(mixed, foretold);
         let translucent = through >= T::of(THROUGH[0]) && through <= T::of(THROUGH[1]);
-        let fits = translucent && off <= T::of(MIXED_COLOR) + slack && is_color(self.own_color(top, through));
+        let fits = translucent && off <= T::of(OVERLAP_COLOR) + slack && is_color(self.own_color(top, through));
         fits.then_some((through, off))
     }
 
@@ -199,7 +194,7 @@ impl<T: Real> Reading<T> {
                 }
                 let below_color = regions[j].color;
                 let foretold = core::array::from_fn(|c| below_color[c] + opacity * (color[c] - below_color[c]));
-                if distance(regions[i].color, foretold) <= T::of(2.0 * MIXED_COLOR) + slack(regions, &[i, j]) {
+                if distance(regions[i].color, foretold) <= T::of(2.0 * OVERLAP_COLOR) + slack(regions, &[i, j]) {
                     let mut members = below.members().to_vec();
                     members.push(object);
                     return Some(Cover::of(&members));

@@ -5,18 +5,10 @@ use alloc::collections::{BTreeMap, BinaryHeap};
 use alloc::vec::Vec;
 use core::cmp::Reverse;
 
+use crate::tuning::{HALO_COLOR, HALO_PIXELS, HALO_WIDTH_PX, REGION_LENGTH_PX};
 use dvp_core::contour::{Connectivity, label_by};
 use dvp_core::geometry::DisjointSets;
 use dvp_core::{ImageView, Real};
-
-/// Every region pays as if it had this much more boundary (px): what an object costs whatever its size.
-const FIXED_LENGTH: f64 = 8.0;
-
-/// What compression leaves beside an edge stays in the unit of 16 x 16 pixels that its color is coded in: larger regions, if
-/// they are wider than this (px; twice the area over the boundary) and differ by more than steps of means do, are no halo.
-const HALO_PIXELS: u32 = 256;
-const HALO_WIDTH: u32 = 8;
-const HALO_COLOR: f64 = 0.03;
 
 /// Regions that cover all pixels, with their boundaries; kept between images as memory.
 #[derive(Clone, Debug, Default)]
@@ -116,7 +108,7 @@ impl<T: Real> Merger<T> {
     fn cost(&self, a: u32, b: u32, length: u32) -> u64 {
         let [n, m] = [a, b].map(|region| T::of_usize(self.counts[region as usize] as usize));
         let added = self.contrast(a, b) * n * m / (n + m);
-        (added.as_f64() / (f64::from(length) + FIXED_LENGTH)).max(0.0).to_bits()
+        (added.as_f64() / (f64::from(length) + REGION_LENGTH_PX)).max(0.0).to_bits()
     }
 
     fn merge(&mut self, stop: Stop<T>) {
@@ -153,7 +145,7 @@ impl<T: Real> Merger<T> {
         self.neighbors[small as usize] = neighbors;
         let pixels = self.counts[small as usize];
         if pixels > HALO_PIXELS
-            && 2 * pixels > HALO_WIDTH * boundary
+            && 2 * pixels > HALO_WIDTH_PX * boundary
             && self.contrast(a, b) > T::of(HALO_COLOR * HALO_COLOR)
         {
             return false;

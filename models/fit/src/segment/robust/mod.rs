@@ -16,23 +16,11 @@ use alloc::vec::Vec;
 use dvp_core::{ImageView, Real};
 
 use super::flat::FlatMap;
+use crate::tuning::{BOUNDARY_PRICE, DENOISE_LEFT, DENOISE_REACH_PX, MIN_REGION_PIXELS, SOFT_RINGS, STRIP_WIDTH_PX};
 use denoise::{DenoiseScratch, DenoiseSettings, denoise};
 pub(crate) use level::noise_level;
 use merge::{Merger, Stop};
 use strips::{Zone, find_strips, measure_zones};
-
-/// Pixels this far apart are averaged (px).
-const REACH: usize = 5;
-/// Noise that the first pass leaves, in units of the picture's.
-const FIRST_LEFT: f64 = 0.25;
-/// Squared error (in units of the noise's variance) that a pixel of boundary must save.
-const BOUNDARY_PRICE: f64 = 3.0;
-/// Strips along the edges of a picture that is not compressed are up to this wide (px).
-const STRIP_WIDTH: f64 = 2.6;
-/// Rings of pixels beside a boundary that may still be soft.
-const SOFT_RINGS: usize = 3;
-/// Fewer flat pixels than this are no region.
-const MIN_PIXELS: u32 = 4;
 
 /// Label of pixels that belong to no region.
 const SOFT: u32 = u32::MAX;
@@ -56,7 +44,7 @@ impl<T: Real> RobustSettings<T> {
     /// For noise that is everywhere alike.
     pub(crate) fn of(noise: T) -> Self {
         let zone = T::of(0.004) + T::of(0.1) * noise;
-        Self { noise, halo: T::zero(), strip_width: T::of(STRIP_WIDTH), zone, boundary: T::one() }
+        Self { noise, halo: T::zero(), strip_width: T::of(STRIP_WIDTH_PX), zone, boundary: T::one() }
     }
 }
 
@@ -85,11 +73,11 @@ pub(crate) fn read_flat<T: Real>(
     let RobustSettings { noise, halo, strip_width, zone, boundary } = settings;
     let variance = noise * noise;
     let two = T::of(2.0);
-    let first = DenoiseSettings { reach: REACH, expected: two * variance, limit: two * variance };
+    let first = DenoiseSettings { reach: DENOISE_REACH_PX, expected: two * variance, limit: two * variance };
     denoise(image, image, first, &mut scratch.denoise, &mut scratch.first);
     let Ok(guide) = ImageView::new(image.size(), &scratch.first) else { return };
-    let left = two * variance * T::of(FIRST_LEFT * FIRST_LEFT);
-    let second = DenoiseSettings { reach: REACH, expected: left, limit: two * left };
+    let left = two * variance * T::of(DENOISE_LEFT * DENOISE_LEFT);
+    let second = DenoiseSettings { reach: DENOISE_REACH_PX, expected: left, limit: two * left };
     denoise(image, &guide, second, &mut scratch.denoise, &mut scratch.smooth);
     let Ok(smooth) = ImageView::new(image.size(), &scratch.smooth) else { return };
     let stop = Stop { price: T::of(BOUNDARY_PRICE) * boundary * variance, halo, most_regions };
@@ -157,8 +145,8 @@ fn restore_small<T: Real>(zones: &mut [Zone<T>], labels: &[u32], eroded: &mut [u
     }
     for (label, &own) in eroded.iter_mut().zip(labels) {
         let zone = &zones[own as usize];
-        if zone.flat < MIN_PIXELS && !zone.strip {
-            *label = if zone.pixels >= MIN_PIXELS { own } else { SOFT };
+        if zone.flat < MIN_REGION_PIXELS && !zone.strip {
+            *label = if zone.pixels >= MIN_REGION_PIXELS { own } else { SOFT };
         }
     }
 }

@@ -273,7 +273,6 @@ impl CompletionJson {
         match completion {
             Completion::Prototype => Self::Prototype {},
             Completion::Rotation { order } => Self::Rotation { order },
-            Completion::Mirror => Self::Mirror {},
             Completion::Straight => Self::Straight {},
             _ => Self::Other {},
         }
