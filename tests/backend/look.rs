@@ -20,7 +20,7 @@ const STEPS: usize = 20;
 /// (`decompose`), for the same reason.
 fn held(dtype: DType) -> (usize, f64) {
     match dtype {
-        DType::F32 => (10, 2e-4),
+        DType::F32 => (10, 5e-6),
         DType::F64 => (STEPS, 1e-9),
     }
 }
