@@ -19,6 +19,7 @@
 //! | `modes` | a step of training in every mode |
 //! | `published` | DINOv2 and Conditional DETR against their public implementations; their gradients |
 //! | `decompose` | MONet: 50 steps, gradients, files |
+//! | `look` | a second look: steps, gradients, files |
 //! | `weights` | files written on one backend and read on another |
 #![expect(clippy::unwrap_used, clippy::panic, reason = "a failed test with a line number")]
 #![expect(clippy::cast_possible_truncation, reason = "rounding to f32 is what is checked")]
@@ -34,6 +35,7 @@ mod elementwise;
 mod input;
 mod kinks;
 mod layout;
+mod look;
 mod modes;
 mod network;
 mod product;

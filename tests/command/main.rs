@@ -14,6 +14,7 @@ mod fit;
 mod generate;
 mod gradients;
 mod interrupted;
+mod look;
 mod network;
 mod parsimony;
 mod picture_kinds;

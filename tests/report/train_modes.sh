@@ -14,7 +14,7 @@ train() { # NAME OPTIONS...
     fi
     # The last weights: the best ones by the image error may be those of the start.
     last=$(ls "$out/$1"/checkpoint-*.safetensors | tail -n 1)
-    "$dvp" evaluate --model "$last" --generated 256 --seed 4321
+    "$dvp" evaluate --model "$last" --looks 0 --generated 256 --seed 4321
 }
 
 nothing=(--learning-rate 0.0015 --warm-up 50)

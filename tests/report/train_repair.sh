@@ -10,6 +10,6 @@ for mode in ti+ ti-tp; do
         --steps "$steps" --learning-rate 0.0003 --warm-up 20 --seed 3 --save-every 50 --rotation-weight 0.3 --scale-weight 5
     # The last weights: the best ones by the image error may be those of the start.
     last=$(ls "$out/$mode"/checkpoint-*.safetensors | tail -n 1)
-    "$dvp" evaluate --model "$last" --generated 256 --seed 4321
+    "$dvp" evaluate --model "$last" --looks 0 --generated 256 --seed 4321
 done
-"$dvp" evaluate --model "$weights" --generated 256 --seed 4321
+"$dvp" evaluate --model "$weights" --looks 0 --generated 256 --seed 4321

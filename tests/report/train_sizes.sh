@@ -24,5 +24,5 @@ for size in tiny small "$out"/cells{24,48,96,128}.json; do
     run=$out/$(basename "$size" .json)
     "$dvp" train --out "$run" --backend candle --size "$size" --mode gp --steps 500 --learning-rate 0.0015 --warm-up 50 \
         --rotation-weight 0.3 --scale-weight 5 --save-every 100
-    "$dvp" evaluate --model "$run/best.safetensors" --generated 256 --seed 4321
+    "$dvp" evaluate --model "$run/best.safetensors" --looks 0 --generated 256 --seed 4321
 done

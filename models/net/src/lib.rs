@@ -21,6 +21,7 @@
 //! | [`decompose`] | [`Decomposer`](decompose::Decomposer): images to masks and what they show, MONet; knows no shapes |
 //! | [`detr`] | [`ConditionalDetr`](detr::ConditionalDetr): features to one latent per object slot |
 //! | [`model`] | [`Model`](model::Model): the whole, with its seven heads |
+//! | [`look`] | [`Look`](look::Look): a second look at what was found, object by object |
 //! | [`scene_steps`] | predicted scenes painted and judged by the core's differentiable steps |
 //! | `square` | pictures of any size on the squares that models take, and back |
 //! | `there` | which slots of a predicted scene are objects: where the model is in doubt, the picture decides |
@@ -43,6 +44,7 @@ pub mod initial;
 #[doc(hidden)]
 pub mod instances;
 pub mod layers;
+pub mod look;
 pub mod model;
 pub mod optimize;
 pub mod propose;

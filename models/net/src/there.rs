@@ -28,9 +28,8 @@ pub(crate) fn there<T: Real>(
     target: &Image<T>,
     painter: &SceneSteps<T>,
 ) -> Result<Vec<usize>, NetError> {
-    let mut slots = without_doubles(&scene.objects);
+    let slots = candidates(&scene.objects);
     let sure = |slot: usize| scene.objects[slot].confidence.as_f64();
-    slots.retain(|&slot| sure(slot) > DOUBTFUL[0]);
     // Nothing is painted of an object without confidence.
     let opaque = |&slot: &usize| {
         let object = &scene.objects[slot];
@@ -61,6 +60,28 @@ pub(crate) fn there<T: Real>(
         }
     }
     Ok((0..slots.len()).filter(|&at| tried.objects[at].confidence == T::one()).map(|at| slots[at]).collect())
+}
+
+/// Leaves the objects of a scene that are objects of the picture `target`, with confidence 1.
+///
+/// # Errors
+/// As [`SceneSteps::paint`].
+pub(crate) fn keep_there<T: Real>(
+    scene: &mut Scene<T>,
+    target: &Image<T>,
+    painter: &SceneSteps<T>,
+) -> Result<(), NetError> {
+    let slots = there(scene, target, painter)?;
+    scene.objects =
+        slots.into_iter().map(|slot| Object { confidence: T::one(), ..scene.objects[slot].clone() }).collect();
+    Ok(())
+}
+
+/// The slots that may be objects, in their order: those that are more than hardly there, and of several for one thing the most confident.
+pub(crate) fn candidates<T: Real>(objects: &[Object<T>]) -> Vec<usize> {
+    let mut slots = without_doubles(objects);
+    slots.retain(|&slot| objects[slot].confidence.as_f64() > DOUBTFUL[0]);
+    slots
 }
 
 fn squared_error<T: Real>(scene: &Scene<T>, target: &Image<T>, painter: &SceneSteps<T>) -> Result<f64, NetError> {

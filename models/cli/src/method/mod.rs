@@ -33,7 +33,7 @@ use clap::ValueEnum;
 pub use adam::seed_of;
 pub use clock::timed;
 pub use error::{ClockError, LoadNetworkError, MethodError};
-pub use network::{load as load_network, load_divider};
+pub use network::{load as load_network, load_divider, load_looking};
 pub use perturb::perturbed;
 pub use precision::Precision;
 pub use runner::Runner;

@@ -1,15 +1,17 @@
 //! A trained model as something to look with: a picture of any size to its scene, on the host, without a framework.
 //!
 //! ```text
-//! picture -> square of the side that models train on -> model -> scene -> units of the picture -> what is there
+//! picture -> square of the side that models train on -> model -> scene -> what is there -> second looks -> units of the picture
 //! ```
 //!
 //! | file | holds |
 //! |---|---|
 //! | `mod` | [`Proposer`] |
-//! | `built_in` | [`BUILT_IN`]: weights that come with the program |
+//! | `built_in` | [`BUILT_IN`], [`BUILT_IN_LOOK`]: weights that come with the program |
+//! | `second` | second looks, where the proposer has them |
 
 mod built_in;
+mod second;
 #[cfg(test)]
 mod tests;
 
@@ -18,7 +20,8 @@ use dvp_core::shape::PrototypeBank;
 use dvp_core::tensor::{Host, HostDevice, Parameters};
 use dvp_core::{AnyShape, Image, ImageView, Object, Real, Scene};
 
-pub use built_in::BUILT_IN;
+pub use built_in::{BUILT_IN, BUILT_IN_LOOK};
+use second::Second;
 
 use crate::error::NetError;
 use crate::layers::Phase;
@@ -26,12 +29,17 @@ use crate::model::{Latents, Model, ModelConfig};
 use crate::optimize::{OptZ, Optimum, random_latents};
 use crate::scene_steps::{SceneSteps, image_tensor};
 use crate::square::Square;
-use crate::there::there;
-use crate::train::Checkpoint;
+use crate::there::{candidates, keep_there, there};
+use crate::train::{Checkpoint, LookFile};
 use crate::weights::Weights;
 
 /// Side in pixels of the squares that models train on: that of MDS-HR.
 pub const TRAINED_SIDE: usize = 128;
+
+/// Second looks that the program takes.
+///
+/// Rationale: see `tests/report/training.md`.
+pub const LOOKS: usize = 3;
 
 /// A model that proposes the scene of a picture.
 ///
@@ -47,6 +55,8 @@ pub struct Proposer {
     model: Model<Host>,
     bank: PrototypeBank<f32>,
     painter: SceneSteps<f32>,
+    /// Looks again at what was found.
+    second: Option<Second>,
 }
 
 impl Proposer {
@@ -62,7 +72,31 @@ impl Proposer {
         }
         let model = Model::load(&config, &bank, &Weights::new(&weights).frozen())?;
         let painter = SceneSteps::new(config.objects(), config.harmonics(&bank), EdgeProfile::reference())?;
-        Ok(Self { config, model, bank, painter })
+        Ok(Self { config, model, bank, painter, second: None })
+    }
+
+    /// What comes with the program: a model, and a second look.
+    ///
+    /// # Errors
+    /// None is known: both are read in tests.
+    pub fn built_in() -> Result<Self, NetError> {
+        Self::from_bytes(BUILT_IN)?.with_look(&LookFile::from_bytes(BUILT_IN_LOOK)?, LOOKS)
+    }
+
+    /// The same, looking so many times again at every object that it finds; at least once. The places, sizes, angles and shapes of
+    /// [`Self::objects`] are then those of the last look.
+    ///
+    /// # Errors
+    /// [`NetError::Checkpoint`] if the look tells other shapes apart than the model knows; as [`Look::load`](crate::look::Look::load).
+    pub fn with_look(self, file: &LookFile, looks: usize) -> Result<Self, NetError> {
+        if file.bank::<f32>()? != self.bank {
+            return Err(NetError::Checkpoint(
+                "the second look tells other shapes apart than the network knows: train one with the same --bank and --harmonics, or \
+                 take none"
+                    .into(),
+            ));
+        }
+        Ok(Self { second: Some(Second::new(file, looks.max(1))?), ..self })
     }
 
     /// The model of a file of weights, given by its bytes.
@@ -96,15 +130,24 @@ impl Proposer {
 
     /// The objects of a picture: the slots that the model is sure of, and of the doubtful ones those that the picture is
     /// painted better with, with confidence 1; of two that stand for one thing (overlapping, of one color) the
-    /// more confident; each with the shape of the prototype that weighs most in it, if shapes are mixed of prototypes.
+    /// more confident; each with the shape of the prototype that weighs most in it, if shapes are mixed of prototypes. Where there are
+    /// second looks, they put candidates right before the picture decides, and the last one what is there.
     ///
     /// # Errors
     /// As [`Self::propose`].
     pub fn objects(&self, image: ImageView<'_, f32>) -> Result<Scene<f32>, NetError> {
         let (square, target) = Square::of(image, TRAINED_SIDE)?;
         let mut scene = self.scene(&self.latents(&target)?)?;
-        let slots = there(&scene, &target, &self.painter)?;
-        scene.objects = slots.into_iter().map(|slot| self.as_object(&scene.objects[slot])).collect();
+        let whole = |objects: &[Object<f32>]| objects.iter().map(|slot| self.with_prototype(slot)).collect();
+        if let Some(second) = &self.second {
+            let slots = candidates(&scene.objects);
+            scene.objects = slots.into_iter().map(|slot| scene.objects[slot].clone()).collect();
+            scene.objects = whole(&scene.objects);
+            second.settle(&mut scene, &target, &self.bank, &self.painter)?;
+        } else {
+            keep_there(&mut scene, &target, &self.painter)?;
+            scene.objects = whole(&scene.objects);
+        }
         Ok(square.to_picture(scene))
     }
 
@@ -143,11 +186,11 @@ impl Proposer {
         one(self.model.scenes::<f32>(latents)?.scenes(self.painter.edge())?)
     }
 
-    /// A slot that is there, with the shape of the prototype that weighs most in it.
-    fn as_object(&self, slot: &Object<f32>) -> Object<f32> {
+    /// A slot with the shape of the prototype that weighs most in it.
+    fn with_prototype(&self, slot: &Object<f32>) -> Object<f32> {
         let prototype = slot.prototype().and_then(|index| self.bank.prototypes().get(index));
         let shape = prototype.map_or_else(|| slot.shape.clone(), |efd| AnyShape::of_efd(efd.clone(), slot.prototype()));
-        Object { confidence: 1.0, shape, ..slot.clone() }
+        Object { shape, ..slot.clone() }
     }
 
     fn latents(&self, target: &Image<f32>) -> Result<Latents<Host>, NetError> {

@@ -180,6 +180,37 @@ fn objects_have_shapes_of_the_bank() {
 }
 
 #[test]
+fn second_looks_see_objects_where_they_are() {
+    let heart = mdshr_bank::<f32>(16).prototypes()[0].clone();
+    let there = Object { shape: heart.clone().into(), ..object([0.4, 0.5], 0.25, [0.9, 0.8, 0.1], 1.0) };
+    let painter = SceneSteps::new(1, 16, EdgeProfile::reference()).unwrap();
+    let image = painter
+        .paint(&Scene { objects: vec![there.clone()], ..Scene::empty([0.1, 0.2, 0.4]) }, size(128, 128))
+        .unwrap();
+    let found = Proposer::built_in().unwrap().objects(image.view()).unwrap();
+    assert_eq!(found.objects.len(), 1);
+    let object = &found.objects[0];
+    assert_eq!((object.shape.efd(), object.confidence), (Some(&heart), 1.0));
+    let (a, b) = (object.pose, there.pose);
+    let off = [a.translation[0] - b.translation[0], a.translation[1] - b.translation[1], a.scale - b.scale];
+    // A pixel is 0.008.
+    assert!(off.iter().all(|off| off.abs() < 0.004) && (a.rotation - b.rotation).sin().abs() < 0.05, "{a:?}");
+}
+
+#[test]
+fn looks_at_other_shapes_are_refused() {
+    let look = LookFile::from_bytes(BUILT_IN_LOOK).unwrap();
+    let config = ModelConfig::tiny();
+    let steps = SceneSteps::new(config.objects(), 4, EdgeProfile::reference()).unwrap();
+    let judge = Judge { mode: Mode::Gp, image_loss: PixelLoss::Mae, image_weight: 1.0, steps, bank: mdshr_bank(4) };
+    let schedule = Schedule::constant(1e-3);
+    let trainer = Trainer::<Host, f32>::new(config, mdshr_bank(4), judge, schedule, 4, HostDevice).unwrap();
+    let proposer = Proposer::new(&Checkpoint::of(&trainer, false, "").unwrap()).unwrap();
+    let error = proposer.with_look(&look, 1).unwrap_err();
+    assert!(error.to_string().contains("other shapes"), "{error}");
+}
+
+#[test]
 fn built_in_weights_are_a_model() {
     let proposer = Proposer::from_bytes(BUILT_IN).unwrap();
     assert_eq!(

@@ -4,9 +4,8 @@
 //! is JSON in the file's metadata, with a checksum over all numbers: a damaged file is never taken for a model.
 
 use dvp_core::Real;
-use dvp_core::dims::Dims;
-use dvp_core::shape::{Efd, PrototypeBank};
-use dvp_core::tensor::{Backend, Host, HostDevice, Parameters, Tensor, TensorError};
+use dvp_core::shape::PrototypeBank;
+use dvp_core::tensor::{Backend, Parameters};
 
 use super::stored::Stored;
 use super::trainer::Trainer;
@@ -28,7 +27,7 @@ impl Checkpoint {
     #[inline(never)]
     pub fn of<B: Backend, T: Real>(trainer: &Trainer<B, T>, resumable: bool, about: &str) -> Result<Self, NetError> {
         let mut stored = Stored::of(trainer.config().clone(), (trainer.parameters(), &trainer.adam), resumable, about)?;
-        stored.tensors.insert("bank", &bank_tensor(trainer.bank())?)?;
+        stored.take_bank(trainer.bank())?;
         Ok(Self { stored })
     }
 
@@ -71,11 +70,7 @@ impl Checkpoint {
     /// # Errors
     /// [`NetError::Parameters`] if the file holds none.
     pub fn bank<T: Real>(&self) -> Result<PrototypeBank<T>, NetError> {
-        let tensor = self.stored.tensors.get("bank")?;
-        let harmonics = tensor.dims().get(1).unwrap_or(0).max(1);
-        let values: Vec<T> = tensor.to_f64()?.into_iter().map(T::of).collect();
-        let rows: Vec<[T; 4]> = values.as_chunks().0.to_vec();
-        Ok(PrototypeBank::new(rows.chunks_exact(harmonics).map(|rows| Efd::new(rows.to_vec())).collect()))
+        self.stored.bank()
     }
 
     /// The weights by the names of the model.
@@ -109,17 +104,4 @@ impl Checkpoint {
         trainer.adam = adam;
         Ok(())
     }
-}
-
-/// prototypes x harmonics x 4.
-fn bank_tensor<T: Real>(bank: &PrototypeBank<T>) -> Result<Tensor<Host>, TensorError> {
-    let harmonics = bank.harmonic_count();
-    let mut values = Vec::with_capacity(bank.prototypes().len() * harmonics * 4);
-    for efd in bank.prototypes() {
-        let end = values.len() + 4 * harmonics;
-        values.extend_from_slice(efd.rows().as_flattened());
-        values.resize(end, T::zero());
-    }
-    let dims = Dims::new(&[bank.prototypes().len(), harmonics, 4])?;
-    Tensor::from_values(T::into_values(values), &dims, &HostDevice)
 }

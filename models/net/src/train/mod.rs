@@ -10,6 +10,7 @@
 //! | `stored` | what files of weights have in common |
 //! | `gradients` | gradients over all weights |
 //! | `decomposer`, `decomposer_file` | [`DecomposerTrainer`], [`DecomposerFile`]: the same for networks without shapes |
+//! | `looker`, `look_file`, `shake` | [`LookTrainer`], [`LookFile`]: the same for second looks; what they learn from |
 //! | `trainer` | [`Trainer`]: steps of Adam, over threads |
 
 mod batch;
@@ -18,8 +19,13 @@ mod decomposer;
 mod decomposer_file;
 mod gradients;
 mod judge;
+mod look_file;
+#[cfg(test)]
+mod look_tests;
+mod looker;
 mod mode;
 mod schedule;
+mod shake;
 mod stored;
 #[cfg(test)]
 mod tests;
@@ -30,6 +36,8 @@ pub use checkpoint::Checkpoint;
 pub use decomposer::{DecomposerStep, DecomposerTrainer};
 pub use decomposer_file::DecomposerFile;
 pub use judge::{Judge, Judged};
+pub use look_file::LookFile;
+pub use looker::{LookStep, LookTrainer};
 pub use mode::{Mode, Source};
 pub use schedule::Schedule;
 pub use trainer::{Step, Trainer};

@@ -3,8 +3,10 @@
 //! One safetensors file. Sizes and words are JSON in the file's metadata, with a checksum over all numbers: a damaged file is
 //! never taken for a model.
 
+use dvp_core::dims::Dims;
 use dvp_core::optim::AdamSettings;
-use dvp_core::real::DType;
+use dvp_core::real::{DType, Real};
+use dvp_core::shape::{Efd, PrototypeBank};
 use dvp_core::tensor::{Adam, Backend, Host, HostDevice, Parameters, Tensor, TensorError, safetensors_note};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -32,7 +34,7 @@ pub(super) struct Stored<C> {
     pub(super) config: C,
     pub(super) steps: u32,
     pub(super) about: String,
-    pub(super) tensors: Parameters<Host>,
+    tensors: Parameters<Host>,
 }
 
 impl<C: Clone + Serialize + DeserializeOwned> Stored<C> {
@@ -57,6 +59,29 @@ impl<C: Clone + Serialize + DeserializeOwned> Stored<C> {
             self.tensors.insert(format!("{path}.{name}"), &to_host(tensor)?)?;
         }
         Ok(())
+    }
+
+    /// Takes the shapes that a network knows, prototypes x harmonics x 4.
+    pub(super) fn take_bank<T: Real>(&mut self, bank: &PrototypeBank<T>) -> Result<(), NetError> {
+        let harmonics = bank.harmonic_count();
+        let mut values = Vec::with_capacity(bank.prototypes().len() * harmonics * 4);
+        for efd in bank.prototypes() {
+            let end = values.len() + 4 * harmonics;
+            values.extend_from_slice(efd.rows().as_flattened());
+            values.resize(end, T::zero());
+        }
+        let dims = Dims::new(&[bank.prototypes().len(), harmonics, 4]).map_err(TensorError::from)?;
+        let tensor = Tensor::from_values(T::into_values(values), &dims, &HostDevice)?;
+        Ok(self.tensors.insert("bank", &tensor)?)
+    }
+
+    /// The shapes that a network knows.
+    pub(super) fn bank<T: Real>(&self) -> Result<PrototypeBank<T>, NetError> {
+        let tensor = self.tensors.get("bank")?;
+        let harmonics = tensor.dims().get(1).unwrap_or(0).max(1);
+        let values: Vec<T> = tensor.to_f64()?.into_iter().map(T::of).collect();
+        let rows: Vec<[T; 4]> = values.as_chunks().0.to_vec();
+        Ok(PrototypeBank::new(rows.chunks_exact(harmonics).map(|rows| Efd::new(rows.to_vec())).collect()))
     }
 
     pub(super) fn to_bytes(&self) -> Result<Vec<u8>, NetError> {

@@ -7,7 +7,7 @@ use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
 use dvp_net::decompose::Divider;
 
-use crate::method::{Method, Runner, Tools, load_divider, load_network};
+use crate::method::{Method, Runner, Tools, load_divider, load_looking};
 
 /// What is said of a network on the command line.
 #[derive(Debug, Args)]
@@ -15,6 +15,12 @@ pub(super) struct NetworkArguments {
     /// Weights of a network, as `dvp train` writes them: it predicts, and DATA alone is named
     #[arg(long, value_name = "FILE")]
     model: Option<PathBuf>,
+    /// Weights of second looks, as `dvp train --model look` writes them [default: those that come with the program]
+    #[arg(long, value_name = "FILE")]
+    look: Option<PathBuf>,
+    /// How often the network looks again at the objects that it found; 0: never [default: 2]
+    #[arg(long, value_name = "N")]
+    looks: Option<usize>,
     /// Where scenes come from instead of a folder of predictions [default: net]
     #[arg(long, value_enum)]
     method: Option<Source>,
@@ -68,7 +74,8 @@ enum Then {
 impl NetworkArguments {
     /// Whether scenes are found rather than read.
     pub(super) fn are_asked(&self) -> bool {
-        self.model.is_some() || self.method.is_some() || self.generated.is_some()
+        let again = self.look.is_some() || self.looks.is_some();
+        again || self.model.is_some() || self.method.is_some() || self.generated.is_some()
     }
 
     /// The network that divides pictures instead of finding their scenes, if one is asked.
@@ -103,7 +110,11 @@ impl NetworkArguments {
         if !method.needs_network() && self.model.is_some() {
             bail!("--method {} uses no network: leave --model away", method.name());
         }
-        let network = method.needs_network().then(|| load_network(self.model.as_deref())).transpose()?;
+        if !method.needs_network() && (self.look.is_some() || self.looks.is_some()) {
+            bail!("--method {} uses no network: leave --look and --looks away", method.name());
+        }
+        let load = || load_looking(self.model.as_deref(), self.look.as_deref(), self.looks);
+        let network = method.needs_network().then(load).transpose()?;
         let tools = Tools { network: network.map(Arc::new), ..Tools::default() };
         Ok(Runner::new(method, method.default_setting(), &tools)?)
     }

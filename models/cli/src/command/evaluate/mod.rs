@@ -23,7 +23,8 @@ use crate::suite::Suite;
 /// Scores a folder of predictions (STEM.json, as `dvp fit` writes them), or a network, against a data set.
 ///
 /// A network (--model) predicts from the images that it is compared with. Objects are there if it is sure of them, or in
-/// doubt if the image is painted better with them; those of opt-z count if their confidence is above 1/2.
+/// doubt if the image is painted better with them; those of opt-z count if their confidence is above 1/2. Objects are looked at again one
+/// by one (--looks, --look), and where they stand and which shape they have is what the last look says.
 ///
 /// MONet (--method monet --model FILE) divides the picture: its objects own the pixels in which their mask is the largest, the mask with
 /// the most pixels is the background, and masks with fewer than two pixels of a thousand belong to it.
@@ -57,7 +58,7 @@ pub struct Arguments {
     #[arg(long, value_enum, default_value_t)]
     against: Against,
     /// Score objects against objects, in the columns of this benchmark
-    #[arg(long, value_enum, conflicts_with_all = ["model", "method", "generated", "against", "npy", "csv"])]
+    #[arg(long, value_enum, conflicts_with_all = ["model", "look", "looks", "method", "generated", "against", "npy", "csv"])]
     suite: Option<Suite>,
     /// NumPy file of float pixels to compare with; as many images as it holds are scored
     #[arg(long, value_name = "FILE", conflicts_with = "against")]
@@ -82,7 +83,7 @@ enum Against {
 }
 
 /// Options that ask for a network.
-const NETWORK: [&str; 3] = ["model", "method", "generated"];
+const NETWORK: [&str; 5] = ["model", "look", "looks", "method", "generated"];
 
 /// What every image is scored with.
 struct Judge<'a> {

@@ -13,6 +13,8 @@ const OF_SCENES: &str =
     "step,loss,image_loss,parameter_loss,gradient,rate,seconds,validation_image_loss,validation_parameter_loss";
 /// And where parts are.
 const OF_PARTS: &str = "step,loss,pixels,latents,gradient,rate,seconds,validation_mae,validation_ari";
+/// And where second looks are.
+const OF_LOOKS: &str = "step,loss,moves,shapes,gradient,rate,seconds,validation_moves,validation_shapes";
 
 /// What a line of the curves says of a step.
 #[derive(Clone, Copy, Debug)]
@@ -52,6 +54,10 @@ impl Curves {
 
     pub(super) fn of_parts() -> Self {
         Self { header: OF_PARTS, rows: Vec::new() }
+    }
+
+    pub(super) fn of_looks() -> Self {
+        Self { header: OF_LOOKS, rows: Vec::new() }
     }
 
     /// Reads what a run left up to and with step `last`.
@@ -96,7 +102,8 @@ impl Curves {
         let training = self.rows.iter().map(|row| (at(row), row.loss)).collect();
         let seen = self.rows.iter().filter_map(|row| Some((at(row), row.validation?))).collect();
         let line = |name: &str, points| Line { name: name.to_owned(), points, ..Line::default() };
-        let lines = vec![line("training loss", training), line("image loss, validation", seen)];
+        let error = if self.header == OF_LOOKS { "error, validation" } else { "image loss, validation" };
+        let lines = vec![line("training loss", training), line(error, seen)];
         Chart { title: "Losses", x: "step", y: "loss", lines, log: true }.write(svg)
     }
 }

@@ -3,11 +3,14 @@
 use std::path::Path;
 
 use anyhow::{Context, Result, bail};
+use dvp_core::shape::{Efd, PrototypeBank};
 use dvp_core::tensor::{Backend, Host, HostDevice, Parameters};
+use dvp_fit::Bank;
 use dvp_net::train::Schedule;
 
 use super::settings::{BackendName, Settings};
 use super::store::Store;
+use crate::command::options::BankChoice;
 use crate::command::{Console, Outcome};
 
 /// Steps between lines of the curves.
@@ -69,6 +72,19 @@ pub(super) fn fitting<B: Backend>(
         }
     }
     Ok(fitting)
+}
+
+/// The shapes of a run, as scenes are drawn with them, and with as many harmonics as a network knows.
+pub(super) fn shapes(settings: &Settings) -> Result<(Bank<f32>, PrototypeBank<f32>)> {
+    let name = settings.bank.as_deref().unwrap_or("mdshr");
+    let bank: Bank<f32> = BankChoice::from(name).load()?.context("--bank none: a model needs shapes")?;
+    let harmonics = settings.harmonics.unwrap_or(16);
+    if harmonics == 0 {
+        bail!("--harmonics must be at least 1");
+    }
+    let cut = |efd: &Efd<f32>| Efd::new(efd.rows().iter().copied().take(harmonics).collect());
+    let known = PrototypeBank::new(bank.prototypes.iter().map(|(_, efd)| cut(efd)).collect());
+    Ok((bank, known))
 }
 
 /// The rates of a run of so many steps.

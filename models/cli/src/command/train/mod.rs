@@ -7,12 +7,14 @@
 //! | `job` | what runs have in common; the backends by name |
 //! | `run` | the steps of a network that proposes scenes, on any backend |
 //! | `parts_run` | those of one that divides images into parts |
+//! | `look_run` | those of a second look at what was found |
 //! | `store`, `curves` | what it writes while it runs |
 
 mod curves;
 mod data;
 mod features;
 mod job;
+mod look_run;
 mod parts_run;
 mod run;
 mod settings;
@@ -24,6 +26,7 @@ use anyhow::Result;
 use clap::Args;
 
 use self::job::go_on;
+use self::look_run::LookRun;
 use self::parts_run::PartsRun;
 use self::run::Run;
 use self::settings::{ModelName, Settings};
@@ -31,7 +34,7 @@ use self::store::Store;
 use super::{Console, Outcome};
 use crate::format::write_atomic;
 
-/// Trains a network that proposes the scene of an image, or MONet, which divides it into masks.
+/// Trains a network that proposes the scene of an image, a second look at what one found, or MONet, which divides an image into masks.
 ///
 /// Writes the settings, two checkpoints, the best weights by the image loss on validation images (best.safetensors, for
 /// `dvp fit --start` and `dvp evaluate --model`), curves (losses.csv, losses.svg) and sample reconstructions. It may be
@@ -81,6 +84,11 @@ pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Ou
         }
         ModelName::Monet => {
             let run = PartsRun::new(&settings)?;
+            write()?;
+            go_on(backend, &run, &store, arguments.resume, console)
+        }
+        ModelName::Look => {
+            let run = LookRun::new(&settings)?;
             write()?;
             go_on(backend, &run, &store, arguments.resume, console)
         }

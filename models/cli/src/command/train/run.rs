@@ -6,10 +6,9 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
 use dvp_core::render::{EdgeProfile, PixelLoss};
-use dvp_core::shape::{Efd, PrototypeBank};
+use dvp_core::shape::PrototypeBank;
 use dvp_core::tensor::{Backend, Host, HostDevice, Parameters};
 use dvp_core::{ImageSize, Real};
-use dvp_fit::Bank;
 use dvp_net::error::NetError;
 use dvp_net::model::{Model, ModelConfig};
 use dvp_net::propose::TRAINED_SIDE;
@@ -19,10 +18,9 @@ use dvp_net::train::{Batch, Checkpoint, Judge, Mode, Source, Trainer};
 use super::curves::{Curves, Entry};
 use super::data::{Data, reread};
 use super::features::FeatureCache;
-use super::job::{Job, LINE_EVERY, Numbers, Recent, fitting, schedule};
+use super::job::{Job, LINE_EVERY, Numbers, Recent, fitting, schedule, shapes};
 use super::settings::Settings;
 use super::store::Store;
-use crate::command::options::BankChoice;
 use crate::command::sheet::sheet;
 use crate::command::{Console, Outcome, progress};
 use crate::format::{BitDepth, SceneJson, encode_png, write_atomic};
@@ -52,14 +50,7 @@ impl Run {
                 "mode {mode} goes on from the weights of another run: name them with --start, an early gp for example"
             );
         }
-        let bank_name = settings.bank.as_deref().unwrap_or("mdshr");
-        let bank: Bank<f32> = BankChoice::from(bank_name).load()?.context("--bank none: a model needs shapes")?;
-        let harmonics = settings.harmonics.unwrap_or(16);
-        if harmonics == 0 {
-            bail!("--harmonics must be at least 1");
-        }
-        let cut = |efd: &Efd<f32>| Efd::new(efd.rows().iter().copied().take(harmonics).collect());
-        let known = PrototypeBank::new(bank.prototypes.iter().map(|(_, efd)| cut(efd)).collect());
+        let (bank, known) = shapes(settings)?;
         let preliminary = settings.preliminary.as_deref().map(model_of).transpose()?;
         // A preliminary model needs no scenes.
         let source = if preliminary.is_some() { Source::Images } else { mode.source() };

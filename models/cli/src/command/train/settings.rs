@@ -7,6 +7,7 @@ use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
 use dvp_net::decompose::DecomposerConfig;
 use dvp_net::decompose::monet::MonetConfig;
+use dvp_net::look::LookConfig;
 use dvp_net::model::ModelConfig;
 use dvp_net::train::Mode;
 use serde::{Deserialize, Serialize};
@@ -26,7 +27,7 @@ pub(super) struct Settings {
     /// What computes [host]
     #[arg(long, value_enum)]
     pub(super) backend: Option<BackendName>,
-    /// Size of the model: tiny, small, cells, paper (of monet tiny, small, published), or a JSON file of sizes [small]
+    /// Size of the model: tiny, small, cells, paper (of monet tiny, small, published; of look tiny, small), or a JSON file of sizes [small]
     #[arg(long, value_name = "SIZE")]
     pub(super) size: Option<String>,
     /// Folder of pictures to learn from, with their scenes for gp and gi; else MDS-HR scenes are generated
@@ -101,6 +102,8 @@ pub(super) enum ModelName {
     Scene,
     /// MONet: divides an image into masks and what they show; learns from images alone
     Monet,
+    /// A second look: puts objects right that were found, one by one; learns from scenes that are shaken
+    Look,
 }
 
 /// Frameworks to compute with.
@@ -163,6 +166,7 @@ impl Settings {
                 ..both
             },
             ModelName::Monet => Self { side: Some(64), ..both },
+            ModelName::Look => Self { bank: Some("mdshr".into()), harmonics: Some(16), ..both },
         })
     }
 
@@ -172,24 +176,43 @@ impl Settings {
         let of_scenes = [
             ("--mode", self.mode.is_some()),
             ("--preliminary", self.preliminary.is_some()),
-            ("--bank", self.bank.is_some()),
-            ("--harmonics", self.harmonics.is_some()),
             ("--image-weight", self.image_weight.is_some()),
             ("--scale-weight", self.scale_weight.is_some()),
             ("--rotation-weight", self.rotation_weight.is_some()),
             ("--threads", self.threads.is_some()),
         ];
-        let foreign = match model {
-            ModelName::Scene => [("--side", self.side.is_some())].into_iter().find(|(_, is)| *is),
-            ModelName::Monet => of_scenes.into_iter().find(|(_, is)| *is),
+        let of_shapes = [("--bank", self.bank.is_some()), ("--harmonics", self.harmonics.is_some())];
+        let of_monet = [("--side", self.side.is_some())];
+        let foreign: Vec<(&str, bool)> = match model {
+            ModelName::Scene => of_monet.to_vec(),
+            ModelName::Monet => [&of_scenes[..], &of_shapes].concat(),
+            ModelName::Look => [&of_scenes[..], &of_monet].concat(),
         };
-        match foreign {
+        match foreign.into_iter().find(|(_, is)| *is) {
             Some((option, _)) if model == ModelName::Scene => bail!("{option} is for --model monet"),
+            Some((option, _)) if model == ModelName::Look => {
+                bail!("--model look learns from scenes that are shaken, whatever found them: leave {option} away")
+            }
             Some((option, _)) => {
                 bail!("--model monet learns from images alone and knows no shapes: leave {option} away")
             }
             None => Ok(()),
         }
+    }
+
+    /// The sizes of a second look.
+    pub(super) fn look(&self) -> Result<LookConfig> {
+        let name = self.size.as_deref().unwrap_or("small");
+        let config = match name {
+            "tiny" => LookConfig::tiny(),
+            "small" => LookConfig::small(),
+            file => {
+                let text = fs::read(file).with_context(|| format!("--size {file}: no tiny, small, nor a file"))?;
+                serde_json::from_slice(&text).with_context(|| format!("{file}: no sizes of a second look"))?
+            }
+        };
+        config.validate().with_context(|| format!("--size {name}"))?;
+        Ok(config)
     }
 
     /// The sizes of MONet.
