@@ -18,7 +18,7 @@ pub(super) struct NetworkArguments {
     /// Weights of second looks, as `dvp train --model look` writes them [default: those that come with the program]
     #[arg(long, value_name = "FILE")]
     look: Option<PathBuf>,
-    /// How often the network looks again at the objects that it found; 0: never [default: 2]
+    /// How often the network looks again at the objects that it found; 0: never [default: 3]
     #[arg(long, value_name = "N")]
     looks: Option<usize>,
     /// Where scenes come from instead of a folder of predictions [default: net]
