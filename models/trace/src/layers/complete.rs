@@ -14,7 +14,7 @@ use super::memo::Memo;
 use super::order::Order;
 use super::visible::{self, Hidden};
 use super::walk::{self, Walk};
-use super::{hard, link, raster, sheet};
+use super::{link, raster, sheet};
 use crate::boundary::{Ring, Step};
 use crate::outline::{Outline, OutlineShape};
 use crate::partition::{OUTSIDE, Partition};
@@ -55,8 +55,6 @@ pub(super) struct Completion<'a> {
     pub(super) known: RefCell<BTreeMap<Place, Completed>>,
     /// Outlines that were fitted.
     pub(super) memo: Memo,
-    /// Whether what is painted is known, and outlines are fitted pixel by pixel.
-    pub(super) is_last: bool,
 }
 
 /// Outlines, and bits of their numbers and misfits.
@@ -173,18 +171,6 @@ impl Completion<'_> {
         completed
     }
 
-    /// The outlines of a group that get fewest pixels wrong, where edges are hard; `outlines`, those that the order was found with, if they
-    /// still agree with what is seen and others do not.
-    pub(super) fn last(&mut self, group: &[u32], outlines: Vec<Outline>) -> Vec<Outline> {
-        if !self.partition.is_hard {
-            return outlines;
-        }
-        self.is_last = true;
-        let completed = self.completed(group, self.hindmost(group));
-        self.is_last = false;
-        if completed.agrees && completed.outlines.len() == outlines.len() { completed.outlines } else { outlines }
-    }
-
     /// [`Completion::outlines`] of a group at place `rank` that was not asked for before.
     fn completed(&self, group: &[u32], rank: usize) -> Completed {
         let wanted = |label: u32| self.wanted(label, group, rank);
@@ -273,11 +259,7 @@ impl Completion<'_> {
 
     /// The outlines through samples.
     fn fit(&self, samples: &[RingSamples]) -> Completed {
-        let fit = |samples| match self.is_last {
-            true => hard::fit(samples, &self.ruler),
-            false => self.memo.fit_closed(samples, &self.ruler),
-        };
-        Completed::new(samples.iter().filter_map(fit).collect(), true)
+        Completed::new(samples.iter().filter_map(|samples| self.memo.fit_closed(samples, &self.ruler)).collect(), true)
     }
 
     /// The outlines through samples, within that of the picture where they go around what they leave free: corners around a disk are a

@@ -8,7 +8,6 @@
 //! | `pen` | faces that a pen has drawn |
 //! | `join` | faces of one color that are one thing behind another |
 //! | `visible` | what of a boundary is a layer's own |
-//! | `hard` | outlines where edges have no mixed pixels |
 //! | `walk` | what of a boundary follows what hides it |
 //! | `link` | which visible stretch goes on as which behind others |
 //! | `sheet` | what reaches as far as the picture does |
@@ -17,7 +16,6 @@
 //! | `raster` | the check that an outline hides nothing |
 
 mod complete;
-mod hard;
 mod join;
 mod junction;
 mod link;
@@ -109,7 +107,6 @@ pub fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<Color>) 
         united: Vec::new(),
         known: RefCell::default(),
         memo,
-        is_last: false,
     };
     settle::settle(&mut completion);
     let mut layers = Vec::new();
@@ -125,7 +122,6 @@ pub fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<Color>) 
                 }));
             }
             None => {
-                let outlines = completion.last(&group, outlines);
                 let bits = outlines.iter().map(|outline| outline.bits + outline.misfit).sum();
                 layers.push(Layer { color, form: Form::Filled(outlines), bits });
             }
