@@ -29,7 +29,7 @@ fn a_run_leaves_its_files_and_goes_on_to_the_same_numbers() {
     let folder = tempfile::tempdir().unwrap();
     let [whole, halves, data] = ["whole", "halves", "data"].map(|name| folder.path().join(name));
     let said = dvp_done(quick(&whole, &[]));
-    assert!(said.contains("6 steps of 2 images") && said.contains("are off by"), "{said}");
+    assert!(said.contains("6 steps of 2 images") && said.contains("what objects are off by on"), "{said}");
     let files = ["best.safetensors", "checkpoint-00000004.safetensors", "checkpoint-00000006.safetensors"];
     assert_eq!(names(&whole), [&files[..], &["losses.csv", "losses.svg", "run.json", "samples"]].concat());
     assert!(losses(&whole)[0].ends_with("validation_moves,validation_shapes"));

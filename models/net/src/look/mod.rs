@@ -77,9 +77,11 @@ impl<B: Backend> Look<B> {
         })
     }
 
-    /// What is off in each window, objects x outputs: see [`Layout`].
+    /// What is off in each window. Of every object: where its center is, in the frame of the window and in its scales (2), the logarithm of
+    /// how many times as large it is (1), a logit per prototype, and the sines and then the cosines of k times the angle by which it is turned,
+    /// one per prototype, k being the order of its symmetry.
     ///
-    /// *Dimensions*: windows are objects x planes x side x side.
+    /// *Dimensions*: windows are objects x planes x side x side; the answer is objects x (3 + 3 prototypes).
     ///
     /// # Errors
     /// [`NetError::Input`] for other windows; [`NetError::Tensor`] if they are of another number type or device than the weights.

@@ -13,9 +13,6 @@ use super::store::Store;
 use crate::command::options::BankChoice;
 use crate::command::{Console, Outcome};
 
-/// Steps between lines of the curves.
-pub(super) const LINE_EVERY: u64 = 10;
-
 /// A run, ready to go.
 pub(super) trait Job {
     /// Makes all steps that are left.
@@ -128,25 +125,5 @@ impl Numbers {
             bail!("--steps, --batch, --save-every and --validation must be at least 1");
         }
         Ok(numbers)
-    }
-}
-
-/// The mean loss since the last line.
-#[derive(Default)]
-pub(super) struct Recent {
-    sum: f64,
-    count: f64,
-}
-
-impl Recent {
-    pub(super) fn add(&mut self, loss: f64) {
-        self.sum += loss;
-        self.count += 1.0;
-    }
-
-    pub(super) fn take(&mut self) -> f64 {
-        let mean = self.sum / self.count.max(1.0);
-        *self = Self::default();
-        mean
     }
 }

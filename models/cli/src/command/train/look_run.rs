@@ -2,7 +2,6 @@
 
 use std::fs;
 use std::path::Path;
-use std::time::Instant;
 
 use anyhow::{Context, Result};
 use dvp_core::ImageSize;
@@ -14,14 +13,14 @@ use dvp_net::propose::TRAINED_SIDE;
 use dvp_net::scene_steps::SceneSteps;
 use dvp_net::train::{Batch, LookFile, LookTrainer, Source};
 
-use super::curves::{Curves, Entry};
+use super::course::{Course, Made, Seen, follow};
+use super::curves::Curves;
 use super::data::Data;
-use super::job::{Job, LINE_EVERY, Numbers, Recent, fitting, schedule, shapes};
+use super::job::{Job, Numbers, fitting, schedule, shapes};
 use super::settings::Settings;
 use super::store::Store;
 use crate::command::sheet::sheet;
-use crate::command::{Console, Outcome, progress};
-use crate::format::{BitDepth, encode_png, write_atomic};
+use crate::command::{Console, Outcome};
 
 /// Validation images that are drawn.
 const SAMPLES: usize = 8;
@@ -60,23 +59,6 @@ impl LookRun {
         trainer.clip_norm = clip_norm.filter(|norm| *norm > 0.0);
         Ok(trainer)
     }
-
-    /// By how much the objects of the validation images are off after the look, and the cross entropy of their shapes; some are drawn: the
-    /// picture, what was seen, what the look made of it.
-    fn look<B: Backend>(
-        &self,
-        trainer: &LookTrainer<B, f32>,
-        held_out: &Batch<f32>,
-        store: &Store,
-    ) -> Result<[Option<f64>; 2]> {
-        let step = trainer.validate(held_out)?;
-        let some = held_out.part(0, SAMPLES);
-        let [before, after] = trainer.corrected(&some)?;
-        let grid = sheet(&[some.images, before, after])?;
-        let path = store.path("samples").join(format!("{:08}.png", trainer.steps()));
-        write_atomic(&path, &encode_png(grid.view(), BitDepth::Eight)?)?;
-        Ok([Some(step.moves), Some(step.shapes)])
-    }
 }
 
 impl Job for LookRun {
@@ -98,37 +80,46 @@ impl Job for LookRun {
             trainer.set_weights(&fitting(trainer.parameters(), &weights, file, console)?)?;
         }
         let held_out = self.data.held_out(numbers.validation, &self.painter)?;
-        let (clock, before) = (Instant::now(), curves.seconds());
-        let bar = progress::bar(numbers.steps, trainer.steps());
-        let mut recent = Recent::default();
-        let about = serde_json::to_string(&self.settings)?;
-        while trainer.steps() < numbers.steps {
-            let batch = self.data.batch(trainer.steps(), numbers.batch, &self.painter)?;
-            let step = trainer.step(&batch)?;
-            recent.add(step.loss);
-            let save = step.number.is_multiple_of(numbers.save_every) || step.number == numbers.steps;
-            let seen = if save { self.look(&trainer, &held_out, store)? } else { [None; 2] };
-            if save || step.number.is_multiple_of(LINE_EVERY) {
-                let improved = save && curves.best().is_none_or(|best| seen[0] < Some(best));
-                let (loss, seconds) = (recent.take(), before + clock.elapsed().as_secs_f64());
-                let terms = [Some(step.moves), Some(step.shapes)];
-                let (gradient, rate) = (step.gradient, step.rate);
-                curves.push(&Entry { step: step.number, loss, terms, gradient, rate, seconds, seen });
-                bar.set_message(format!("loss {loss:.4}"));
-                if save {
-                    let file = |resumable| Ok(LookFile::of(&trainer, resumable, &about)?.to_bytes()?);
-                    store.keep(step.number, &curves, improved, file)?;
-                }
-            }
-            bar.set_position(step.number);
-        }
-        bar.finish_and_clear();
-        let (parameters, seconds) = (trainer.parameters().value_count(), before + clock.elapsed().as_secs_f64());
-        writeln!(console.out, "{parameters} numbers, {}", numbers.made(trainer.steps(), seconds))?;
-        let best = curves.best().unwrap_or(f64::NAN);
-        writeln!(console.out, "objects of {} validation images are off by {best:.5}", held_out.images.len())?;
-        writeln!(console.out, "{}", store.path("best.safetensors").display())?;
-        Ok(Outcome::Done)
+        let mut course = LookCourse { run: self, trainer, held_out: &held_out, batch: numbers.batch };
+        follow(&mut course, &self.settings, curves, &held_out, "what objects are off by", store, console)
+    }
+}
+
+/// What is trained, and with what.
+struct LookCourse<'a, B: Backend> {
+    run: &'a LookRun,
+    trainer: LookTrainer<B, f32>,
+    held_out: &'a Batch<f32>,
+    batch: usize,
+}
+
+impl<B: Backend> Course for LookCourse<'_, B> {
+    fn steps(&self) -> u64 {
+        self.trainer.steps()
+    }
+
+    fn numbers(&self) -> usize {
+        self.trainer.parameters().value_count()
+    }
+
+    fn step(&mut self) -> Result<Made> {
+        let batch = self.run.data.batch(self.trainer.steps(), self.batch, &self.run.painter)?;
+        let step = self.trainer.step(&batch)?;
+        let terms = [Some(step.moves), Some(step.shapes)];
+        Ok(Made { loss: step.loss, terms, gradient: step.gradient, rate: step.rate })
+    }
+
+    /// By how much objects are off after the look, and the cross entropy of their shapes. Samples: the picture, what was seen, what the
+    /// look made of it.
+    fn look(&self) -> Result<Seen> {
+        let step = self.trainer.validate(self.held_out)?;
+        let some = self.held_out.part(0, SAMPLES);
+        let [before, after] = self.trainer.corrected(&some)?;
+        Ok(Seen { errors: [Some(step.moves), Some(step.shapes)], sheet: sheet(&[some.images, before, after])? })
+    }
+
+    fn file(&self, resumable: bool, about: &str) -> Result<Vec<u8>> {
+        Ok(LookFile::of(&self.trainer, resumable, about)?.to_bytes()?)
     }
 }
 

@@ -4,12 +4,14 @@
 //! |---|---|
 //! | `settings` | what a run is made of, on the command line and in a file |
 //! | `data` | batches |
+//! | `course` | the steps of a run, whatever is trained |
 //! | `job` | what runs have in common; the backends by name |
 //! | `run` | the steps of a network that proposes scenes, on any backend |
 //! | `parts_run` | those of one that divides images into parts |
 //! | `look_run` | those of a second look at what was found |
 //! | `store`, `curves` | what it writes while it runs |
 
+mod course;
 mod curves;
 mod data;
 mod features;

@@ -2,7 +2,6 @@
 
 use std::fs;
 use std::path::Path;
-use std::time::Instant;
 
 use anyhow::{Context, Result};
 use dvp_core::render::EdgeProfile;
@@ -12,14 +11,15 @@ use dvp_net::decompose::DecomposerConfig;
 use dvp_net::scene_steps::SceneSteps;
 use dvp_net::train::{Batch, DecomposerFile, DecomposerTrainer, Source};
 
-use super::curves::{Curves, Entry};
+use super::course::{Course, Made, Seen, follow};
+use super::curves::Curves;
 use super::data::Data;
-use super::job::{Job, LINE_EVERY, Numbers, Recent, fitting, schedule};
+use super::job::{Job, Numbers, fitting, schedule};
 use super::settings::Settings;
 use super::store::Store;
 use crate::command::sheet::{of_parts, sheet};
-use crate::command::{Console, Outcome, progress};
-use crate::format::{BitDepth, encode_png, mdshr_bank, write_atomic};
+use crate::command::{Console, Outcome};
+use crate::format::mdshr_bank;
 use crate::paint::Painter;
 use crate::score::{Scratch, Truth, score_pixels};
 use crate::statistics::mean;
@@ -60,32 +60,6 @@ impl PartsRun {
         trainer.clip_norm = clip_norm.filter(|norm| *norm > 0.0);
         Ok(trainer)
     }
-
-    /// Mean absolute error of the reconstructions of the validation images and, where their scenes are known, the adjusted Rand
-    /// index of their masks; some are drawn.
-    fn look<B: Backend>(
-        &self,
-        trainer: &DecomposerTrainer<B, f32>,
-        held_out: &Batch<f32>,
-        store: &Store,
-    ) -> Result<[Option<f64>; 2]> {
-        let parts = trainer.parts(&held_out.images)?;
-        let (mut scratch, painter) = (Scratch::default(), Painter::default());
-        let (mut errors, mut indices) = (Vec::new(), Vec::new());
-        for (k, (parts, image)) in parts.iter().zip(&held_out.images).enumerate() {
-            let known = held_out.scenes.get(k).map(Truth::Scene);
-            let (painted, labels) = (parts.reconstruction(), parts.labels());
-            let found = (painted.view(), &labels[..]);
-            let score = score_pixels(&painter, image.view(), known.as_ref(), found, &mut scratch)?;
-            errors.push(score.mae);
-            indices.extend(score.masks.map(|masks| masks.ari));
-        }
-        let rows = parts.iter().zip(&held_out.images).take(SAMPLES).map(|(parts, image)| of_parts(image, parts));
-        let sheet = sheet(&rows.collect::<Result<Vec<Vec<Image<f32>>>>>()?)?;
-        let path = store.path("samples").join(format!("{:08}.png", trainer.steps()));
-        write_atomic(&path, &encode_png(sheet.view(), BitDepth::Eight)?)?;
-        Ok([mean(errors.into_iter()), mean(indices.into_iter())])
-    }
 }
 
 impl Job for PartsRun {
@@ -107,37 +81,55 @@ impl Job for PartsRun {
             trainer.set_weights(&fitting(trainer.parameters(), &weights, file, console)?)?;
         }
         let held_out = self.data.held_out(numbers.validation, &self.painter)?;
-        let (clock, before) = (Instant::now(), curves.seconds());
-        let bar = progress::bar(numbers.steps, trainer.steps());
-        let mut recent = Recent::default();
-        let about = serde_json::to_string(&self.settings)?;
-        while trainer.steps() < numbers.steps {
-            let batch = self.data.batch(trainer.steps(), numbers.batch, &self.painter)?;
-            let step = trainer.step(&batch.images)?;
-            recent.add(step.loss);
-            let save = step.number.is_multiple_of(numbers.save_every) || step.number == numbers.steps;
-            let seen = if save { self.look(&trainer, &held_out, store)? } else { [None; 2] };
-            if save || step.number.is_multiple_of(LINE_EVERY) {
-                let improved = save && curves.best().is_none_or(|best| seen[0] < Some(best));
-                let (loss, seconds) = (recent.take(), before + clock.elapsed().as_secs_f64());
-                let terms = [Some(step.terms.pixels), Some(step.terms.latents)];
-                let (gradient, rate) = (step.gradient, step.rate);
-                curves.push(&Entry { step: step.number, loss, terms, gradient, rate, seconds, seen });
-                bar.set_message(format!("loss {loss:.4}"));
-                if save {
-                    let file = |resumable| Ok(DecomposerFile::of(&trainer, resumable, &about)?.to_bytes()?);
-                    store.keep(step.number, &curves, improved, file)?;
-                }
-            }
-            bar.set_position(step.number);
+        let mut course = PartsCourse { run: self, trainer, held_out: &held_out, batch: numbers.batch };
+        follow(&mut course, &self.settings, curves, &held_out, "mean absolute error", store, console)
+    }
+}
+
+/// What is trained, and with what.
+struct PartsCourse<'a, B: Backend> {
+    run: &'a PartsRun,
+    trainer: DecomposerTrainer<B, f32>,
+    held_out: &'a Batch<f32>,
+    batch: usize,
+}
+
+impl<B: Backend> Course for PartsCourse<'_, B> {
+    fn steps(&self) -> u64 {
+        self.trainer.steps()
+    }
+
+    fn numbers(&self) -> usize {
+        self.trainer.parameters().value_count()
+    }
+
+    fn step(&mut self) -> Result<Made> {
+        let batch = self.run.data.batch(self.trainer.steps(), self.batch, &self.run.painter)?;
+        let step = self.trainer.step(&batch.images)?;
+        let terms = [Some(step.terms.pixels), Some(step.terms.latents)];
+        Ok(Made { loss: step.loss, terms, gradient: step.gradient, rate: step.rate })
+    }
+
+    /// Mean absolute error of the reconstructions and, where scenes are known, the adjusted Rand index of the masks.
+    fn look(&self) -> Result<Seen> {
+        let parts = self.trainer.parts(&self.held_out.images)?;
+        let (mut scratch, painter) = (Scratch::default(), Painter::default());
+        let (mut errors, mut indices) = (Vec::new(), Vec::new());
+        for (k, (parts, image)) in parts.iter().zip(&self.held_out.images).enumerate() {
+            let known = self.held_out.scenes.get(k).map(Truth::Scene);
+            let (painted, labels) = (parts.reconstruction(), parts.labels());
+            let found = (painted.view(), &labels[..]);
+            let score = score_pixels(&painter, image.view(), known.as_ref(), found, &mut scratch)?;
+            errors.push(score.mae);
+            indices.extend(score.masks.map(|masks| masks.ari));
         }
-        bar.finish_and_clear();
-        let (parameters, seconds) = (trainer.parameters().value_count(), before + clock.elapsed().as_secs_f64());
-        writeln!(console.out, "{parameters} numbers, {}", numbers.made(trainer.steps(), seconds))?;
-        let best = curves.best().unwrap_or(f64::NAN);
-        writeln!(console.out, "mean absolute error on {} validation images: {best:.5}", held_out.images.len())?;
-        writeln!(console.out, "{}", store.path("best.safetensors").display())?;
-        Ok(Outcome::Done)
+        let rows = parts.iter().zip(&self.held_out.images).take(SAMPLES).map(|(parts, image)| of_parts(image, parts));
+        let sheet = sheet(&rows.collect::<Result<Vec<Vec<Image<f32>>>>>()?)?;
+        Ok(Seen { errors: [mean(errors.into_iter()), mean(indices.into_iter())], sheet })
+    }
+
+    fn file(&self, resumable: bool, about: &str) -> Result<Vec<u8>> {
+        Ok(DecomposerFile::of(&self.trainer, resumable, about)?.to_bytes()?)
     }
 }
 

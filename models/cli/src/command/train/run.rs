@@ -2,7 +2,6 @@
 
 use std::fs;
 use std::path::Path;
-use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
 use dvp_core::render::{EdgeProfile, PixelLoss};
@@ -15,14 +14,15 @@ use dvp_net::propose::TRAINED_SIDE;
 use dvp_net::scene_steps::SceneSteps;
 use dvp_net::train::{Batch, Checkpoint, Judge, Mode, Source, Trainer};
 
-use super::curves::{Curves, Entry};
+use super::course::{Course, Made, Seen, follow};
+use super::curves::Curves;
 use super::data::{Data, reread};
 use super::features::FeatureCache;
-use super::job::{Job, LINE_EVERY, Numbers, Recent, fitting, schedule, shapes};
+use super::job::{Job, Numbers, fitting, schedule, shapes};
 use super::settings::Settings;
 use super::store::Store;
 use crate::command::sheet::sheet;
-use crate::command::{Console, Outcome, progress};
+use crate::command::{Console, Outcome};
 use crate::format::{BitDepth, SceneJson, encode_png, write_atomic};
 
 /// Validation images that are drawn.
@@ -91,51 +91,58 @@ impl Job for Run {
         if self.config.has_frozen_encoder() {
             held_out.features = trainer.features(&held_out.images)?;
         }
-        let (clock, before) = (Instant::now(), curves.seconds());
-        let bar = progress::bar(numbers.steps, trainer.steps());
-        let mut recent = Recent::default();
-        let about = serde_json::to_string(&self.settings)?;
-        while trainer.steps() < numbers.steps {
-            let mut batch = self.data.batch(trainer.steps(), numbers.batch, &self.painter)?;
-            if let Some(model) = &self.preliminary {
-                batch = reread(model, &batch.images, &self.painter)?;
-            }
-            if let Some(cache) = &cache {
-                let items = self.data.numbers(trainer.steps(), numbers.batch);
-                batch.features = cache.features(&trainer, &batch.images, &items)?;
-            }
-            let step = trainer.step(&batch).map_err(|error| self.study(store, &batch, &trainer, error))?;
-            recent.add(step.loss);
-            let save = step.number.is_multiple_of(numbers.save_every) || step.number == numbers.steps;
-            let seen = if save { Some(self.look(&trainer, &held_out, store)?) } else { None };
-            if save || step.number.is_multiple_of(LINE_EVERY) {
-                let improved = seen.is_some_and(|[image, _]| curves.best().is_none_or(|best| image < Some(best)));
-                let loss = recent.take();
-                let seconds = before + clock.elapsed().as_secs_f64();
-                curves.push(&Entry {
-                    step: step.number,
-                    loss,
-                    terms: [step.image, step.parameters],
-                    gradient: step.gradient,
-                    rate: step.rate,
-                    seconds,
-                    seen: seen.unwrap_or_default(),
-                });
-                bar.set_message(format!("loss {loss:.4}"));
-                if save {
-                    let file = |resumable| Ok(Checkpoint::of(&trainer, resumable, &about)?.to_bytes()?);
-                    store.keep(step.number, &curves, improved, file)?;
-                }
-            }
-            bar.set_position(step.number);
+        let mut course = SceneCourse { run: self, trainer, held_out: &held_out, cache, store, batch: numbers.batch };
+        follow(&mut course, &self.settings, curves, &held_out, "image loss", store, console)
+    }
+}
+
+/// What is trained, and with what.
+struct SceneCourse<'a, B: Backend> {
+    run: &'a Run,
+    trainer: Trainer<B, f32>,
+    held_out: &'a Batch<f32>,
+    cache: Option<FeatureCache>,
+    store: &'a Store,
+    batch: usize,
+}
+
+impl<B: Backend> Course for SceneCourse<'_, B> {
+    fn steps(&self) -> u64 {
+        self.trainer.steps()
+    }
+
+    fn numbers(&self) -> usize {
+        self.trainer.parameters().value_count()
+    }
+
+    fn step(&mut self) -> Result<Made> {
+        let Self { run, trainer, cache, .. } = self;
+        let mut batch = run.data.batch(trainer.steps(), self.batch, &run.painter)?;
+        if let Some(model) = &run.preliminary {
+            batch = reread(model, &batch.images, &run.painter)?;
         }
-        bar.finish_and_clear();
-        let (parameters, seconds) = (trainer.parameters().value_count(), before + clock.elapsed().as_secs_f64());
-        writeln!(console.out, "{parameters} numbers, {}", numbers.made(trainer.steps(), seconds))?;
-        let best = curves.best().unwrap_or(f64::NAN);
-        writeln!(console.out, "image loss on {} validation images: {best:.5}", held_out.images.len())?;
-        writeln!(console.out, "{}", store.path("best.safetensors").display())?;
-        Ok(Outcome::Done)
+        if let Some(cache) = cache {
+            let items = run.data.numbers(trainer.steps(), self.batch);
+            batch.features = cache.features(trainer, &batch.images, &items)?;
+        }
+        let step = trainer.step(&batch).map_err(|error| run.study(self.store, &batch, trainer, error))?;
+        let terms = [step.image, step.parameters];
+        Ok(Made { loss: step.loss, terms, gradient: step.gradient, rate: step.rate })
+    }
+
+    /// L_x and, where scenes are known, L_p. Samples: the pictures over their reconstructions.
+    fn look(&self) -> Result<Seen> {
+        let (trainer, held_out) = (&self.trainer, self.held_out);
+        let image = trainer.validate(Mode::Ti, held_out)?.image;
+        let known = !held_out.scenes.is_empty();
+        let parameters = if known { trainer.validate(Mode::Gp, held_out)?.parameters } else { None };
+        let some = held_out.part(0, SAMPLES);
+        let sheet = sheet(&[some.images.clone(), trainer.reconstruct(&some.images)?])?;
+        Ok(Seen { errors: [image, parameters], sheet })
+    }
+
+    fn file(&self, resumable: bool, about: &str) -> Result<Vec<u8>> {
+        Ok(Checkpoint::of(&self.trainer, resumable, about)?.to_bytes()?)
     }
 }
 
@@ -166,23 +173,6 @@ impl Run {
         trainer.clip_norm = clip_norm.filter(|norm| *norm > 0.0);
         trainer.threads = threads.unwrap_or(1);
         Ok(trainer)
-    }
-
-    /// L_x and, where scenes are known, L_p on the validation images, which are drawn.
-    fn look<B: Backend>(
-        &self,
-        trainer: &Trainer<B, f32>,
-        held_out: &Batch<f32>,
-        store: &Store,
-    ) -> Result<[Option<f64>; 2]> {
-        let image = trainer.validate(Mode::Ti, held_out)?.image;
-        let known = !held_out.scenes.is_empty();
-        let parameters = if known { trainer.validate(Mode::Gp, held_out)?.parameters } else { None };
-        let some = held_out.part(0, SAMPLES);
-        let grid = sheet(&[some.images.clone(), trainer.reconstruct(&some.images)?])?;
-        let path = store.path("samples").join(format!("{:08}.png", trainer.steps()));
-        write_atomic(&path, &encode_png(grid.view(), BitDepth::Eight)?)?;
-        Ok([image, parameters])
     }
 
     /// Keeps the batch of a step that failed.
