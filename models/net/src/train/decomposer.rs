@@ -8,7 +8,7 @@ use dvp_core::{Image, Real};
 
 use super::gradients::{cut, length};
 use super::schedule::Schedule;
-use super::stored::set_values;
+use super::weights_file::set_values;
 use crate::decompose::{Decomposer, DecomposerConfig, PartsOf, Terms};
 use crate::error::NetError;
 use crate::initial::initial_weights;
@@ -100,10 +100,7 @@ impl<B: Backend, T: Real> DecomposerTrainer<B, T> {
         let verdict = decomposer.judge(&image_tensor(images, &self.device)?, chance)?;
         let loss = verdict.loss.number()?;
         let mut gradients = self.parameters.gradients(&verdict.loss.backward()?);
-        let gradient = length(&gradients)?;
-        if !loss.is_finite() || !gradient.is_finite() {
-            return Err(NetError::NotFinite { step: number, loss: if loss.is_finite() { gradient } else { loss } });
-        }
+        let gradient = length(&gradients, loss, number)?;
         cut(&mut gradients, gradient, self.clip_norm)?;
         let rate = self.schedule.rate(number);
         self.adam.step(&mut self.parameters, &gradients, rate)?;

@@ -1,21 +1,16 @@
-//! A decomposer in a file: its weights, its sizes and, if it is to go on learning, its optimizer.
-//!
-//! Tensors: `model.*`, `adam.mean.*`, `adam.square.*`; the rest as [`Checkpoint`](super::Checkpoint) has it.
+//! A decomposer in a file.
 
 use dvp_core::Real;
-use dvp_core::tensor::{Backend, Parameters};
+use dvp_core::tensor::Backend;
 
 use super::decomposer::DecomposerTrainer;
-use super::stored::Stored;
+use super::weights_file::WeightsFile;
 use crate::decompose::{Decomposer, DecomposerConfig};
 use crate::error::NetError;
 use crate::weights::Weights;
 
 /// A decomposer as it stands in a file.
-#[derive(Clone, Debug)]
-pub struct DecomposerFile {
-    stored: Stored<DecomposerConfig>,
-}
+pub type DecomposerFile = WeightsFile<DecomposerConfig>;
 
 impl DecomposerFile {
     /// Takes a copy of a trainer's state; with its optimizer if `resumable`. `about`: what whoever writes the file wants to know
@@ -28,50 +23,7 @@ impl DecomposerFile {
         resumable: bool,
         about: &str,
     ) -> Result<Self, NetError> {
-        let stored = Stored::of(trainer.config().clone(), (trainer.parameters(), &trainer.adam), resumable, about)?;
-        Ok(Self { stored })
-    }
-
-    /// The bytes of its file.
-    ///
-    /// # Errors
-    /// [`NetError::Parameters`]; nothing is known to refuse.
-    pub fn to_bytes(&self) -> Result<Vec<u8>, NetError> {
-        self.stored.to_bytes()
-    }
-
-    /// Reads a file, given by its bytes.
-    ///
-    /// # Errors
-    /// [`NetError::Checkpoint`] or [`NetError::Parameters`] if it is damaged, or holds no decomposer.
-    pub fn from_bytes(bytes: &[u8]) -> Result<Self, NetError> {
-        Ok(Self { stored: Stored::from_bytes(bytes)? })
-    }
-
-    /// The sizes of the decomposer.
-    #[must_use]
-    pub fn config(&self) -> &DecomposerConfig {
-        &self.stored.config
-    }
-
-    /// Steps it has learned for.
-    #[must_use]
-    pub fn steps(&self) -> u64 {
-        u64::from(self.stored.steps)
-    }
-
-    /// What whoever wrote the file wants to know when it is read.
-    #[must_use]
-    pub fn about(&self) -> &str {
-        &self.stored.about
-    }
-
-    /// The weights by the names of the decomposer.
-    ///
-    /// # Errors
-    /// If the framework refuses.
-    pub fn weights<B: Backend>(&self, device: &B::Device) -> Result<Parameters<B>, NetError> {
-        self.stored.weights(device)
+        Self::new(trainer.config().clone(), (trainer.parameters(), &trainer.adam), resumable, about)
     }
 
     /// The decomposer, to look with: its weights are constants.
@@ -85,18 +37,14 @@ impl DecomposerFile {
     /// Puts a trainer into the state that the file was written in.
     ///
     /// # Errors
-    /// [`NetError::Checkpoint`] if the file is of a decomposer of other sizes or holds no optimizer. The trainer is then as
-    /// before.
+    /// [`NetError::Checkpoint`] if the file is of a network of other sizes or holds no optimizer. The trainer is then as before.
     pub fn resume<B: Backend, T: Real>(
         &self,
         trainer: &mut DecomposerTrainer<B, T>,
         device: &B::Device,
     ) -> Result<(), NetError> {
-        if self.config() != trainer.config() {
-            return Err(NetError::Checkpoint("it is of a decomposer of other sizes".into()));
-        }
-        let adam = self.stored.adam(device)?;
-        trainer.set_weights(&self.weights(device)?)?;
+        let (weights, adam) = self.state(trainer.config(), device)?;
+        trainer.set_weights(&weights)?;
         trainer.adam = adam;
         Ok(())
     }

@@ -14,7 +14,7 @@ use super::batch::Batch;
 use super::gradients::{cut, length};
 use super::schedule::Schedule;
 use super::shake::shaken;
-use super::stored::set_values;
+use super::weights_file::set_values;
 use crate::error::NetError;
 use crate::initial::initial_weights;
 use crate::look::{Aim, Layout, Look, LookConfig, PLANES, Sight};
@@ -135,10 +135,8 @@ impl<B: Backend, T: Real> LookTrainer<B, T> {
         let look = Look::load(&self.config, self.layout.prototypes(), &Weights::new(&self.parameters))?;
         let Verdict { loss, moves, shapes } = self.judge(&look, batch, chance)?;
         let gradients = self.parameters.gradients(&loss.backward()?);
-        let (loss, gradient) = (loss.number()?, length(&gradients)?);
-        if !loss.is_finite() || !gradient.is_finite() {
-            return Err(NetError::NotFinite { step: number, loss: if loss.is_finite() { gradient } else { loss } });
-        }
+        let loss = loss.number()?;
+        let gradient = length(&gradients, loss, number)?;
         let rate = self.schedule.rate(number);
         Ok((LookStep { number, loss, moves, shapes, gradient, rate }, gradients))
     }

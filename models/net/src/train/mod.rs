@@ -7,7 +7,7 @@
 //! | `judge` | [`Judge`]: the loss of a batch in each mode |
 //! | `schedule` | [`Schedule`]: the learning rate |
 //! | `checkpoint` | [`Checkpoint`]: a model in a file |
-//! | `stored` | what files of weights have in common |
+//! | `weights_file` | [`WeightsFile`]: a network in a file |
 //! | `gradients` | gradients over all weights |
 //! | `decomposer`, `decomposer_file` | [`DecomposerTrainer`], [`DecomposerFile`]: the same for networks without shapes |
 //! | `looker`, `look_file`, `shake` | [`LookTrainer`], [`LookFile`]: the same for second looks; what they learn from |
@@ -26,10 +26,10 @@ mod looker;
 mod mode;
 mod schedule;
 mod shake;
-mod stored;
 #[cfg(test)]
 mod tests;
 mod trainer;
+mod weights_file;
 
 pub use batch::{Batch, Features};
 pub use checkpoint::Checkpoint;
@@ -41,3 +41,4 @@ pub use looker::{LookStep, LookTrainer};
 pub use mode::{Mode, Source};
 pub use schedule::Schedule;
 pub use trainer::{Step, Trainer};
+pub use weights_file::WeightsFile;

@@ -12,7 +12,7 @@ use super::gradients::{Gradients, cut, length};
 use super::judge::Judge;
 use super::mode::Mode;
 use super::schedule::Schedule;
-use super::stored::set_values;
+use super::weights_file::set_values;
 use crate::error::NetError;
 use crate::initial::initial_weights;
 use crate::layers::Phase;
@@ -152,10 +152,7 @@ impl<B: Backend, T: Real> Trainer<B, T> {
         }
         let mean = |k: usize| parts.iter().map(|part| Some(part.share * part.losses[k]?)).sum::<Option<f64>>();
         let loss = mean(0).unwrap_or(f64::NAN);
-        let norm = length(&gradients)?;
-        if !loss.is_finite() || !norm.is_finite() {
-            return Err(NetError::NotFinite { step: number, loss: if loss.is_finite() { norm } else { loss } });
-        }
+        let norm = length(&gradients, loss, number)?;
         cut(&mut gradients, norm, self.clip_norm)?;
         let rate = self.schedule.rate(number);
         self.adam.step(&mut self.parameters, &gradients, rate)?;

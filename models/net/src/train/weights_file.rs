@@ -1,7 +1,7 @@
 //! Weights in a file: tensors, sizes and words of who wrote it.
 //!
-//! One safetensors file. Sizes and words are JSON in the file's metadata, with a checksum over all numbers: a damaged file is
-//! never taken for a model.
+//! One safetensors file. Tensors: `model.*`, `adam.mean.*`, `adam.square.*` and, of networks that know shapes, `bank` (prototypes x
+//! harmonics x 4). The rest is JSON in the file's metadata, with a checksum over all numbers: a damaged file is never taken for a network.
 
 use dvp_core::dims::Dims;
 use dvp_core::optim::AdamSettings;
@@ -28,18 +28,18 @@ struct Note<C> {
     checksum: u32,
 }
 
-/// What a file holds; `C` are the sizes of the model.
+/// A network as it stands in a file: its weights, its sizes `C` and, if it is to go on learning, its optimizer.
 #[derive(Clone, Debug)]
-pub(super) struct Stored<C> {
-    pub(super) config: C,
-    pub(super) steps: u32,
-    pub(super) about: String,
+pub struct WeightsFile<C> {
+    config: C,
+    steps: u32,
+    about: String,
     tensors: Parameters<Host>,
 }
 
-impl<C: Clone + Serialize + DeserializeOwned> Stored<C> {
+impl<C: Clone + PartialEq + Serialize + DeserializeOwned> WeightsFile<C> {
     /// A copy of a trainer's weights; with its optimizer if `resumable`.
-    pub(super) fn of<B: Backend>(
+    pub(super) fn new<B: Backend>(
         config: C,
         (parameters, adam): (&Parameters<B>, &Adam<B>),
         resumable: bool,
@@ -75,8 +75,11 @@ impl<C: Clone + Serialize + DeserializeOwned> Stored<C> {
         Ok(self.tensors.insert("bank", &tensor)?)
     }
 
-    /// The shapes that a network knows.
-    pub(super) fn bank<T: Real>(&self) -> Result<PrototypeBank<T>, NetError> {
+    /// The shapes that the network knows.
+    ///
+    /// # Errors
+    /// [`NetError::Parameters`] if the file holds none: it is of a network without shapes.
+    pub fn bank<T: Real>(&self) -> Result<PrototypeBank<T>, NetError> {
         let tensor = self.tensors.get("bank")?;
         let harmonics = tensor.dims().get(1).unwrap_or(0).max(1);
         let values: Vec<T> = tensor.to_f64()?.into_iter().map(T::of).collect();
@@ -84,7 +87,29 @@ impl<C: Clone + Serialize + DeserializeOwned> Stored<C> {
         Ok(PrototypeBank::new(rows.chunks_exact(harmonics).map(|rows| Efd::new(rows.to_vec())).collect()))
     }
 
-    pub(super) fn to_bytes(&self) -> Result<Vec<u8>, NetError> {
+    /// The sizes of the network.
+    #[must_use]
+    pub fn config(&self) -> &C {
+        &self.config
+    }
+
+    /// Steps it has learned for.
+    #[must_use]
+    pub fn steps(&self) -> u64 {
+        u64::from(self.steps)
+    }
+
+    /// What whoever wrote the file wants to know when it is read: the settings of the run, say.
+    #[must_use]
+    pub fn about(&self) -> &str {
+        &self.about
+    }
+
+    /// The bytes of its file.
+    ///
+    /// # Errors
+    /// [`NetError::Parameters`]; nothing is known to refuse.
+    pub fn to_bytes(&self) -> Result<Vec<u8>, NetError> {
         let Self { config, steps, about, tensors } = self;
         let (config, about, checksum) = (config.clone(), about.clone(), checksum(tensors)?);
         let note = Note { version: VERSION, config, steps: *steps, about, checksum };
@@ -92,7 +117,11 @@ impl<C: Clone + Serialize + DeserializeOwned> Stored<C> {
         Ok(tensors.to_safetensors_with(Some(&note))?)
     }
 
-    pub(super) fn from_bytes(bytes: &[u8]) -> Result<Self, NetError> {
+    /// Reads a file, given by its bytes.
+    ///
+    /// # Errors
+    /// [`NetError::Checkpoint`] or [`NetError::Parameters`] if it is damaged, of another kind of network, or no file of this program.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, NetError> {
         let refused = |reason: String| NetError::Checkpoint(reason);
         let note = safetensors_note(bytes)?
             .ok_or_else(|| refused("weights without a note: written by another program; see --start".into()))?;
@@ -108,18 +137,29 @@ impl<C: Clone + Serialize + DeserializeOwned> Stored<C> {
         Ok(Self { config, steps, about, tensors })
     }
 
-    /// The weights by the names of the model.
-    pub(super) fn weights<B: Backend>(&self, device: &B::Device) -> Result<Parameters<B>, NetError> {
+    /// The weights by the names of the network.
+    ///
+    /// # Errors
+    /// If the framework refuses.
+    #[inline(never)]
+    pub fn weights<B: Backend>(&self, device: &B::Device) -> Result<Parameters<B>, NetError> {
         self.part("model.", device)
     }
 
-    /// The optimizer as it was.
-    pub(super) fn adam<B: Backend>(&self, device: &B::Device) -> Result<Adam<B>, NetError> {
+    /// The weights and the optimizer as they were, for a trainer of a network of sizes `config`.
+    pub(super) fn state<B: Backend>(
+        &self,
+        config: &C,
+        device: &B::Device,
+    ) -> Result<(Parameters<B>, Adam<B>), NetError> {
+        if *config != self.config {
+            return Err(NetError::Checkpoint("it is of a network of other sizes".into()));
+        }
         let moments = self.part::<B>("adam.", device)?;
         if moments.is_empty() && self.steps > 0 {
             return Err(NetError::Checkpoint("it holds no optimizer; give it as --start".into()));
         }
-        Ok(Adam::resume(AdamSettings::default(), self.steps, &moments)?)
+        Ok((self.weights(device)?, Adam::resume(AdamSettings::default(), self.steps, &moments)?))
     }
 
     /// The tensors under a path, which ends with a dot, by the rest of their names.
