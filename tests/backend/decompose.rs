@@ -8,24 +8,11 @@ use dvp_net::decompose::monet::MonetConfig;
 use dvp_net::error::NetError;
 use dvp_net::train::{DecomposerFile, DecomposerTrainer, Schedule};
 
-use crate::check::close;
+use crate::check::{close, gradients_agree, losses_agree};
 use crate::registry::{Outcome, Tally, Tested, on_every_backend};
 
 /// Steps of a run.
 const STEPS: usize = 50;
-
-/// Steps that are compared, and the most by which a loss of theirs may differ from that of the host, relative to it.
-///
-/// Backends add in another order, and Adam, which divides gradients by their size, carries the rounding of small ones into the weights: in
-/// f32 the losses stay 1e-7 apart for 13 steps, and then each step carries a difference on 1.3 times as large, up to 2e-2 at the
-/// fiftieth, or not, as the compiler has it. So f32 is held to ten steps. In f64 all fifty are 4e-16 apart; what another processor, which sums in
-/// yet another order, may make of rounding is 2e5 times as much.
-fn held(dtype: DType) -> (usize, f64) {
-    match dtype {
-        DType::F32 => (10, 5e-6),
-        DType::F64 => (STEPS, 1e-9),
-    }
-}
 
 /// Four images of 16 x 16: a square of one color on another.
 fn images<T: Real>() -> Vec<Image<T>> {
@@ -58,12 +45,7 @@ fn fifty_steps<B: Tested>(tally: &Tally) -> Outcome {
         (DType::F32, losses::<B, f32>(), losses::<Host, f32>()),
     ];
     for (dtype, own, host) in &pairs {
-        let (steps, most) = held(*dtype);
-        let apart: Vec<f64> = own.iter().zip(host).map(|(a, b)| (a - b).abs() / b.abs()).collect();
-        let complete = own.len() == STEPS && own.iter().all(|loss| loss.is_finite());
-        tally.check(complete && apart[..steps].iter().all(|&apart| apart <= most), || {
-            format!("losses of {dtype} are {apart:?} apart: {own:?} {host:?}")
-        })?;
+        losses_agree(tally, *dtype, own, host, STEPS)?;
         // Latents are drawn anew in every step: the losses of single steps scatter.
         let mean = |part: &[f64]| part.iter().sum::<f64>() / part.len() as f64;
         let [first, last] = [mean(&own[..10]), mean(&own[STEPS - 10..])];
@@ -83,12 +65,7 @@ fn gradients<B: Tested>(tally: &Tally) -> Outcome {
         gradients.into_iter().map(|(name, tensor)| Ok((name, tensor.to_f64()?))).collect()
     }
     let (own, host) = (of::<B>().unwrap(), of::<Host>().unwrap());
-    tally.check(own.len() == host.len() && own.len() > 20, || format!("{} gradients for {}", own.len(), host.len()))?;
-    for ((name, own), (expected, host)) in own.iter().zip(&host) {
-        tally.check(name == expected, || format!("{name} for {expected}"))?;
-        close(tally, name, own, host, 1e-9)?;
-    }
-    Ok(())
+    gradients_agree(tally, &own, &host, 21)
 }
 
 /// A file written on one backend is read on another: the host sees the same parts.

@@ -10,20 +10,11 @@ use dvp_net::look::LookConfig;
 use dvp_net::scene_steps::SceneSteps;
 use dvp_net::train::{Batch, LookFile, LookTrainer, Schedule};
 
-use crate::check::close;
+use crate::check::{close, gradients_agree, losses_agree};
 use crate::registry::{Outcome, Tally, Tested, on_every_backend};
 
 /// Steps of a run.
 const STEPS: usize = 20;
-
-/// Steps that are compared, and the most by which a loss of theirs may differ from that of the host, relative to it: as of MONet
-/// (`decompose`), for the same reason.
-fn held(dtype: DType) -> (usize, f64) {
-    match dtype {
-        DType::F32 => (10, 5e-6),
-        DType::F64 => (STEPS, 1e-9),
-    }
-}
 
 /// Three scenes of one or two objects and their images, 48 x 48.
 fn batch<T: Real>() -> Batch<T> {
@@ -57,12 +48,7 @@ fn same_steps<B: Tested>(tally: &Tally) -> Outcome {
         (DType::F32, losses::<B, f32>(), losses::<Host, f32>()),
     ];
     for (dtype, own, host) in &pairs {
-        let (steps, most) = held(*dtype);
-        let apart: Vec<f64> = own.iter().zip(host).map(|(a, b)| (a - b).abs() / b.abs()).collect();
-        let complete = own.len() == STEPS && own.iter().all(|loss| loss.is_finite());
-        tally.check(complete && apart[..steps].iter().all(|&apart| apart <= most), || {
-            format!("losses of {dtype} are {apart:?} apart: {own:?} {host:?}")
-        })?;
+        losses_agree(tally, *dtype, own, host, STEPS)?;
     }
     Ok(())
 }
@@ -74,13 +60,7 @@ fn gradients<B: Tested>(tally: &Tally) -> Outcome {
         gradients.into_iter().map(|(name, tensor)| Ok((name, tensor.to_f64()?))).collect()
     }
     let (own, host) = (of::<B>().unwrap(), of::<Host>().unwrap());
-    tally
-        .check(own.len() == host.len() && own.len() == 12, || format!("{} gradients for {}", own.len(), host.len()))?;
-    for ((name, own), (expected, host)) in own.iter().zip(&host) {
-        tally.check(name == expected, || format!("{name} for {expected}"))?;
-        close(tally, name, own, host, 1e-9)?;
-    }
-    Ok(())
+    gradients_agree(tally, &own, &host, 12)
 }
 
 /// A file written on one backend is read on another: the host puts the same scenes right in the same way.
