@@ -48,6 +48,8 @@ pub(super) struct Completion<'a> {
     pub(super) order: &'a Order,
     /// The face that everything lies on.
     pub(super) background: u32,
+    /// Whether what has its color shows nothing at all.
+    pub(super) is_clear: bool,
     pub(super) ruler: Ruler,
     /// Pairs of faces that were found to be one thing behind another, when the order was.
     pub(super) united: Vec<(u32, u32)>,
@@ -146,8 +148,9 @@ impl Completion<'_> {
         self.memo.spent.get() > (tuning::MOST_TRIED * steps).min(tuning::MOST_TRIED_SAMPLES)
     }
 
-    /// Faces are painted in this order.
+    /// Faces are painted in this order, and no others.
     pub(super) fn paint(&mut self, order: &[u32]) {
+        self.rank.fill(0);
         for (place, &face) in order.iter().enumerate() {
             self.rank[face as usize] = place + 1;
         }
@@ -179,16 +182,13 @@ impl Completion<'_> {
         let are_specks = group.iter().all(|&face| self.is_small(face) && !self.partition.has_sliver(face));
         let mut walks: Vec<Walk<'_>> = parts
             .map(|ring| {
-                let hidden =
-                    ring.steps.iter().map(|step| self.hidden(step, rank, are_specks, group.len() > 1)).collect();
-                Walk { ring, hidden }
+                let hidden = |step| self.hidden(step, rank, are_specks, group.len() > 1);
+                Walk::new(ring, ring.steps.iter().map(hidden).collect())
             })
-            // A hole that is filled by what lies in front of it is none.
-            .filter(|walk| walk.ring.area > 0.0 || walk.hidden.contains(&None))
             .collect();
         // What is not hidden has no boundary but its own.
         let is_seen = |at: Vec2<f64>| self.pure_face(at).is_some_and(|face| wanted(face).is_some());
-        let mut samples: Vec<RingSamples> = walks.iter().map(Walk::samples).collect();
+        let mut samples = walk::samples(&walks);
         let most = if group.len() > 1 { MOST_LINKED } else { 1 };
         let linked = link::relinked(&samples, is_seen, most).into_iter().map(|samples| self.framed(&samples));
         let linked = linked.filter(|linked| self.check(&linked.outlines, wanted).is_ok());
@@ -209,13 +209,22 @@ impl Completion<'_> {
                     if !is_pinned {
                         break;
                     }
-                    samples = walks.iter().map(Walk::samples).collect();
+                    samples = walk::samples(&walks);
                 }
             }
         }
         linked.unwrap_or_else(|| {
+            walks.retain(|walk| !walk.is_filled);
             let traced = Completed::new(walks.iter().map(|walk| self.traced(walk.ring)).collect(), false);
-            let priced = wrong_ways.into_iter().map(|(walked, wrong)| self.priced(walked, &wrong, wanted));
+            // Of many boundaries most are right as they are.
+            let blamed = wrong_ways.last().map(|(_, wrong)| walk::blamed(&walks, wrong)).unwrap_or_default();
+            let parts = walks.iter().zip(blamed).filter_map(|(walk, is_blamed)| match is_blamed {
+                true => Some(self.traced(walk.ring)),
+                false => self.memo.fit_closed(&walk.samples(), &self.ruler),
+            });
+            let parts = Completed::new(parts.collect(), false);
+            let parts = self.check(&parts.outlines, wanted).is_ok().then_some(parts);
+            let priced = wrong_ways.into_iter().map(|(walked, wrong)| self.priced(walked, &wrong, wanted)).chain(parts);
             priced.fold(traced, |best, other| if other.bits < best.bits { other } else { best })
         })
     }
@@ -303,7 +312,7 @@ impl Completion<'_> {
 
     /// The last resort: the polygon through the samples themselves.
     fn traced(&self, ring: &Ring) -> Outline {
-        let RingSamples { runs, .. } = visible::samples(ring, &vec![None; ring.steps.len()]);
+        let RingSamples { runs, .. } = visible::samples(ring, &vec![None; ring.steps.len()], &[]);
         let mut points: Vec<[f64; 2]> = runs.iter().flatten().map(|sample| sample.point.to_array()).collect();
         if points.len() < 3 {
             points = ring.steps.iter().map(|step| step.crack.start.map(|value| value as f64)).collect();

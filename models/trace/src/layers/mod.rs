@@ -103,6 +103,7 @@ pub fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<Color>) 
         neighbors: complete::neighbors(rings),
         order: &order,
         background,
+        is_clear: matte.is_some(),
         ruler,
         united: Vec::new(),
         known: RefCell::default(),
@@ -138,7 +139,8 @@ pub fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<Color>) 
     Layers { background: partition.rgb(partition.color(background)), layers }
 }
 
-/// The face that everything lies on: that of the matte, or else the largest, where what lies along the border counts more.
+/// The face that everything lies on: that of the matte, or what alone lies along the border, or else the largest, where what lies along the
+/// border counts more.
 fn background(partition: &Partition, rings: &[Vec<Ring>], matte: Option<Color>) -> u32 {
     let contact = |face: &u32| -> usize {
         rings[*face as usize].iter().flat_map(|ring| &ring.steps).filter(|step| step.other == OUTSIDE).count()
@@ -153,5 +155,7 @@ fn background(partition: &Partition, rings: &[Vec<Ring>], matte: Option<Color>) 
         };
         faces.clone().filter(is_clear).max_by_key(key)
     });
-    clear.or_else(|| faces.max_by_key(key)).unwrap_or(0)
+    let mut at_border = faces.clone().filter(|face| contact(face) > 0);
+    let alone = at_border.next().filter(|_| at_border.next().is_none());
+    clear.or(alone).or_else(|| faces.max_by_key(key)).unwrap_or(0)
 }

@@ -1,6 +1,6 @@
 //! The order in which faces are painted, from back to front.
 
-use alloc::collections::BTreeMap;
+use alloc::collections::{BTreeMap, BTreeSet};
 use alloc::vec;
 use alloc::vec::Vec;
 
@@ -39,7 +39,8 @@ impl Order {
             pens[behind as usize] = None;
         }
         add_pens(rings, pens, &mut votes);
-        add_enclosures(partition, rings, background, clear, &mut votes);
+        let neighbors: Vec<Vec<u32>> = rings.iter().map(|rings| neighbors_along(rings.iter())).collect();
+        add_enclosures(partition, (rings, &neighbors), background, clear, &mut votes);
         let n = partition.faces.len();
         // What lies in front of each face, and behind how much each face must lie that is not placed yet.
         let mut in_front: Vec<Vec<(u32, f64)>> = vec![Vec::new(); n];
@@ -50,6 +51,13 @@ impl Order {
                 in_front[behind as usize].push((front, net));
                 held[front as usize] += net;
                 shown.insert((front, behind));
+            }
+        }
+        // What lies in a hole of a face lies in front of it, whatever fills the hole, or the hole would have to be one.
+        for (face, rings) in rings.iter().enumerate() {
+            for inner in inside(&neighbors, rings, face as u32) {
+                in_front[face].push((inner, tuning::ENCLOSED_VOTE));
+                held[inner as usize] += tuning::ENCLOSED_VOTE;
             }
         }
         let mut order = Self { faces: Vec::with_capacity(n), rank: vec![usize::MAX; n], in_front: shown, votes };
@@ -91,6 +99,18 @@ impl Order {
     }
 }
 
+/// The faces in the holes of a face, but those that touch it.
+fn inside(neighbors: &[Vec<u32>], rings: &[Ring], face: u32) -> BTreeSet<u32> {
+    let beside = &neighbors[face as usize];
+    let mut found = BTreeSet::new();
+    let mut ways: Vec<u32> = neighbors_along(rings.iter().skip(1));
+    while let Some(way) = ways.pop() {
+        let next = neighbors[way as usize].iter().copied().filter(|&next| next != face && !beside.contains(&next));
+        ways.extend(next.filter(|&next| found.insert(next)));
+    }
+    found
+}
+
 /// Faces that touch and of which no junction tells lie as others of their colors do: what is of one color is one thing more often than not.
 fn add_colors(partition: &Partition, rings: &[Vec<Ring>], votes: &mut Votes) {
     let color = |face: u32| partition.faces[face as usize].color;
@@ -123,22 +143,30 @@ fn add_pens(rings: &[Vec<Ring>], pens: &[Option<StrokeFit>], votes: &mut Votes) 
 /// A face with one neighbor only lies on it. What has the color of the background is a hole where all around it lies on the background,
 /// or other faces of the same colors do; what has the color of another face beside its only neighbor is that other face, seen through a
 /// hole. Both are sure if nothing is painted there (`clear`).
-fn add_enclosures(partition: &Partition, rings: &[Vec<Ring>], background: u32, clear: bool, votes: &mut Votes) {
-    let neighbors: Vec<Vec<u32>> = rings.iter().map(|rings| neighbors_along(rings.iter())).collect();
+fn add_enclosures(
+    partition: &Partition,
+    (rings, neighbors): (&[Vec<Ring>], &[Vec<u32>]),
+    background: u32,
+    clear: bool,
+    votes: &mut Votes,
+) {
+    let outer: Vec<Vec<u32>> = rings.iter().map(|rings| neighbors_along(rings.iter().take(1))).collect();
     let back = partition.faces[background as usize].color;
     let is_back = |face: u32| partition.faces[face as usize].color == back;
     let mut on_back = vec![false; partition.palette.len()];
     for &face in &neighbors[background as usize] {
         on_back[partition.faces[face as usize].color] = true;
     }
-    for (face, rings) in rings.iter().enumerate() {
-        let around: Vec<u32> = neighbors_along(rings.iter().take(1));
+    for face in 0..rings.len() {
+        let around = &outer[face];
         let lies_on_back = |other: &u32| on_back[partition.faces[*other as usize].color];
         let shows = |other: &u32| {
-            let has_color = |next: &u32| {
-                *next as usize != face && partition.faces[*next as usize].color == partition.faces[face].color
+            // What lies on it, too, may be another thing of the same color: both eyes of a face.
+            let shows = |next: &u32| {
+                let is_same = partition.faces[*next as usize].color == partition.faces[face].color;
+                is_same && *next as usize != face && outer[*next as usize] != [*other]
             };
-            neighbors[*other as usize].iter().any(has_color)
+            neighbors[*other as usize].iter().any(shows)
         };
         let is_hole = if is_back(face as u32) {
             clear || around.len() > 1 || around.iter().all(lies_on_back)
@@ -152,7 +180,7 @@ fn add_enclosures(partition: &Partition, rings: &[Vec<Ring>], background: u32, c
                 true => tuning::MOST_VOTE,
                 false => tuning::ENCLOSED_VOTE,
             };
-            for neighbor in around {
+            for &neighbor in around {
                 *votes.entry((neighbor, face as u32)).or_default() += bits;
             }
         } else if let [neighbor] = around[..] {

@@ -27,7 +27,7 @@ pub(super) fn find(
         // Of a line, what lies beyond the border is not seen; an outline ends there.
         let samples = |ring: &Ring, beyond: Option<Hidden>| {
             let hidden: Vec<_> = ring.steps.iter().map(|step| beyond.filter(|_| step.other == OUTSIDE)).collect();
-            visible::samples(ring, &hidden)
+            visible::samples(ring, &hidden, &[])
         };
         let seen: Vec<RingSamples> = rings.iter().map(|ring| samples(ring, Some(Hidden::Free))).collect();
         pens[face] = fit_strokes(&seen, ruler).filter(|pen| {

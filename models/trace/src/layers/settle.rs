@@ -61,7 +61,9 @@ pub(super) fn settle(completion: &mut Completion<'_>) {
                 search.completion.paint(&order);
             }
         }
+        is_changed |= search.fill(&mut order, &mut total);
         is_changed |= search.open(&mut order, &mut total);
+        is_changed |= search.close(&mut order, &mut total);
         is_changed |= search.unite(&mut order, &mut total);
         is_changed |= search.frame(&mut order, &mut total);
         if !is_changed || search.completion.is_spent() {
@@ -84,23 +86,101 @@ impl Search<'_, '_> {
         let mut is_changed = false;
         let open: Vec<u32> = order.iter().copied().filter(|&face| self.completion.shows_background(face)).collect();
         for face in open {
+            let without: Vec<u32> = order.iter().copied().filter(|&other| other != face).collect();
+            is_changed |= self.is_shorter(&without, 0.0, order, total);
+        }
+        is_changed
+    }
+
+    /// Paints what shows the background through more than one thing as one more thing, where it is a figure and that is shorter.
+    fn close(&mut self, order: &mut Vec<u32>, total: &mut Option<f64>) -> bool {
+        let mut is_changed = false;
+        for face in self.openings() {
             if self.completion.is_spent() {
                 break;
             }
-            let before = *total.get_or_insert_with(|| join::total(self.completion));
-            self.completion.rank[face as usize] = 0;
-            let mut without = order.clone();
-            without.retain(|&other| other != face);
-            self.completion.paint(&without);
-            let after = join::total(self.completion);
-            if after < before - tuning::LEAST_SAVED {
-                *order = without;
-                is_changed = true;
-                *total = Some(after);
-            }
+            let mut with = order.clone();
+            with.push(face);
+            self.completion.paint(&with);
+            let is_whole = self.completion.outlines(&[face]).is_whole();
             self.completion.paint(order);
+            let around = &self.completion.neighbors[face as usize];
+            let votes = around.iter().map(|&other| self.completion.order.net(other, face).max(0.0)).sum::<f64>();
+            is_changed |= is_whole && self.is_shorter(&with, votes + join::COLOR_BITS, order, total);
         }
         is_changed
+    }
+
+    /// Faces of the color of the background that are not painted though what is around them does not all lie on the background; none where
+    /// that color is no paint.
+    fn openings(&self) -> Vec<u32> {
+        let completion = &*self.completion;
+        if completion.is_clear {
+            return Vec::new();
+        }
+        let back = completion.background;
+        let color = |face: u32| completion.partition.faces[face as usize].color;
+        let is_deep = |face: &u32| {
+            let around = &completion.neighbors[*face as usize];
+            around.len() > 1 || around.iter().any(|other| !completion.neighbors[*other as usize].contains(&back))
+        };
+        let faces = (0..completion.rank.len() as u32).filter(|&face| face != back && color(face) == color(back));
+        faces.filter(|&face| completion.rank(face) == 0).filter(is_deep).collect()
+    }
+
+    /// Puts what has openings behind all that is seen in them, where that is shorter: that something is seen through what lies around it is no
+    /// more than a custom.
+    fn fill(&mut self, order: &mut Vec<u32>, total: &mut Option<f64>) -> bool {
+        let mut is_changed = false;
+        for (face, inner) in self.pierced() {
+            let place = |face: u32| order.iter().position(|&other| other == face);
+            let Some(at) = place(face) else { continue };
+            let Some(to) = inner.iter().map(|&inner| place(inner)).min().flatten().filter(|&to| to < at) else {
+                continue;
+            };
+            let mut moved = order.clone();
+            moved.remove(at);
+            moved.insert(to, face);
+            let beside = &self.completion.neighbors[face as usize];
+            let crossed = order[to..at].iter().filter(|other| beside.contains(other));
+            let against = crossed.map(|&other| self.completion.order.net(face, other).max(0.0)).sum();
+            is_changed |= self.is_shorter(&moved, against, order, total);
+        }
+        is_changed
+    }
+
+    /// Painted faces with the painted faces along each of their holes, where one of these is painted before.
+    fn pierced(&self) -> Vec<(u32, BTreeSet<u32>)> {
+        let completion = &*self.completion;
+        let mut found = Vec::new();
+        for face in completion.painted().into_iter().filter(|&face| completion.pens[face as usize].is_none()) {
+            for hole in completion.rings[face as usize].iter().skip(1) {
+                let inner: BTreeSet<u32> = hole.steps.iter().map(|step| step.other).collect();
+                if inner.iter().all(|&inner| inner != OUTSIDE && completion.rank(inner) > 0)
+                    && inner.iter().any(|&inner| completion.rank(inner) < completion.rank(face))
+                {
+                    found.push((face, inner));
+                }
+            }
+        }
+        found
+    }
+
+    /// Takes another order if all that is painted is shorter by it, by more than what is `against` it, bits.
+    fn is_shorter(&mut self, moved: &[u32], against: f64, order: &mut Vec<u32>, total: &mut Option<f64>) -> bool {
+        if self.completion.is_spent() {
+            return false;
+        }
+        let before = *total.get_or_insert_with(|| join::total(self.completion));
+        self.completion.paint(moved);
+        let after = join::total(self.completion);
+        let is_shorter = after + against < before - tuning::LEAST_SAVED;
+        if is_shorter {
+            *order = moved.to_vec();
+            *total = Some(after);
+        }
+        self.completion.paint(order);
+        is_shorter
     }
 
     /// Puts what lies between two faces of one color in front of both where they are shorter as one thing: of what is seen on both sides

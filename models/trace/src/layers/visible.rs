@@ -20,17 +20,20 @@ pub(super) enum Hidden {
         /// Pixels, negative inward.
         shift: f64,
     },
+    /// It goes along what hides it, a little way under it: edges that lie exactly on one another let through what is behind both.
+    Tucked,
 }
 
-/// The samples of a ring; where `hidden` says so of a step, the boundary is not the layer's own.
+/// The samples of a ring; where `hidden` says so of a step, the boundary is not the layer's own, and where `doubted` does, what was read
+/// there is not believed.
 ///
 /// Stretches that no window could read (thin things, crowded junctions) are known from the cracks themselves, to a third of a pixel.
-pub(super) fn samples(ring: &Ring, hidden: &[Option<Hidden>]) -> RingSamples {
+pub(super) fn samples(ring: &Ring, hidden: &[Option<Hidden>], doubted: &[bool]) -> RingSamples {
     let is_free = |k: usize| hidden[k] == Some(Hidden::Free);
     let n = ring.steps.len();
     // Begin behind a hidden step, so that no run is cut in two.
     let Some(start) = (0..n).find(|&k| is_free(k)) else {
-        let run = read(ring, 0, n, true, hidden);
+        let run = read(ring, 0, n, true, hidden, doubted);
         return RingSamples { runs: alloc::vec![run], closed: true };
     };
     let mut runs = Vec::new();
@@ -42,7 +45,7 @@ pub(super) fn samples(ring: &Ring, hidden: &[Option<Hidden>]) -> RingSamples {
             continue;
         }
         let length = (k..n).take_while(|&j| !is_free(at(j))).count();
-        let run = read(ring, at(k), length, false, hidden);
+        let run = read(ring, at(k), length, false, hidden, doubted);
         if !run.is_empty() {
             runs.push(run);
         }
@@ -52,7 +55,14 @@ pub(super) fn samples(ring: &Ring, hidden: &[Option<Hidden>]) -> RingSamples {
 }
 
 /// The samples of `length` steps from `start` on.
-fn read(ring: &Ring, start: usize, length: usize, closed: bool, hidden: &[Option<Hidden>]) -> Vec<Sample> {
+fn read(
+    ring: &Ring,
+    start: usize,
+    length: usize,
+    closed: bool,
+    hidden: &[Option<Hidden>],
+    doubted: &[bool],
+) -> Vec<Sample> {
     let n = ring.steps.len();
     let mut run: Vec<Sample> = Vec::new();
     let mut unread = 0;
@@ -61,6 +71,7 @@ fn read(ring: &Ring, start: usize, length: usize, closed: bool, hidden: &[Option
         // Where a boundary is flat half of the steps have samples, at 45 degrees; else more. A longer stretch without is unread.
         unread = if step.sample.is_some() { 0 } else { unread + 1 };
         match step.sample {
+            _ if doubted.get((start + k) % n) == Some(&true) => push(&mut run, of_crack(step, tuning::CRACK_SIGMA)),
             Some(sample) => push(&mut run, moved(sample, step, hidden[(start + k) % n])),
             None if step.other == OUTSIDE => push(&mut run, of_crack(step, tuning::BORDER_SIGMA)),
             None if unread > tuning::MOST_UNREAD => push(&mut run, of_crack(step, tuning::CRACK_SIGMA)),
@@ -73,9 +84,17 @@ fn read(ring: &Ring, start: usize, length: usize, closed: bool, hidden: &[Option
     run
 }
 
+/// How far (pixels) an outline goes under what hides it: beyond the pixels that its edge mixes.
+const TUCK: f64 = 1.0;
+
 /// The sample of a step that is hidden under a stroke: it is the stroke's middle that the outline is near, give or take a quarter of its width.
+/// Under anything else it lies beyond the edge, give or take half of that.
 fn moved(sample: Sample, step: &Step, hidden: Option<Hidden>) -> Sample {
-    let Some(Hidden::Under { shift }) = hidden else { return sample };
+    let shift = match hidden {
+        Some(Hidden::Under { shift }) => shift,
+        Some(Hidden::Tucked) => TUCK,
+        _ => return sample,
+    };
     // The face is on the right hand: outward is to the left.
     let outward = match step.crack.heading {
         Heading::PlusX => Vec2::new(0.0, -1.0),

@@ -14,6 +14,12 @@ use super::palette::distance;
 /// The longest run, pixels: the widest line that is asked for at 45 degrees, and a mixed pixel on both sides.
 pub(super) const LONGEST: usize = 16;
 
+/// A line wider than this, pixels across a window, covers a pixel whichever way it runs: sqrt(2) of 45 degrees and the pixel.
+const COVERS: f64 = 2.5;
+
+/// The least share of a pixel that is covered, give or take the noise of a coder.
+const FULL: f64 = 0.9;
+
 /// A window across something thin.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cross {
@@ -142,6 +148,10 @@ impl Canvas<'_> {
         let before: f64 = shares[..peak].iter().map(|share| share[0]).sum();
         let after: f64 = shares[peak + 1..count].iter().map(|share| share[1]).sum();
         let width = before + after + middle[0];
+        // What is that wide covers some pixel: else all of it is of a color between.
+        if width > COVERS && middle[0] < FULL {
+            return None;
+        }
         // The edges: full pixels between them, or, if the line is nowhere full, the middle of what is covered.
         let place = from as f64 + peak as f64;
         let center = if is_even {

@@ -2,6 +2,7 @@
 
 mod edges;
 mod lines;
+mod nested;
 
 use alloc::string::ToString as _;
 use alloc::vec;
