@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use dvp_lab::spoil::jpeg;
+use dvp::spoil::jpeg;
 use dvp_tests::draw_svg::draw_svg;
 use image::RgbImage;
 use serde_json::Value;

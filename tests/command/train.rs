@@ -201,6 +201,36 @@ fn pictures_of_a_folder_are_learned_from() {
 }
 
 #[test]
+fn pictures_are_spoiled_as_asked_whatever_stopped_the_run() {
+    let folder = tempfile::tempdir().unwrap();
+    for model in ["scene", "look"] {
+        let [plain, whole, halves] =
+            ["plain", "whole", "halves"].map(|name| folder.path().join(format!("{model}-{name}")));
+        dvp_done(quick(&plain, &["--model", model]));
+        dvp_done(quick(&whole, &["--model", model, "--degraded", "0.5"]));
+        assert_ne!(losses(&plain), losses(&whole), "{model}");
+        let settings = fs::read_to_string(whole.join("run.json")).unwrap();
+        assert!(settings.contains("\"degraded\": 0.5"), "{settings}");
+        fs::create_dir(&halves).unwrap();
+        for name in ["run.json", "losses.csv", "checkpoint-00000004.safetensors"] {
+            fs::copy(whole.join(name), halves.join(name)).unwrap();
+        }
+        dvp_done(["train", "--out", text(&halves), "--resume"]);
+        assert_eq!(losses(&halves), losses(&whole), "{model}");
+        // A run from before there was such a setting.
+        let settings = fs::read_to_string(plain.join("run.json")).unwrap();
+        let older: String =
+            settings.lines().filter(|line| !line.contains("degraded")).map(|line| format!("{line}\n")).collect();
+        assert!(older.len() < settings.len(), "{settings}");
+        fs::write(plain.join("run.json"), older).unwrap();
+        fs::remove_file(plain.join("checkpoint-00000006.safetensors")).unwrap();
+        let before = losses(&plain);
+        dvp_done(["train", "--out", text(&plain), "--resume"]);
+        assert_eq!(losses(&plain), before, "{model}");
+    }
+}
+
+#[test]
 fn what_cannot_be_run_is_said() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("run");
@@ -210,6 +240,8 @@ fn what_cannot_be_run_is_said() {
         (&["--steps", "0"], "at least 1"),
         (&["--size", "huge"], "--size huge"),
         (&["--bank", "none"], "needs shapes"),
+        (&["--degraded", "1.5"], "0 to 1"),
+        (&["--model", "monet", "--degraded", "0.5"], "as they are"),
         (&["--start", "nowhere.safetensors"], "nowhere.safetensors"),
     ] {
         let run = dvp(quick(&out, more));

@@ -3,10 +3,10 @@
 use dvp::format::mdshr_bank;
 use dvp::generate::{SceneSettings, sample_scene};
 use dvp::paint::Painter;
+use dvp::spoil::{add_noise, jpeg};
 use dvp_core::metric::visible_object_count;
 use dvp_core::{Image, ImageSize, Real};
 use dvp_fit::{Fit, FitOptions, FitScratch, Fitter, StopReason, fit_image};
-use dvp_lab::spoil::{add_noise, jpeg};
 use image::RgbImage;
 
 const SIDE: u32 = 128;

@@ -6,7 +6,7 @@ use dvp_core::shape::{Path, PathRing, Segment, Shape as _};
 use dvp_core::{Image, ImageSize, Object, Paint, Pose, Scene, SceneGrad};
 use dvp_fit::live::crossing::crossing_and_grad;
 use dvp_fit::live::descent::{PathDescent, PathLoss, PathStage};
-use dvp_tests::finite_difference::compare;
+use dvp_tests::finite_difference::{are_steady, compare};
 use dvp_tests::strategy::color;
 use proptest::prelude::*;
 
@@ -92,11 +92,15 @@ proptest! {
         let price = crossing_and_grad(&scene.objects, weight, &mut grad);
         prop_assert!((0.0..=weight).contains(&price), "{price}");
         let mut unused = SceneGrad::default();
-        compare(&numbers(&scene), &gradient(&grad), 1e-6, |x| {
+        let mut price = |x: &[f64]| {
             let moved = with_numbers(&scene, x);
             unused.reset(&moved);
             crossing_and_grad(&moved.objects, weight, &mut unused)
-        }).map_err(TestCaseError::fail)?;
+        };
+        let x = numbers(&scene);
+        // Where a leg has next to no length the sine bends faster than differences can follow.
+        prop_assume!(are_steady(&x, &mut price));
+        compare(&x, &gradient(&grad), 1e-6, price).map_err(TestCaseError::fail)?;
     }
 }
 
@@ -126,11 +130,15 @@ proptest! {
         let grad = gradient(descent.gradient());
         let layout = descent.drawing().starts.clone();
         let mut same_layout = true;
-        let compared = compare(&numbers(&scene), &grad, 2e-5, |x| {
+        let mut loss = |x: &[f64]| {
             let loss = descent.objective(&with_numbers(&scene, x), &stage).unwrap();
             same_layout &= descent.drawing().starts == layout;
             loss
-        });
+        };
+        let x = numbers(&scene);
+        // A pixel as near to one part of an outline as to another is at a kink of its distance.
+        prop_assume!(are_steady(&x, &mut loss));
+        let compared = compare(&x, &grad, 2e-5, loss);
         // A polygon that gets a vertex more is another function.
         prop_assume!(same_layout);
         compared.map_err(TestCaseError::fail)?;

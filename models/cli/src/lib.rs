@@ -10,6 +10,7 @@
 //! | [`svg`] | scenes as vector graphics |
 //! | [`paint`] | scenes to images with a renderer chosen by name |
 //! | [`generate`] | random scenes |
+//! | [`spoil`] | what happens to pictures on their way: noise, blur, JPEG |
 //! | [`method`] | the methods that find scenes, by name |
 //! | [`solve`] | pictures to scenes: what `dvp fit` does with each |
 //! | [`score`] | scenes against what was drawn: what `dvp evaluate` does with each |
@@ -42,6 +43,7 @@ pub mod method;
 pub mod paint;
 pub mod score;
 pub mod solve;
+pub mod spoil;
 pub mod statistics;
 pub mod suite;
 pub mod svg;

@@ -19,4 +19,4 @@
 
 pub mod command;
 
-pub use dvp_cli::{chart, export, format, generate, method, paint, score, solve, svg};
+pub use dvp_cli::{chart, export, format, generate, method, paint, score, solve, spoil, svg};

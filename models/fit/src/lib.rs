@@ -11,6 +11,7 @@
 //! | `split` | samples of a segment that no single shape explains | several shapes of one color and their poses |
 //! | `free` | samples, no bank | elliptic Fourier descriptors, as few as the samples support |
 //! | `fitter` | all of it | a [`Fit`] |
+//! | [`denoise`] | a picture | the picture without its noise |
 //! | [`picture`] | a picture of any kind | a [`Fit`]: as a drawing (`dvp-trace`) or as segments |
 //! | [`paint`] | a scene | its image |
 //! | [`prototypes`] | fits without a bank | the few shapes they share, a [`Bank`] |
@@ -35,6 +36,7 @@ extern crate alloc;
 mod readme {}
 
 pub mod adam;
+pub mod denoise;
 pub mod live;
 pub mod masks;
 pub mod opt_iter;

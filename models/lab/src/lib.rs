@@ -4,7 +4,6 @@
 //! |---|---|
 //! | [`chart`] | marks on two axes with labels that find room, as SVG and PNG |
 //! | [`hard`] | scenes of hard geometry: twins of one color, objects that leave the picture |
-//! | [`spoil`] | what happens to pictures on their way: noise, blur, JPEG |
 //! | [`agreement`] | whether a scene found is the true one |
 //! | [`command`] | `dvp chart`, `gradients`, `parsimony` and `stability` |
 //!
@@ -19,4 +18,3 @@ pub mod agreement;
 pub mod chart;
 pub mod command;
 pub mod hard;
-pub mod spoil;

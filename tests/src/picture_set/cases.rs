@@ -4,8 +4,8 @@ use std::fs;
 use std::path::Path;
 
 use dvp::format::{BitDepth, Place, SCENES_FILE, SceneJson, encode_png};
+use dvp::spoil::{add_noise, blurred, jpeg};
 use dvp_core::Scene;
-use dvp_lab::spoil::{add_noise, blurred, jpeg};
 use image::imageops::{FilterType, resize};
 use image::{DynamicImage, GrayImage, RgbImage};
 

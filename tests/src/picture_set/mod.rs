@@ -1,5 +1,5 @@
 //! Pictures of our own that no renderer of ours drew: SVGs drawn by resvg with the label maps that go with them, random
-//! families; the noise, blur and JPEG that happen to pictures on their way are those of `dvp_lab::spoil`.
+//! families; the noise, blur and JPEG that happen to pictures on their way are those of `dvp::spoil`.
 //!
 //! ```text
 //! tests/pictures/*/*.svg | random -> drawn -> spoil -> dvp fit -> dvp evaluate -> a table of cases

@@ -221,8 +221,7 @@ impl Runner {
             }),
             Method::NetLm => timed(|| {
                 let (start, options) = (network.objects(image)?, &self.tools.options);
-                let compositing = options.compositing.unwrap_or_default();
-                Ok(refine(&self.refine_settings(), image, &start, compositing, options.max_objects, scratch)?)
+                refine(&self.refine_settings(), image, &start, options.compositing, options.max_objects, scratch)
             }),
             _ => fit_of(image, || {
                 let scene = network.objects(image)?;

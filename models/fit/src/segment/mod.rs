@@ -29,7 +29,7 @@ pub(crate) use edge_kind::EdgeKind;
 pub(crate) use interpret::{Border, Evidence, Stacking};
 pub(crate) use median::median_by;
 pub(crate) use noisy::NoisyOptions;
-pub(crate) use robust::noise_level;
+pub(crate) use robust::{denoise_twice, noise_level};
 
 /// Signed distance from a pixel center to the outline of an object, read from the pixel's color.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -198,6 +198,28 @@ fn second_looks_see_objects_where_they_are() {
 }
 
 #[test]
+fn noise_is_taken_off_before_the_network_looks() {
+    let heart = mdshr_bank::<f32>(16).prototypes()[0].clone();
+    let shown = Object { shape: heart.into(), ..object([0.4, 0.5], 0.25, [0.8, 0.7, 0.2], 1.0) };
+    let painter = SceneSteps::new(1, 16, EdgeProfile::reference()).unwrap();
+    let scene = Scene { objects: vec![shown], ..Scene::empty([0.2, 0.3, 0.5]) };
+    let clean = painter.paint(&scene, size(128, 128)).unwrap();
+    assert_eq!(cleared(clean.clone()), clean);
+    let (mut noisy, mut state) = (clean.clone(), 1_u64);
+    for value in noisy.data_mut() {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        *value = (*value + 0.15 * ((state >> 40) as f32 / (1 << 23) as f32 - 1.0)).clamp(0.0, 1.0);
+    }
+    let off = |image: &Image<f32>| image.data().iter().zip(clean.data()).map(|(a, b)| (a - b).powi(2)).sum::<f32>();
+    assert!(off(&cleared(noisy.clone())) < 0.1 * off(&noisy));
+    let proposer = Proposer::built_in().unwrap();
+    let [plain, found] = [&clean, &noisy].map(|image| proposer.objects(image.view()).unwrap());
+    assert_eq!((plain.objects.len(), found.objects.len()), (1, 1));
+    let [a, b] = [&plain, &found].map(|scene| scene.objects[0].pose);
+    assert!((a.scale - b.scale).abs() < 0.01 && (a.translation[0] - b.translation[0]).abs() < 0.01, "{a:?} {b:?}");
+}
+
+#[test]
 fn looks_at_other_shapes_are_refused() {
     let look = LookFile::from_bytes(BUILT_IN_LOOK).unwrap();
     let config = ModelConfig::tiny();

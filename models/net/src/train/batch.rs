@@ -6,8 +6,11 @@ use dvp_core::{Image, Real, Scene};
 /// Images of one size and, where they are known, their scenes and what a frozen encoder makes of them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Batch<T> {
-    /// At least one.
+    /// What the network sees; at least one.
     pub images: Vec<Image<T>>,
+    /// What it should see, where that is something else: images without the noise, say. One per image, or none at all: the images
+    /// themselves.
+    pub clean: Vec<Image<T>>,
     /// One per image, or none at all.
     pub scenes: Vec<Scene<T>>,
     /// One per image, or none at all: the encoder is then not asked again.
@@ -27,7 +30,13 @@ impl<T: Clone> Batch<T> {
     /// Images with their scenes, or with none.
     #[must_use]
     pub fn new(images: Vec<Image<T>>, scenes: Vec<Scene<T>>) -> Self {
-        Self { images, scenes, features: Vec::new() }
+        Self { images, clean: Vec::new(), scenes, features: Vec::new() }
+    }
+
+    /// What the network should see: the clean images or, if there are none, the images.
+    #[must_use]
+    pub fn targets(&self) -> &[Image<T>] {
+        if self.clean.is_empty() { &self.images } else { &self.clean }
     }
 
     /// Items `start..start + len`, as far as there are.
@@ -35,6 +44,7 @@ impl<T: Clone> Batch<T> {
     pub fn part(&self, start: usize, len: usize) -> Self {
         Self {
             images: self.images.iter().skip(start).take(len).cloned().collect(),
+            clean: self.clean.iter().skip(start).take(len).cloned().collect(),
             scenes: self.scenes.iter().skip(start).take(len).cloned().collect(),
             features: self.features.iter().skip(start).take(len).cloned().collect(),
         }

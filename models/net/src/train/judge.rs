@@ -50,7 +50,7 @@ impl<T: Real> Judge<T> {
     /// The loss of `batch`; `chance` numbers what TI-TP draws at random.
     ///
     /// # Errors
-    /// [`NetError::Batch`] if the batch is empty, or scenes are missing that the mode needs; as the model and the steps.
+    /// [`NetError::Batch`] if the batch is empty, or scenes are missing that the mode needs, or clean images; as the model and the steps.
     pub fn judge<B: Backend>(
         &self,
         model: &Model<B>,
@@ -65,13 +65,17 @@ impl<T: Real> Judge<T> {
         if self.mode.source() == Source::Scenes && batch.scenes.len() != batch.images.len() {
             return Err(NetError::Batch { must: format!("must hold a scene for each image in mode {}", self.mode) });
         }
+        if batch.targets().len() != batch.images.len() {
+            return Err(NetError::Batch { must: "must hold a clean image for each image, or none".into() });
+        }
         let features = if batch.features.is_empty() {
             model.features(&image_tensor(&batch.images, device)?)?
         } else {
             Features::stack(&batch.features, device)?
         };
         let (first, running) = see::<B, T>(model, &features, phase)?;
-        let image_loss = |scenes: &Prediction<B>| self.steps.image_loss(scenes, batch.images.clone(), self.image_loss);
+        let image_loss =
+            |scenes: &Prediction<B>| self.steps.image_loss(scenes, batch.targets().to_vec(), self.image_loss);
         let (image, parameters) = match self.mode {
             Mode::Ti | Mode::Gi | Mode::TiPlus => (Some(image_loss(&first)?), None),
             Mode::Gp => (None, Some(self.steps.parameter_loss(&first, batch.scenes.clone())?)),
@@ -119,7 +123,7 @@ impl<T: Real> Judge<T> {
         let mut rng = ChaCha8Rng::seed_from_u64(chance);
         let mut scenes = first.scenes(self.steps.edge())?;
         let mut images = Vec::with_capacity(scenes.len());
-        for (scene, target) in scenes.iter_mut().zip(&batch.images) {
+        for (scene, target) in scenes.iter_mut().zip(batch.targets()) {
             self.dream(scene, target, &mut rng)?;
             images.push(self.steps.paint(scene, target.size())?);
         }

@@ -89,6 +89,23 @@ fn what_is_seen_twice_is_dreamed_once_and_what_the_picture_lacks_never() {
 }
 
 #[test]
+fn what_should_be_seen_is_the_clean_image() {
+    let mut batch = batch::<f64>(2);
+    let trainer = trainer::<f64>(Mode::GpGi);
+    let plain = trainer.validate(Mode::GpGi, &batch).unwrap();
+    batch.clean.clone_from(&batch.images);
+    assert_eq!(trainer.validate(Mode::GpGi, &batch).unwrap(), plain);
+    // The network sees the same, and should see the two the other way round: L_p stays.
+    batch.clean.reverse();
+    let other = trainer.validate(Mode::GpGi, &batch).unwrap();
+    assert_eq!(other.parameters, plain.parameters);
+    assert_ne!(other.image, plain.image);
+    assert_eq!(batch.part(1, 1).targets(), &batch.clean[1..]);
+    batch.clean.truncate(1);
+    assert!(matches!(trainer.validate(Mode::GpGi, &batch), Err(NetError::Batch { .. })));
+}
+
+#[test]
 fn features_given_change_no_step() {
     let mut batch = batch(3);
     let (mut own, mut given) = (trainer::<f64>(Mode::GpGi), trainer::<f64>(Mode::GpGi));

@@ -16,6 +16,7 @@ use dvp_net::train::{Batch, LookFile, LookTrainer, Source};
 use super::course::{Course, Made, Seen, follow};
 use super::curves::Curves;
 use super::data::Data;
+use super::degrade::Degradation;
 use super::job::{Job, Numbers, fitting, schedule, shapes};
 use super::settings::Settings;
 use super::store::Store;
@@ -29,6 +30,7 @@ const SAMPLES: usize = 8;
 pub(super) struct LookRun {
     config: LookConfig,
     data: Data,
+    degradation: Degradation,
     /// The shapes that it tells apart.
     bank: PrototypeBank<f32>,
     painter: SceneSteps<f32>,
@@ -48,7 +50,8 @@ impl LookRun {
             }
         };
         let painter = SceneSteps::new(1, known.harmonic_count(), EdgeProfile::reference())?;
-        Ok(Self { config, data, bank: known, painter, settings: settings.clone() })
+        let degradation = Degradation::of(settings);
+        Ok(Self { config, data, degradation, bank: known, painter, settings: settings.clone() })
     }
 
     fn trainer<B: Backend>(&self, device: &B::Device, steps: u64) -> Result<LookTrainer<B, f32>> {
@@ -79,7 +82,8 @@ impl Job for LookRun {
             let weights = read_start(file)?.weights(&device)?;
             trainer.set_weights(&fitting(trainer.parameters(), &weights, file, console)?)?;
         }
-        let held_out = self.data.held_out(numbers.validation, &self.painter)?;
+        let mut held_out = self.data.held_out(numbers.validation, &self.painter)?;
+        self.degradation.spoil(&mut held_out, Degradation::HELD_OUT, &self.painter)?;
         let mut course = LookCourse { run: self, trainer, held_out: &held_out, batch: numbers.batch };
         follow(&mut course, &self.settings, curves, &held_out, "what objects are off by", store, console)
     }
@@ -103,7 +107,8 @@ impl<B: Backend> Course for LookCourse<'_, B> {
     }
 
     fn step(&mut self) -> Result<Made> {
-        let batch = self.run.data.batch(self.trainer.steps(), self.batch, &self.run.painter)?;
+        let mut batch = self.run.data.batch(self.trainer.steps(), self.batch, &self.run.painter)?;
+        self.run.degradation.spoil(&mut batch, self.trainer.steps(), &self.run.painter)?;
         let step = self.trainer.step(&batch)?;
         let terms = [Some(step.moves), Some(step.shapes)];
         Ok(Made { loss: step.loss, terms, gradient: step.gradient, rate: step.rate })

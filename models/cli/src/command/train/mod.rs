@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `settings` | what a run is made of, on the command line and in a file |
 //! | `data` | batches |
+//! | `degrade` | pictures that are spoiled before a network sees them |
 //! | `course` | the steps of a run, whatever is trained |
 //! | `job` | what runs have in common; the backends by name |
 //! | `run` | the steps of a network that proposes scenes, on any backend |
@@ -14,6 +15,7 @@
 mod course;
 mod curves;
 mod data;
+mod degrade;
 mod features;
 mod job;
 mod look_run;

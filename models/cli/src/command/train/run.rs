@@ -17,6 +17,7 @@ use dvp_net::train::{Batch, Checkpoint, Judge, Mode, Source, Trainer};
 use super::course::{Course, Made, Seen, follow};
 use super::curves::Curves;
 use super::data::{Data, reread};
+use super::degrade::Degradation;
 use super::features::FeatureCache;
 use super::job::{Job, Numbers, fitting, schedule, shapes};
 use super::settings::Settings;
@@ -33,6 +34,7 @@ pub(super) struct Run {
     mode: Mode,
     config: ModelConfig,
     data: Data,
+    degradation: Degradation,
     /// The shapes that the model knows, with as many harmonics as it does.
     bank: PrototypeBank<f32>,
     painter: SceneSteps<f32>,
@@ -65,7 +67,8 @@ impl Run {
         let weights = painter.weights_mut();
         weights.scale = settings.scale_weight.map_or(weights.scale, f32::of);
         weights.rotation = settings.rotation_weight.map_or(weights.rotation, f32::of);
-        Ok(Self { mode, config, data, bank: known, painter, preliminary, settings: settings.clone() })
+        let degradation = Degradation::of(settings);
+        Ok(Self { mode, config, data, degradation, bank: known, painter, preliminary, settings: settings.clone() })
     }
 }
 
@@ -87,6 +90,7 @@ impl Job for Run {
             start_from(&mut trainer, file, &device, console)?;
         }
         let mut held_out = self.data.held_out(numbers.validation, &self.painter)?;
+        self.degradation.spoil(&mut held_out, Degradation::HELD_OUT, &self.painter)?;
         let cache = self.feature_cache(&trainer, store)?;
         if self.config.has_frozen_encoder() {
             held_out.features = trainer.features(&held_out.images)?;
@@ -121,6 +125,7 @@ impl<B: Backend> Course for SceneCourse<'_, B> {
         if let Some(model) = &run.preliminary {
             batch = reread(model, &batch.images, &run.painter)?;
         }
+        run.degradation.spoil(&mut batch, trainer.steps(), &run.painter)?;
         if let Some(cache) = cache {
             let items = run.data.numbers(trainer.steps(), self.batch);
             batch.features = cache.features(trainer, &batch.images, &items)?;
@@ -147,9 +152,10 @@ impl<B: Backend> Course for SceneCourse<'_, B> {
 }
 
 impl Run {
-    /// Where features are kept, if the encoder is frozen and images come again.
+    /// Where features are kept, if the encoder is frozen and images come again as they were.
     fn feature_cache<B: Backend>(&self, trainer: &Trainer<B, f32>, store: &Store) -> Result<Option<FeatureCache>> {
-        if !self.config.has_frozen_encoder() || !self.data.is_finite() {
+        let comes_again = self.data.is_finite() && self.settings.degraded.unwrap_or(0.0) == 0.0;
+        if !self.config.has_frozen_encoder() || !comes_again {
             return Ok(None);
         }
         // What decides which image has which number, and how it is painted again.

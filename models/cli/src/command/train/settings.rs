@@ -36,6 +36,10 @@ pub(super) struct Settings {
     /// Number of generated scenes, seen again and again; 0: never the same twice [0]
     #[arg(long, value_name = "N")]
     pub(super) scenes: Option<u64>,
+    /// Share of the pictures, 0 to 1, that are spoiled before the network sees them: noise, blur, JPEG, objects that hide one
+    /// another; what it should see stays clean [0]
+    #[arg(long, value_name = "SHARE")]
+    pub(super) degraded: Option<f64>,
     /// Preliminary model (safetensors) whose reading of the images stands for their scenes: gp and gi then learn from
     /// pictures alone
     #[arg(long, value_name = "FILE")]
@@ -157,6 +161,7 @@ impl Settings {
         self.or(&match self.model.unwrap_or_default() {
             ModelName::Scene => Self {
                 mode: Some("gp".into()),
+                degraded: Some(0.0),
                 bank: Some("mdshr".into()),
                 harmonics: Some(16),
                 image_weight: Some(1.0),
@@ -166,12 +171,15 @@ impl Settings {
                 ..both
             },
             ModelName::Monet => Self { side: Some(64), ..both },
-            ModelName::Look => Self { bank: Some("mdshr".into()), harmonics: Some(16), ..both },
+            ModelName::Look => Self { bank: Some("mdshr".into()), harmonics: Some(16), degraded: Some(0.0), ..both },
         })
     }
 
-    /// Refuses what is said that means nothing to the model.
+    /// Refuses what is said that is out of range or means nothing to the model.
     pub(super) fn check(&self) -> Result<()> {
+        if let Some(share) = self.degraded.filter(|share| !(0.0..=1.0).contains(share)) {
+            bail!("--degraded {share}: a share of the pictures is 0 to 1");
+        }
         let model = self.model.unwrap_or_default();
         let of_scenes = [
             ("--mode", self.mode.is_some()),
@@ -181,11 +189,15 @@ impl Settings {
             ("--rotation-weight", self.rotation_weight.is_some()),
             ("--threads", self.threads.is_some()),
         ];
-        let of_shapes = [("--bank", self.bank.is_some()), ("--harmonics", self.harmonics.is_some())];
+        let of_looks = [
+            ("--bank", self.bank.is_some()),
+            ("--harmonics", self.harmonics.is_some()),
+            ("--degraded", self.degraded.is_some()),
+        ];
         let of_monet = [("--side", self.side.is_some())];
         let foreign: Vec<(&str, bool)> = match model {
             ModelName::Scene => of_monet.to_vec(),
-            ModelName::Monet => [&of_scenes[..], &of_shapes].concat(),
+            ModelName::Monet => [&of_scenes[..], &of_looks].concat(),
             ModelName::Look => [&of_scenes[..], &of_monet].concat(),
         };
         match foreign.into_iter().find(|(_, is)| *is) {
@@ -194,7 +206,7 @@ impl Settings {
                 bail!("--model look learns from scenes that are shaken, whatever found them: leave {option} away")
             }
             Some((option, _)) => {
-                bail!("--model monet learns from images alone and knows no shapes: leave {option} away")
+                bail!("--model monet learns from images alone, as they are, and knows no shapes: leave {option} away")
             }
             None => Ok(()),
         }

@@ -62,6 +62,24 @@ pub(crate) struct RobustScratch<T> {
     steps: Vec<(u32, u32)>,
 }
 
+/// Fills `smooth` (planar) with the picture, of which noise of standard deviation `noise` is averaged away; `first` becomes what
+/// neighborhoods are judged by.
+pub(crate) fn denoise_twice<T: Real>(
+    image: &ImageView<'_, T>,
+    noise: T,
+    scratch: &mut DenoiseScratch<T>,
+    first: &mut Vec<T>,
+    smooth: &mut Vec<T>,
+) {
+    let two_variances = T::of(2.0) * noise * noise;
+    let settings = DenoiseSettings { reach: DENOISE_REACH_PX, expected: two_variances, limit: two_variances };
+    denoise(image, image, settings, scratch, first);
+    let Ok(guide) = ImageView::new(image.size(), first) else { return };
+    let left = two_variances * T::of(DENOISE_LEFT * DENOISE_LEFT);
+    let settings = DenoiseSettings { expected: left, limit: T::of(2.0) * left, ..settings };
+    denoise(image, &guide, settings, scratch, smooth);
+}
+
 /// Fills `map` and the denoised picture.
 pub(crate) fn read_flat<T: Real>(
     image: &ImageView<'_, T>,
@@ -72,13 +90,7 @@ pub(crate) fn read_flat<T: Real>(
 ) {
     let RobustSettings { noise, halo, strip_width, zone, boundary } = settings;
     let variance = noise * noise;
-    let two = T::of(2.0);
-    let first = DenoiseSettings { reach: DENOISE_REACH_PX, expected: two * variance, limit: two * variance };
-    denoise(image, image, first, &mut scratch.denoise, &mut scratch.first);
-    let Ok(guide) = ImageView::new(image.size(), &scratch.first) else { return };
-    let left = two * variance * T::of(DENOISE_LEFT * DENOISE_LEFT);
-    let second = DenoiseSettings { reach: DENOISE_REACH_PX, expected: left, limit: two * left };
-    denoise(image, &guide, second, &mut scratch.denoise, &mut scratch.smooth);
+    denoise_twice(image, noise, &mut scratch.denoise, &mut scratch.first, &mut scratch.smooth);
     let Ok(smooth) = ImageView::new(image.size(), &scratch.smooth) else { return };
     let stop = Stop { price: T::of(BOUNDARY_PRICE) * boundary * variance, halo, most_regions };
     let count = scratch.merger.partition(image, &smooth, zone, stop, &mut scratch.labels);

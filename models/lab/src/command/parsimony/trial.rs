@@ -15,12 +15,12 @@ use super::traced::Drawn;
 use super::truth::Price;
 use crate::agreement::Agreement;
 use crate::command::pictures::Picture;
-use crate::spoil::add_noise;
 use dvp_cli::command::in_words;
 use dvp_cli::command::progress;
 use dvp_cli::format::{from_rgb8, to_rgb8};
 use dvp_cli::method::{Found, Memory, Method, Runner, Task, Tools, seed_of};
 use dvp_cli::paint::Painter;
+use dvp_cli::spoil::add_noise;
 use dvp_cli::svg::to_svg;
 
 /// The methods that are counted, and what their shapes cost.

@@ -51,8 +51,9 @@ impl Within {
 pub(super) struct Stated(pub(super) [Within; 4]);
 
 impl Stated {
-    /// Compares the poses of objects that are the same. Where shapes are free, so that a pose stands for nothing by itself,
-    /// the center of the area and the root of the area stand for it, and rotations are left out.
+    /// Compares the poses of objects that are the same. The root of the area within half coverage stands for the scale: an outline farther
+    /// out under a profile that is as much narrower is the same. Where shapes are free, so that a pose stands for nothing by itself, the
+    /// center of the area stands for the place, and rotations are left out.
     pub(super) fn of(truth: &Scene<f32>, found: &Found, agreement: &Agreement, size: ImageSize) -> Result<Self> {
         let fit = &found.fit;
         let mut stated = Self::default();
@@ -61,16 +62,20 @@ impl Stated {
         }
         let painter = Painter::default();
         let [truly, drawn] = [painter.draw(truth, size)?, painter.draw(&found.there, size)?];
+        let unit = f32::of_usize(size.unit_px());
+        let outsets = [truth, &found.there].map(|scene| f64::from(scene.edge.in_pixels(unit).distance(0.5) / unit));
         for (k, pair) in agreement.matches.iter().enumerate() {
             let Some(pair) = pair.filter(|pair| pair.iou >= SAME) else { continue };
             let Some(covariance) = fit.covariance.get(pair.found) else { continue };
             let (true_object, object) = (&truth.objects[k], &found.there.objects[pair.found]);
+            let [a, b] = [moments(truly.outline(k), outsets[0]), moments(drawn.outline(pair.found), outsets[1])];
+            let growth = 0.5 * (b[2] / a[2]).abs().ln();
             let off = if true_object.shape.efd() == object.shape.efd() {
                 let turn = TAU / f64::of_usize(order(fit.ambiguity.iter(), pair.found).max(1));
-                pose_difference(true_object, object, turn).map(Some)
+                let [x, y, rotation] = pose_difference(true_object, object, turn);
+                [Some(x), Some(y), Some(growth), Some(rotation)]
             } else {
-                let [a, b] = [moments(truly.outline(k)), moments(drawn.outline(pair.found))];
-                [Some(b[0] - a[0]), Some(b[1] - a[1]), Some(0.5 * (b[2] / a[2]).abs().ln()), None]
+                [Some(b[0] - a[0]), Some(b[1] - a[1]), Some(growth), None]
             };
             for (i, off) in off.into_iter().enumerate() {
                 let deviation = f64::from(covariance[5 * i]).sqrt();
@@ -93,29 +98,31 @@ fn order<'a>(mut ambiguity: impl Iterator<Item = &'a Ambiguity>, index: usize) -
         .unwrap_or(1)
 }
 
-/// Differences of x, y, log scale, and rotation modulo `turn`.
-fn pose_difference(truth: &Object<f32>, found: &Object<f32>, turn: f64) -> [f64; 4] {
+/// Differences of x, y, and rotation modulo `turn`.
+fn pose_difference(truth: &Object<f32>, found: &Object<f32>, turn: f64) -> [f64; 3] {
     let [a, b] = [truth, found].map(|object| {
         let pose = &object.pose;
-        [pose.translation[0], pose.translation[1], pose.scale.ln(), pose.rotation].map(f64::from)
+        [pose.translation[0], pose.translation[1], pose.rotation].map(f64::from)
     });
-    let turned = (b[3] - a[3]) / turn;
-    [b[0] - a[0], b[1] - a[1], b[2] - a[2], (turned - turned.round()) * turn]
+    let turned = (b[2] - a[2]) / turn;
+    [b[0] - a[0], b[1] - a[1], (turned - turned.round()) * turn]
 }
 
-/// Center of the area of a polygon, and its signed area.
-fn moments(outline: &[[f32; 2]]) -> [f64; 3] {
+/// Center of the area of a polygon, and its signed area with a border of width `outset` around it.
+fn moments(outline: &[[f32; 2]], outset: f64) -> [f64; 3] {
     let ends = outline.iter().skip(1).chain(outline.first());
-    let mut sums = [0.0; 3];
+    let (mut sums, mut length) = ([0.0; 3], 0.0);
     for (a, b) in outline.iter().zip(ends) {
         let ([ax, ay], [bx, by]) = (a.map(f64::from), b.map(f64::from));
         let cross = ax * by - bx * ay;
         sums[0] += (ax + bx) * cross;
         sums[1] += (ay + by) * cross;
         sums[2] += cross;
+        length += (bx - ax).hypot(by - ay);
     }
     let area = sums[2] / 2.0;
-    [sums[0] / (6.0 * area), sums[1] / (6.0 * area), area]
+    let border = outset * length + core::f64::consts::PI * outset * outset;
+    [sums[0] / (6.0 * area), sums[1] / (6.0 * area), area + border * area.signum()]
 }
 
 /// Runs by outcome and doubt, and the stated uncertainties of all.
@@ -171,8 +178,13 @@ mod tests {
         // A square of side 2 about (3, 4), either way round.
         let square = [[2.0, 3.0], [4.0, 3.0], [4.0, 5.0], [2.0, 5.0]];
         let turned: Vec<[f32; 2]> = square.into_iter().rev().collect();
-        for (found, expected) in [(moments(&square), [3.0, 4.0, 4.0]), (moments(&turned), [3.0, 4.0, -4.0])] {
+        for (found, expected) in [(moments(&square, 0.0), [3.0, 4.0, 4.0]), (moments(&turned, 0.0), [3.0, 4.0, -4.0])] {
             assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12), "{found:?}");
+        }
+        // A border of 1/2 around it has four sides of 2 and the corners of a disk.
+        let area = 4.0 + 4.0 + core::f64::consts::FRAC_PI_4;
+        for (outline, expected) in [(&square[..], area), (&turned, -area)] {
+            assert!((moments(outline, 0.5)[2] - expected).abs() < 1e-12);
         }
     }
 

@@ -1,4 +1,4 @@
-//! A chart per difficulty: success and error over the levels, side by side under one legend.
+//! A chart per difficulty: success, the adjusted Rand index and the error over the levels, side by side under one legend.
 
 use anyhow::Result;
 use plotters::coord::Shift;
@@ -12,7 +12,7 @@ use dvp_cli::chart::{self, FONT};
 use super::summary::{LevelSummary, SweepSummary, label};
 
 /// Width and height of the chart, width of its legend, heights of its title and of the levels' names, px.
-const SIZE: (u32, u32) = (1120, 380);
+const SIZE: (u32, u32) = (1500, 380);
 const LEGEND: u32 = 150;
 const TITLE: u32 = 32;
 const NAMES: i32 = 44;
@@ -44,13 +44,18 @@ pub(super) fn svg(sweep: &SweepSummary) -> Result<String> {
         let (plots, legend) = area.split_horizontally(SIZE.0 - LEGEND);
         let (title, below) = plots.split_vertically(TITLE);
         text(&title, sweep.title, (16, 18), 18, HPos::Left)?;
-        let parts = below.split_evenly((1, 2));
+        let parts = below.split_evenly((1, 3));
         let right = f64::from(u32::try_from(sweep.levels().len()).unwrap_or(u32::MAX)) - 0.5;
-        if let [left_part, right_part] = &parts[..] {
+        if let [left_part, middle_part, right_part] = &parts[..] {
             let success = Panel { y: "success", of: |level| level.success };
             let mut plot = builder(left_part).build_cartesian_2d(-0.5..right, -0.04..1.04)?;
             mesh(&mut plot, &success, |y| format!("{y:.1}"))?;
             lines(left_part, &plot, &success, sweep, |_| true)?;
+            let ari = Panel { y: "adjusted Rand index", of: |level| level.ari };
+            // Masks by chance have an index about 0, which may be below it.
+            let mut plot = builder(middle_part).build_cartesian_2d(-0.5..right, -0.04..1.04)?;
+            mesh(&mut plot, &ari, |y| format!("{y:.1}"))?;
+            lines(middle_part, &plot, &ari, sweep, |_| true)?;
             let error = Panel { y: "mean absolute error of the picture", of: |level| level.mae };
             let (low, high) = ends(sweep, error.of);
             let mut plot = builder(right_part).build_cartesian_2d(-0.5..right, (low / 1.6..high * 1.6).log_scale())?;

@@ -26,6 +26,7 @@ mod watch;
 
 use alloc::sync::Arc;
 use core::time::Duration;
+use std::path::PathBuf;
 
 use anyhow::{Result, bail};
 use clap::Args;
@@ -40,7 +41,7 @@ use super::report;
 use dvp_cli::command::options::with_threads;
 use dvp_cli::command::{Console, Outcome, progress};
 use dvp_cli::format::mdshr_bank;
-use dvp_cli::method::{Method, Tools, load_network};
+use dvp_cli::method::{Method, Tools, load_looking};
 
 /// Pictures per level.
 const PICTURES: u64 = 24;
@@ -69,7 +70,8 @@ const METHODS: [Method; 9] = [
 /// Writes index.html (all in one page), a chart per difficulty, levels.csv, calibration.csv, and runs.csv with every run.
 #[derive(Debug, Args)]
 #[command(before_help = "Example: dvp stability --quick --out stability\n         \
-                         dvp stability --out stability --sweep noise twins --method segment-bank segment-free")]
+                         dvp stability --out stability --sweep noise twins --method segment-bank segment-free\n         \
+                         dvp stability --out start --sweep noise jpeg --method segment-bank net-lm --model best.safetensors")]
 pub struct Arguments {
     #[command(flatten)]
     report: ReportArguments,
@@ -82,6 +84,12 @@ pub struct Arguments {
     /// Methods [default: those of the report]
     #[arg(long, value_enum, value_name = "NAME", num_args = 1..)]
     method: Vec<Method>,
+    /// Weights of the network, as `dvp train` writes them [default: those that come with the program]
+    #[arg(long, value_name = "FILE")]
+    model: Option<PathBuf>,
+    /// Weights of its second looks, as `dvp train --model look` writes them [default: those that come with the program]
+    #[arg(long, value_name = "FILE")]
+    look: Option<PathBuf>,
     /// Pictures per level [default: 24, with --quick 4]; a quarter of them where pictures are large
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pictures: Option<u64>,
@@ -112,7 +120,11 @@ pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Ou
     let to = &arguments.report;
     let methods = if arguments.method.is_empty() { &METHODS[..] } else { &arguments.method };
     let needs_network = methods.iter().any(|method| method.needs_network());
-    let network = needs_network.then(|| load_network(None)).transpose()?;
+    if !needs_network && (arguments.model.is_some() || arguments.look.is_some()) {
+        bail!("none of the methods asks a network: leave --model and --look away, or name net or net-lm with --method");
+    }
+    let load = || load_looking(arguments.model.as_deref(), arguments.look.as_deref(), None);
+    let network = needs_network.then(load).transpose()?;
     let tools = Tools { options: FitOptions::default().with_bank(Some(mdshr_bank())), network: network.map(Arc::new) };
     let is_asked = |sweep: &&Sweep| arguments.sweep.is_empty() || arguments.sweep.iter().any(|name| name == sweep.name);
     let mut lists = Vec::new();

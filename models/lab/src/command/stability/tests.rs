@@ -36,8 +36,8 @@ fn a_tiny_report_has_its_parts_and_makes_sense() {
 
     let levels = fs::read_to_string(out.join("levels.csv")).unwrap();
     let rows: Vec<Vec<&str>> = levels.lines().skip(1).map(|line| line.split(',').collect()).collect();
-    // Five levels of noise by two methods, and five displacements by the one that has a start.
-    assert_eq!(rows.len(), 5 * 2 + 5, "{levels}");
+    // Six levels of noise by two methods, and five displacements by the one that has a start.
+    assert_eq!(rows.len(), 6 * 2 + 5, "{levels}");
     let success = |row: &[&str]| row[4].parse::<f64>().unwrap();
     assert!(success(&rows[0]) > 0.9, "without noise nothing fails: {levels}");
     let displaced: Vec<f64> = rows.iter().filter(|row| row[0] == "displacement").map(|row| success(row)).collect();
@@ -61,4 +61,10 @@ fn what_cannot_be_tried_is_said() {
     assert!(code == 1 && errors.contains("--method"), "{errors}");
     let (code, _, errors) = dvp(&["stability", "--out", "nowhere", "--sweep", "weather"]);
     assert!(code == 2 && errors.contains("displacement"), "{errors}");
+    let words = ["stability", "--out", "nowhere", "--sweep", "noise", "--pictures", "1"];
+    let model = ["--model", "nowhere.safetensors"];
+    let (code, _, errors) = dvp(&[&words[..], &["--method", "segment-bank"], &model].concat());
+    assert!(code == 1 && errors.contains("asks a network"), "{errors}");
+    let (code, _, errors) = dvp(&[&words[..], &["--method", "net-lm"], &model].concat());
+    assert!(code == 1 && errors.contains("nowhere.safetensors"), "{errors}");
 }

@@ -165,7 +165,7 @@ pub(super) const SWEEPS: &[Sweep] = &[
         "noise",
         "Noise",
         "standard deviation of every channel",
-        &[0.0, 0.004, 0.01, 0.02, 0.03, 0.05, 0.07, 0.1],
+        &[0.0, 0.004, 0.01, 0.02, 0.03, 0.05, 0.07, 0.1, 0.2, 0.3],
         spoil::noisy,
     ),
     sweep(

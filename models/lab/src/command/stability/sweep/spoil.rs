@@ -5,10 +5,10 @@ use image::RgbImage;
 
 use super::Case;
 use super::base::{SIDE, mds_hr, whole};
-use crate::spoil;
 use dvp_cli::command::options::square;
 use dvp_cli::format::{from_rgb8, to_rgb8};
 use dvp_cli::paint::Painter;
+use dvp_cli::spoil;
 
 /// Gaussian noise of standard deviation `level`.
 pub(super) fn noisy(level: f64, seed: u64) -> Result<Case> {
