@@ -131,7 +131,7 @@ pub fn trace(image: &ImageView<'_, f32>, known: &Known) -> Result<Traced, NoDraw
     let others = [Some(&partition), faces.as_ref()].into_iter().flatten().filter_map(Partition::with_slivers);
     for other in others.chain(faces.clone()) {
         let others = layers::layers(&other, &boundary::rings(&other), matte);
-        if others.bits_with_colors() < layers.bits_with_colors() {
+        if others.bits_of_things() < layers.bits_of_things() {
             layers = others;
         }
     }

@@ -41,7 +41,7 @@ pub(super) struct Completion<'a> {
     pub(super) rings: &'a [Vec<Ring>],
     /// Place of every face in the order of painting; 0 of what is not painted.
     pub(super) rank: Vec<usize>,
-    pub(super) pens: &'a [Option<StrokeFit>],
+    pub(super) pens: Vec<Option<StrokeFit>>,
     /// The faces that each face touches.
     pub(super) neighbors: Vec<Vec<u32>>,
     /// What speaks for the order.
@@ -268,7 +268,8 @@ impl Completion<'_> {
 
     /// The outlines through samples.
     fn fit(&self, samples: &[RingSamples]) -> Completed {
-        Completed::new(samples.iter().filter_map(|samples| self.memo.fit_closed(samples, &self.ruler)).collect(), true)
+        let outlines = samples.iter().filter_map(|samples| self.memo.fit_closed(samples, &self.ruler));
+        Completed::new(outlines.filter(|outline| !raster::is_nothing(outline)).collect(), true)
     }
 
     /// The outlines through samples, within that of the picture where they go around what they leave free: corners around a disk are a

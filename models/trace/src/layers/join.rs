@@ -42,19 +42,12 @@ fn painted(completion: &mut Completion<'_>) -> Vec<Group> {
     painted.into_iter().map(|(_, group)| group).collect()
 }
 
-/// Bits of everything that is painted, in the present order; a color costs again for what is no thing by itself, as in [`Group::join`].
+/// Bits of everything that is painted, in the present order.
 pub(super) fn total(completion: &mut Completion<'_>) -> f64 {
     let rank = completion.rank.clone();
     let groups = painted(completion);
     completion.rank = rank;
-    let mut of_colors: BTreeMap<usize, (usize, usize)> = BTreeMap::new();
-    for group in &groups {
-        let (all, whole) = of_colors.entry(completion.partition.faces[group.faces[0] as usize].color).or_default();
-        *all += 1;
-        *whole += usize::from(group.is_whole(completion));
-    }
-    let again: usize = of_colors.values().map(|&(all, whole)| all - whole.max(1)).sum();
-    groups.iter().map(|group| group.completed.bits).sum::<f64>() + again as f64 * COLOR_BITS
+    groups.iter().map(|group| group.completed.bits).sum::<f64>() + groups.len() as f64 * tuning::THING_BITS
 }
 
 /// Faces that are painted together.
@@ -99,9 +92,10 @@ impl Group {
         for (&face, rank) in faces.iter().zip(ranks) {
             completion.rank[face as usize] = rank;
         }
-        let color = if are_whole { 0.0 } else { COLOR_BITS };
+        // Whole things of one color are many where people draw them: that there is one less is no reason.
+        let thing = if are_whole { 0.0 } else { tuning::THING_BITS };
         let apart = self.completed.with(&other.completed);
-        let alone = apart.bits + color + before - after;
+        let alone = apart.bits + thing + before - after;
         // What a pen has drawn and what not are no one thing but as outlines.
         let has_pen = [self, other].iter().any(|group| completion.pen(&group.faces).is_some());
         if has_pen && !completed.agrees {
@@ -174,9 +168,6 @@ fn together(completion: &mut Completion<'_>, groups: Vec<Group>) -> Vec<Group> {
     }
     groups
 }
-
-/// What a color costs: three numbers of 8 bits.
-pub(super) const COLOR_BITS: f64 = 24.0;
 
 /// Faces that may be one thing: of one color, where a way leads from one to the other behind what lies in front of both.
 pub(super) fn candidates(completion: &Completion<'_>) -> Vec<Vec<u32>> {

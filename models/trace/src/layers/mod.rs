@@ -5,6 +5,7 @@
 //! | `junction` | who lies in front where three faces meet |
 //! | `order` | one order of all faces |
 //! | `settle` | another order where that is shorter |
+//! | `stack` | one depth for each color where that is shorter |
 //! | `pen` | faces that a pen has drawn |
 //! | `join` | faces of one color that are one thing behind another |
 //! | `visible` | what of a boundary is a layer's own |
@@ -25,6 +26,7 @@ mod pen;
 mod raster;
 mod settle;
 mod sheet;
+mod stack;
 mod visible;
 mod walk;
 
@@ -79,10 +81,10 @@ impl Layers {
         self.layers.iter().map(|layer| layer.bits).sum()
     }
 
-    /// The same with the colors.
+    /// The same with what each of the things costs beside its form.
     #[must_use]
-    pub fn bits_with_colors(&self) -> f64 {
-        self.bits() + join::COLOR_BITS * self.layers.len() as f64
+    pub fn bits_of_things(&self) -> f64 {
+        self.bits() + tuning::THING_BITS * self.layers.len() as f64
     }
 }
 
@@ -99,7 +101,7 @@ pub fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<Color>) 
         partition,
         rings,
         rank,
-        pens: &pens,
+        pens,
         neighbors: complete::neighbors(rings),
         order: &order,
         background,

@@ -19,6 +19,14 @@ pub(super) fn polygon(outline: &Outline) -> Option<Vec<[f64; 2]>> {
     (polygons.vertices.len() > 2).then_some(polygons.vertices)
 }
 
+/// Whether an outline covers so little that no pixel shows it: less than a step of 8 bits of one.
+pub(super) fn is_nothing(outline: &Outline) -> bool {
+    let Some(points) = polygon(outline) else { return true };
+    let next = points.iter().cycle().skip(1);
+    let doubled: f64 = points.iter().zip(next).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum();
+    0.5 * doubled.abs() < 1.0 / 255.0
+}
+
 /// Whether what polygons (pixels, even-odd) cover is what they should cover, but for few pixels: of all pixels that are `wanted`
 /// (Some(true)), and of every face that is not (Some(false)), however small it is. Mixed pixels count for nothing. Else the pixels
 /// [column, row] that are wrong.

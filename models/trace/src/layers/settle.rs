@@ -70,11 +70,12 @@ pub(super) fn settle(completion: &mut Completion<'_>) {
             break;
         }
     }
+    search.stack(&mut order, &mut total);
     completion.memo.spent.set(0);
 }
 
-struct Search<'a, 'b> {
-    completion: &'a mut Completion<'b>,
+pub(super) struct Search<'a, 'b> {
+    pub(super) completion: &'a mut Completion<'b>,
     /// Bits of a face behind some of its neighbors.
     known: BTreeMap<(u32, Vec<u32>), f64>,
 }
@@ -106,7 +107,7 @@ impl Search<'_, '_> {
             self.completion.paint(order);
             let around = &self.completion.neighbors[face as usize];
             let votes = around.iter().map(|&other| self.completion.order.net(other, face).max(0.0)).sum::<f64>();
-            is_changed |= is_whole && self.is_shorter(&with, votes + join::COLOR_BITS, order, total);
+            is_changed |= is_whole && self.is_shorter(&with, votes, order, total);
         }
         is_changed
     }

@@ -117,6 +117,19 @@ impl Mixed {
                         }
                     }
                 }
+                // A sliver of a color between two others: of a known one, or every such row would make a color of its own.
+                if tried_from == 0 && best.is_none_or(|best| best.misfit > self.noise) {
+                    let colors = bases.iter().enumerate().flat_map(|(k, &a)| bases[..k].iter().map(move |&b| [a, b]));
+                    for ([a, b], c) in colors.flat_map(|two| (0..count).map(move |other| (two, narrow(other)))) {
+                        if c != a
+                            && c != b
+                            && let Some(mixture) = triple(pixel, [a, b, c], &self.palette)
+                            && best.is_none_or(|best| mixture.misfit < best.misfit)
+                        {
+                            best = Some(mixture);
+                        }
+                    }
+                }
                 if let Some(best) = best.filter(|best| best.misfit <= self.noise) {
                     self.give(i, best);
                     continue;
