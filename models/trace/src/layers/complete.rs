@@ -89,7 +89,7 @@ impl Completed {
         Self { outlines: Vec::new(), bits: 0.0, agrees: true }
     }
 
-    fn new(outlines: Vec<Outline>, agrees: bool) -> Self {
+    pub(super) fn new(outlines: Vec<Outline>, agrees: bool) -> Self {
         let bits = outlines.iter().map(|outline| outline.bits + outline.misfit).sum();
         Self { outlines, bits, agrees }
     }
@@ -177,15 +177,7 @@ impl Completion<'_> {
     /// [`Completion::outlines`] of a group at place `rank` that was not asked for before.
     fn completed(&self, group: &[u32], rank: usize) -> Completed {
         let wanted = |label: u32| self.wanted(label, group, rank);
-        let parts = group.iter().flat_map(|&face| &self.rings[face as usize]);
-        // Too small to tell how it goes on.
-        let are_specks = group.iter().all(|&face| self.is_small(face) && !self.partition.has_sliver(face));
-        let mut walks: Vec<Walk<'_>> = parts
-            .map(|ring| {
-                let hidden = |step| self.hidden(step, rank, are_specks, group.len() > 1);
-                Walk::new(ring, ring.steps.iter().map(hidden).collect())
-            })
-            .collect();
+        let mut walks = self.walks(group, rank);
         // What is not hidden has no boundary but its own.
         let is_seen = |at: Vec2<f64>| self.pure_face(at).is_some_and(|face| wanted(face).is_some());
         let mut samples = walk::samples(&walks);
@@ -229,6 +221,15 @@ impl Completion<'_> {
         })
     }
 
+    /// The boundaries of a group at place `rank`.
+    pub(super) fn walks(&self, group: &[u32], rank: usize) -> Vec<Walk<'_>> {
+        // Too small to tell how it goes on.
+        let are_specks = group.iter().all(|&face| self.is_small(face) && !self.partition.has_sliver(face));
+        let hidden = |step| self.hidden(step, rank, are_specks, group.len() > 1);
+        let rings = group.iter().flat_map(|&face| &self.rings[face as usize]);
+        rings.map(|ring| Walk::new(ring, ring.steps.iter().map(hidden).collect())).collect()
+    }
+
     /// Outlines that get pixels wrong, with what these cost: where colors are alike, or a coder has changed them, less than the corners of a
     /// polygon that gets them right.
     fn priced(&self, completed: Completed, wrong: &[[usize; 2]], wanted: impl Fn(u32) -> Option<bool>) -> Completed {
@@ -249,7 +250,7 @@ impl Completion<'_> {
     }
 
     /// Whether a layer of the faces `group` at place `rank` must show a face, must not hide it, or may (none).
-    fn wanted(&self, face: u32, group: &[u32], rank: usize) -> Option<bool> {
+    pub(super) fn wanted(&self, face: u32, group: &[u32], rank: usize) -> Option<bool> {
         let is_own = group.contains(&face);
         (is_own || self.rank(face) <= rank).then_some(is_own)
     }
@@ -262,7 +263,13 @@ impl Completion<'_> {
             || self.check(&completed.outlines, |face| self.wanted(face, group, rank)).is_ok()
     }
 
-    fn hindmost(&self, faces: &[u32]) -> usize {
+    /// Whether outlines cover what they should, and nothing else.
+    pub(super) fn shows_only(&self, group: &[u32], completed: &Completed) -> bool {
+        let rank = self.hindmost(group);
+        self.check(&completed.outlines, |face| self.wanted(face, group, rank)).is_ok()
+    }
+
+    pub(super) fn hindmost(&self, faces: &[u32]) -> usize {
         faces.iter().map(|&face| self.rank(face)).min().unwrap_or(0)
     }
 
@@ -306,7 +313,11 @@ impl Completion<'_> {
         }
     }
 
-    fn check(&self, outlines: &[Outline], wanted: impl Fn(u32) -> Option<bool>) -> Result<(), Vec<[usize; 2]>> {
+    pub(super) fn check(
+        &self,
+        outlines: &[Outline],
+        wanted: impl Fn(u32) -> Option<bool>,
+    ) -> Result<(), Vec<[usize; 2]>> {
         let polygons: Vec<Vec<[f64; 2]>> = outlines.iter().filter_map(raster::polygon).collect();
         if polygons.is_empty() { Err(Vec::new()) } else { raster::check(self.partition, &polygons, wanted) }
     }

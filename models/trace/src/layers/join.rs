@@ -7,15 +7,10 @@ use alloc::vec::Vec;
 use dvp_core::geometry::DisjointSets;
 
 use super::complete::{Completed, Completion};
-use crate::outline::Outline;
 use crate::tuning;
 
-/// What is painted, from back to front: faces that are one thing, with their outlines (none for what a pen draws).
-pub(super) fn groups(completion: &mut Completion<'_>) -> Vec<(Vec<u32>, Vec<Outline>)> {
-    painted(completion).into_iter().map(|group| (group.faces, group.completed.outlines)).collect()
-}
-
-fn painted(completion: &mut Completion<'_>) -> Vec<Group> {
+/// What is painted, from back to front.
+pub(super) fn painted(completion: &mut Completion<'_>) -> Vec<Group> {
     let mut groups: Vec<Group> = Vec::new();
     for candidates in candidates(completion) {
         groups.extend(join(completion, &candidates));
@@ -50,10 +45,10 @@ pub(super) fn total(completion: &mut Completion<'_>) -> f64 {
     groups.iter().map(|group| group.completed.bits).sum::<f64>() + groups.len() as f64 * tuning::THING_BITS
 }
 
-/// Faces that are painted together.
-struct Group {
-    faces: Vec<u32>,
-    completed: Completed,
+/// Faces that are painted together, with their outlines (none for what a pen draws).
+pub(super) struct Group {
+    pub(super) faces: Vec<u32>,
+    pub(super) completed: Completed,
 }
 
 impl Group {

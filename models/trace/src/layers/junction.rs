@@ -146,7 +146,7 @@ fn parabola_misfit(samples: &[Sample], origin: Vec2<f64>, along: Vec2<f64>) -> O
 }
 
 /// Solves three equations by elimination with pivots; none if they are singular.
-fn solve(mut matrix: [[f64; 3]; 3], mut right: [f64; 3]) -> Option<[f64; 3]> {
+pub(super) fn solve(mut matrix: [[f64; 3]; 3], mut right: [f64; 3]) -> Option<[f64; 3]> {
     for i in 0..3 {
         let pivot = (i..3).max_by(|&a, &b| matrix[a][i].abs().total_cmp(&matrix[b][i].abs()))?;
         if matrix[pivot][i].abs() < 1e-12 {

@@ -13,6 +13,7 @@
 //! | `link` | which visible stretch goes on as which behind others |
 //! | `sheet` | what reaches as far as the picture does |
 //! | `complete` | outlines through what is seen |
+//! | `repeat` | what is another thing again, elsewhere and in another size |
 //! | `memo` | outlines that were fitted before |
 //! | `raster` | the check that an outline hides nothing |
 
@@ -24,6 +25,7 @@ mod memo;
 mod order;
 mod pen;
 mod raster;
+mod repeat;
 mod settle;
 mod sheet;
 mod stack;
@@ -113,7 +115,9 @@ pub fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<Color>) 
     };
     settle::settle(&mut completion);
     let mut layers = Vec::new();
-    for (group, outlines) in join::groups(&mut completion) {
+    let mut groups = join::painted(&mut completion);
+    repeat::repeat(&mut completion, &mut groups);
+    for join::Group { faces: group, completed: complete::Completed { outlines, .. } } in groups {
         let color = partition.rgb(partition.color(group[0]));
         match completion.pen(&group) {
             Some(pen) => {

@@ -41,6 +41,42 @@ impl OutlineShape {
 }
 
 impl OutlineShape {
+    /// The same elsewhere and in another size: every point times `scale`, plus `shift`, pixels.
+    #[must_use]
+    pub(crate) fn moved(&self, scale: f64, shift: Vec2<f64>) -> Self {
+        let place = |center: Vec2<f64>| center * scale + shift;
+        match *self {
+            Self::Path(ref ring) => {
+                let place = |point: [f64; 2]| place(Vec2::from(point)).to_array();
+                let segment = |segment: &Segment<f64>| match *segment {
+                    Segment::Cubic { controls } => Segment::Cubic { controls: controls.map(place) },
+                    Segment::SmoothCubic { handle, control } => {
+                        Segment::SmoothCubic { handle: handle * scale, control: place(control) }
+                    }
+                    ref other => other.clone(),
+                };
+                let points = ring.points.iter().map(|&point| place(point)).collect();
+                Self::Path(PathRing { points, segments: ring.segments.iter().map(segment).collect() })
+            }
+            Self::Circle { center, radius } => Self::Circle { center: place(center), radius: radius * scale },
+            Self::Ellipse { center, radii, angle } => {
+                Self::Ellipse { center: place(center), radii: radii.map(|radius| radius * scale), angle }
+            }
+            Self::Rectangle { center, size, corner_radius, angle } => Self::Rectangle {
+                center: place(center),
+                size: size.map(|side| side * scale),
+                corner_radius: corner_radius * scale,
+                angle,
+            },
+            Self::RegularPolygon { center, sides, radius, angle } => {
+                Self::RegularPolygon { center: place(center), sides, radius: radius * scale, angle }
+            }
+            Self::Star { center, points, radii, angle } => {
+                Self::Star { center: place(center), points, radii: radii.map(|radius| radius * scale), angle }
+            }
+        }
+    }
+
     /// The numbers of a circle (middle, radius) or of a rectangle with round corners (middle, width, height, corner radius), in pixels; its angle is
     /// as it is. None of other kinds.
     #[must_use]

@@ -134,9 +134,7 @@ impl Partition {
                 flats = find(&pixels);
                 colors = palette::Palette::of(&flats, &noise)?;
             }
-            // What shows the ground through something is a part of it either way.
-            let is_on_ground = |(line, _): &(ThinLine, chain::Chain)| line.color != found.ground;
-            if widest > tuning::THIN_WIDTH && found.lines.iter().any(is_on_ground) {
+            if widest > tuning::THIN_WIDTH && !found.lines.is_empty() {
                 as_faces = Some(finish(pixels.clone(), &flats, colors.clone(), lines.clone()));
             }
             if !found.lines.is_empty() {
@@ -181,9 +179,8 @@ struct Found {
     /// Pixels that no mixture of flat colors nearby explains, and those that are flat.
     open: Vec<bool>,
     known: Vec<bool>,
-    /// Colors of flat pixels when the lines were found, and the one behind everything.
+    /// Colors of flat pixels when the lines were found.
     palette: Vec<Color>,
-    ground: Color,
     /// Whether seams were mended: pixels are others than before.
     is_mended: bool,
 }
@@ -211,7 +208,7 @@ impl Found {
             lines = thin::crossing_lines(lines, ground);
         }
         let known = flat.iter().map(|&color| color != u16::MAX).collect();
-        Self { lines, open, known, palette: colors.colors.clone(), ground, is_mended }
+        Self { lines, open, known, palette: colors.colors.clone(), is_mended }
     }
 
     /// Takes the lines out of the picture.

@@ -3,6 +3,7 @@
 mod edges;
 mod lines;
 mod nested;
+mod repeated;
 
 use alloc::string::ToString as _;
 use alloc::vec;
