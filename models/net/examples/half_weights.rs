@@ -4,7 +4,7 @@
 //!
 //! The file is taken wherever `dvp` takes weights; only `dvp train --resume` needs the checkpoints of its run, which stay f32.
 
-use std::error::Error;
+use core::error::Error;
 use std::fs;
 
 use dvp_net::train::WeightsFile;
