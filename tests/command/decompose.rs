@@ -123,7 +123,7 @@ fn what_does_not_fit_is_said() {
             (&["--threads", "2"], &learns),
             (&["--degraded", "0.5"], "leave --degraded away"),
             (&["--bank", "mdshr"], "leave --bank away"),
-            (&["--side", "15"], "side is 15"),
+            (&["--side", "15"], if model == "monet" { "side is 15" } else { "encoder_step is 2" }),
             (&["--size", "huge"], "--size huge"),
             (&["--steps", "0"], "at least 1"),
             (&["--model", "scene"], "--side is for --model monet and slots"),
