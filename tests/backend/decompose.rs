@@ -1,10 +1,11 @@
-//! MONet on every backend: 50 steps from the same weights on the same images, and its gradients.
+//! MONet and Slot Attention on every backend: 50 steps from the same weights on the same images, and its gradients.
 
 use dvp_core::real::DType;
 use dvp_core::tensor::{Host, Parameters, Tensor};
 use dvp_core::{Image, ImageSize, Real};
-use dvp_net::decompose::DecomposerConfig;
 use dvp_net::decompose::monet::MonetConfig;
+use dvp_net::decompose::slots::SlotsConfig;
+use dvp_net::decompose::{DecomposerConfig, PartsOf};
 use dvp_net::error::NetError;
 use dvp_net::train::{DecomposerFile, DecomposerTrainer, Schedule};
 
@@ -29,58 +30,69 @@ fn images<T: Real>() -> Vec<Image<T>> {
     (0..4).map(image).collect()
 }
 
-fn trainer<B: Tested, T: Real>() -> Result<DecomposerTrainer<B, T>, NetError> {
-    let config = DecomposerConfig::Monet(MonetConfig::tiny(16));
-    DecomposerTrainer::new(config, Schedule::constant(5e-3), 3, B::place())
+/// Sizes for tests, how many weights there are, and the share of the loss that 50 steps leave at the most.
+fn all() -> [(DecomposerConfig, usize, f64); 2] {
+    let (monet, slots) = (MonetConfig::tiny(16), SlotsConfig::tiny(16));
+    [(DecomposerConfig::Monet(monet), 21, 0.7), (DecomposerConfig::Slots(slots), 33, 0.7)]
 }
 
-fn losses<B: Tested, T: Real>() -> Vec<f64> {
-    let (mut trainer, images) = (trainer::<B, T>().unwrap(), images::<T>());
+fn trainer<B: Tested, T: Real>(config: &DecomposerConfig) -> Result<DecomposerTrainer<B, T>, NetError> {
+    DecomposerTrainer::new(config.clone(), Schedule::constant(5e-3), 3, B::place())
+}
+
+fn losses<B: Tested, T: Real>(config: &DecomposerConfig) -> Vec<f64> {
+    let (mut trainer, images) = (trainer::<B, T>(config).unwrap(), images::<T>());
     (0..STEPS).map(|_| trainer.step(&images).unwrap().loss).collect()
 }
 
 fn fifty_steps<B: Tested>(tally: &Tally) -> Outcome {
-    let pairs = [
-        (DType::F64, losses::<B, f64>(), losses::<Host, f64>()),
-        (DType::F32, losses::<B, f32>(), losses::<Host, f32>()),
-    ];
-    for (dtype, own, host) in &pairs {
-        losses_agree(tally, *dtype, own, host, STEPS)?;
-        // Latents are drawn anew in every step: the losses of single steps scatter.
-        let mean = |part: &[f64]| part.iter().sum::<f64>() / part.len() as f64;
-        let [first, last] = [mean(&own[..10]), mean(&own[STEPS - 10..])];
-        tally.check(last < 0.7 * first, || format!("no progress: {own:?}"))?;
+    for (config, _, most) in all() {
+        let pairs = [
+            (DType::F64, losses::<B, f64>(&config), losses::<Host, f64>(&config)),
+            (DType::F32, losses::<B, f32>(&config), losses::<Host, f32>(&config)),
+        ];
+        for (dtype, own, host) in &pairs {
+            losses_agree(tally, *dtype, own, host, STEPS)?;
+            // Latents, or what slots start from, are drawn anew in every step: the losses of single steps scatter.
+            let mean = |part: &[f64]| part.iter().sum::<f64>() / part.len() as f64;
+            let [first, last] = [mean(&own[..10]), mean(&own[STEPS - 10..])];
+            tally.check(last < most * first, || format!("no progress: {own:?}"))?;
+        }
     }
     Ok(())
 }
 
 /// The gradient of every weight, as the host has it (which its own tests hold against central differences).
 fn gradients<B: Tested>(tally: &Tally) -> Outcome {
-    fn of<B: Tested>() -> Result<Vec<(String, Vec<f64>)>, NetError> {
-        let parameters: Parameters<B> = trainer::<B, f64>()?.parameters().clone();
-        let decomposer = trainer::<B, f64>()?.config().load(&dvp_net::weights::Weights::new(&parameters))?;
+    fn of<B: Tested>(config: &DecomposerConfig) -> Result<Vec<(String, Vec<f64>)>, NetError> {
+        let parameters: Parameters<B> = trainer::<B, f64>(config)?.parameters().clone();
+        let decomposer = config.load(&dvp_net::weights::Weights::new(&parameters))?;
         let values: Vec<f64> = images::<f64>().iter().flat_map(|image| image.data().to_vec()).collect();
         let verdict = decomposer.judge(&Tensor::new(values, &[4, 3, 16, 16], &B::place())?, 9)?;
         let gradients = parameters.gradients(&verdict.loss.backward()?);
         gradients.into_iter().map(|(name, tensor)| Ok((name, tensor.to_f64()?))).collect()
     }
-    let (own, host) = (of::<B>().unwrap(), of::<Host>().unwrap());
-    gradients_agree(tally, &own, &host, 21)
+    for (config, count, _) in all() {
+        gradients_agree(tally, &of::<B>(&config).unwrap(), &of::<Host>(&config).unwrap(), count)?;
+    }
+    Ok(())
 }
 
 /// A file written on one backend is read on another: the host sees the same parts.
 fn files<B: Tested>(tally: &Tally) -> Outcome {
-    let (mut trainer, images) = (trainer::<B, f32>().unwrap(), images::<f32>());
-    trainer.step(&images).unwrap();
-    let bytes = DecomposerFile::of(&trainer, true, "words").unwrap().to_bytes().unwrap();
-    let file = DecomposerFile::from_bytes(&bytes).unwrap();
-    let mut host = self::trainer::<Host, f32>().unwrap();
-    file.resume(&mut host, &Host::place()).unwrap();
-    tally.check(host.steps() == 1 && file.about() == "words", || format!("{} steps", host.steps()))?;
-    let [own, host] = [trainer.parts(&images).unwrap(), host.parts(&images).unwrap()];
-    for (own, host) in own.iter().zip(&host) {
-        let [own, host] = [own, host].map(|parts| parts.masks().flatten().map(|&m| f64::from(m)).collect::<Vec<_>>());
-        close(tally, "masks", &own, &host, 1e-5)?;
+    for (config, ..) in all() {
+        let (mut trainer, images) = (trainer::<B, f32>(&config).unwrap(), images::<f32>());
+        trainer.step(&images).unwrap();
+        let bytes = DecomposerFile::of(&trainer, true, "words").unwrap().to_bytes().unwrap();
+        let file = DecomposerFile::from_bytes(&bytes).unwrap();
+        let mut host = self::trainer::<Host, f32>(&config).unwrap();
+        file.resume(&mut host, &Host::place()).unwrap();
+        tally.check(host.steps() == 1 && file.about() == "words", || format!("{} steps", host.steps()))?;
+        let [own, host] = [trainer.parts(&images).unwrap(), host.parts(&images).unwrap()];
+        for (own, host) in own.iter().zip(&host) {
+            let values = |parts: &PartsOf| parts.masks().flatten().map(|&m| f64::from(m)).collect::<Vec<_>>();
+            close(tally, "masks", &values(own), &values(host), 1e-5)?;
+        }
     }
     Ok(())
 }

@@ -18,7 +18,7 @@
 //! | `network`, `training` | 50 steps of Adam from the same weights; replicas on threads |
 //! | `modes` | a step of training in every mode |
 //! | `published` | DINOv2 and Conditional DETR against their public implementations; their gradients |
-//! | `decompose` | MONet: 50 steps, gradients, files |
+//! | `decompose` | MONet and Slot Attention: 50 steps, gradients, files |
 //! | `look` | a second look: steps, gradients, files |
 //! | `weights` | files written on one backend and read on another |
 #![expect(clippy::unwrap_used, clippy::panic, reason = "a failed test with a line number")]

@@ -112,12 +112,19 @@ pub enum ParametersError {
         /// Extents in the model, and extents found.
         extents: Box<[Dims; 2]>,
     },
-    /// A number type that is neither f32 nor f64.
+    /// A number type that is not read.
     DType {
         /// The parameter.
         name: String,
         /// The type in the file's words.
         found: String,
+    },
+    /// A number that half precision cannot hold.
+    Half {
+        /// The parameter.
+        name: String,
+        /// The number.
+        value: f64,
     },
     /// The bytes are no safetensors file.
     Format(String),
@@ -139,7 +146,13 @@ impl fmt::Display for ParametersError {
                 write!(f, "parameter {name} is {found}, the model needs {expected}; check the model's sizes")
             }
             Self::DType { name, found } => {
-                write!(f, "parameter {name} holds {found} numbers; only F32 and F64 are read: convert the file")
+                write!(
+                    f,
+                    "parameter {name} holds {found} numbers; only F16, BF16, F32 and F64 are read: convert the file"
+                )
+            }
+            Self::Half { name, value } => {
+                write!(f, "parameter {name} holds {value}, F16 ends at 65504; store it in single precision")
             }
             Self::Format(reason) => write!(f, "not a safetensors file, or a damaged one: {reason}"),
             Self::Tensor(error) => write!(f, "{error}"),

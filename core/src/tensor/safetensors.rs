@@ -1,4 +1,6 @@
-//! Parameters as the bytes of a safetensors file, and back, bit for bit.
+//! Parameters as the bytes of a safetensors file, and back, bit for bit; where asked for in half precision.
+//!
+//! Numbers of half precision, F16 and BF16, become the f32 that they are.
 
 use alloc::borrow::Cow;
 use alloc::boxed::Box;
@@ -6,6 +8,7 @@ use alloc::format;
 use alloc::string::{String, ToString};
 use alloc::vec::Vec;
 
+use half::{bf16, f16};
 use safetensors::tensor::{Dtype, SafeTensors, View, serialize};
 
 use super::backend::Backend;
@@ -19,16 +22,39 @@ const NOTE: &str = "dvp";
 
 /// Values on their way to a file.
 struct Stored {
-    values: Values,
+    bytes: Vec<u8>,
+    dtype: Dtype,
     dims: Dims,
+}
+
+impl Stored {
+    /// Values as they are.
+    fn of(values: &Values, dims: Dims) -> Self {
+        let (bytes, dtype) = match values {
+            Values::F32(values) => (values.iter().flat_map(|value| value.to_le_bytes()).collect(), Dtype::F32),
+            Values::F64(values) => (values.iter().flat_map(|value| value.to_le_bytes()).collect(), Dtype::F64),
+        };
+        Self { bytes, dtype, dims }
+    }
+
+    /// Values rounded to half precision; the first number that is beyond it is an error. Those of f64 become f32 on the way.
+    fn half(values: &Values, dims: Dims) -> Result<Self, f64> {
+        let mut bytes = Vec::with_capacity(2 * values.len());
+        for value in values.to_f64() {
+            #[expect(clippy::cast_possible_truncation, reason = "rounding is what is asked for")]
+            let rounded = f16::from_f32(value as f32);
+            if value.is_finite() && !rounded.is_finite() {
+                return Err(value);
+            }
+            bytes.extend(rounded.to_le_bytes());
+        }
+        Ok(Self { bytes, dtype: Dtype::F16, dims })
+    }
 }
 
 impl View for Stored {
     fn dtype(&self) -> Dtype {
-        match self.values {
-            Values::F32(_) => Dtype::F32,
-            Values::F64(_) => Dtype::F64,
-        }
+        self.dtype
     }
 
     fn shape(&self) -> &[usize] {
@@ -36,17 +62,11 @@ impl View for Stored {
     }
 
     fn data(&self) -> Cow<'_, [u8]> {
-        Cow::Owned(match &self.values {
-            Values::F32(values) => values.iter().flat_map(|value| value.to_le_bytes()).collect(),
-            Values::F64(values) => values.iter().flat_map(|value| value.to_le_bytes()).collect(),
-        })
+        Cow::Borrowed(&self.bytes)
     }
 
     fn data_len(&self) -> usize {
-        match &self.values {
-            Values::F32(values) => size_of_val(&values[..]),
-            Values::F64(values) => size_of_val(&values[..]),
-        }
+        self.bytes.len()
     }
 }
 
@@ -64,15 +84,35 @@ impl<B: Backend> Parameters<B> {
     /// # Errors
     /// As [`Self::to_safetensors`].
     pub fn to_safetensors_with(&self, note: Option<&str>) -> Result<Vec<u8>, ParametersError> {
-        let mut stored = Vec::with_capacity(self.len());
-        for (name, tensor) in self.iter() {
-            stored.push((name, Stored { values: tensor.values()?, dims: *tensor.dims() }));
-        }
-        let metadata = note.map(|note| [(NOTE.to_string(), note.to_string())].into_iter().collect());
-        serialize(stored, metadata).map_err(|error| ParametersError::Format(error.to_string()))
+        self.to_safetensors_half(note, |_, _| false)
     }
 
-    /// All parameters of a safetensors file, given by its bytes.
+    /// As [`Self::to_safetensors_with`], the parameters for whose name and extents `half` holds as F16: rounded to the nearest,
+    /// to even between two. They are read as f32.
+    ///
+    /// # Errors
+    /// As [`Self::to_safetensors`]; [`ParametersError::Half`] for a number beyond 65504, the largest of F16. What is no number
+    /// or infinite stays so.
+    pub fn to_safetensors_half(
+        &self,
+        note: Option<&str>,
+        half: impl Fn(&str, &Dims) -> bool,
+    ) -> Result<Vec<u8>, ParametersError> {
+        let mut all = Vec::with_capacity(self.len());
+        for (name, tensor) in self.iter() {
+            let (values, dims) = (tensor.values()?, *tensor.dims());
+            let stored = if half(name, &dims) {
+                Stored::half(&values, dims).map_err(|value| ParametersError::Half { name: name.into(), value })?
+            } else {
+                Stored::of(&values, dims)
+            };
+            all.push((name, stored));
+        }
+        let metadata = note.map(|note| [(NOTE.to_string(), note.to_string())].into_iter().collect());
+        serialize(all, metadata).map_err(|error| ParametersError::Format(error.to_string()))
+    }
+
+    /// All parameters of a safetensors file, given by its bytes; those of half precision as f32.
     ///
     /// # Errors
     /// [`ParametersError::Format`] if it is damaged or another format, [`ParametersError::DType`].
@@ -123,6 +163,8 @@ fn read(bytes: &[u8]) -> Result<Vec<(String, Values, Dims)>, ParametersError> {
     let mut found = Vec::with_capacity(file.len());
     for (name, view) in file.iter() {
         let values = match view.dtype() {
+            Dtype::F16 => half_values(view.data(), |bytes| f16::from_le_bytes(bytes).to_f32()),
+            Dtype::BF16 => half_values(view.data(), |bytes| bf16::from_le_bytes(bytes).to_f32()),
             Dtype::F32 => Values::F32(view.data().as_chunks().0.iter().map(|&b| f32::from_le_bytes(b)).collect()),
             Dtype::F64 => Values::F64(view.data().as_chunks().0.iter().map(|&b| f64::from_le_bytes(b)).collect()),
             other => return Err(ParametersError::DType { name: name.into(), found: format!("{other:?}") }),
@@ -131,4 +173,8 @@ fn read(bytes: &[u8]) -> Result<Vec<(String, Values, Dims)>, ParametersError> {
         found.push((name.into(), values, dims));
     }
     Ok(found)
+}
+
+fn half_values(bytes: &[u8], value: impl Fn([u8; 2]) -> f32) -> Values {
+    Values::F32(bytes.as_chunks().0.iter().map(|&bytes| value(bytes)).collect())
 }

@@ -18,7 +18,7 @@
 //! | [`layers`] | linear maps, norms, perceptrons, attention |
 //! | [`dinov2`] | [`Dinov2`](dinov2::Dinov2): image to tokens; loads the published weights by their names |
 //! | [`encoder`] | [`Encoder`](encoder::Encoder): image to features, by DINOv2 or strided convolutions |
-//! | [`decompose`] | [`Decomposer`](decompose::Decomposer): images to masks and what they show, MONet; knows no shapes |
+//! | [`decompose`] | [`Decomposer`](decompose::Decomposer): images to masks and what they show, MONet or Slot Attention; knows no shapes |
 //! | [`detr`] | [`ConditionalDetr`](detr::ConditionalDetr): features to one latent per object slot |
 //! | [`model`] | [`Model`](model::Model): the whole, with its seven heads |
 //! | [`look`] | [`Look`](look::Look): a second look at what was found, object by object |

@@ -1,6 +1,8 @@
 //! The checks of tensors, and the host backend on numbers worked out by hand.
 
 mod devices;
+#[cfg(feature = "safetensors")]
+mod half_precision;
 
 use alloc::string::ToString;
 use alloc::vec;

@@ -15,7 +15,7 @@ use crate::format::{BitDepth, DEFAULT_MAX_PIXELS, encode_png, read_picture, writ
 use crate::method::load_divider;
 use crate::paint::Painter;
 
-/// Draws what MONet makes of pictures.
+/// Draws what MONet or Slot Attention makes of pictures.
 ///
 /// A row for each: the picture as the network sees it, the reconstruction, the mask of every part (white where it is), and what every
 /// part shows under its mask.
@@ -26,7 +26,7 @@ pub struct Arguments {
     /// Pictures
     #[arg(value_name = "PICTURES", required_unless_present = "generated", conflicts_with = "generated")]
     pictures: Vec<PathBuf>,
-    /// Weights, as `dvp train --model monet` writes them
+    /// Weights, as `dvp train --model monet` or `slots` writes them
     #[arg(long, value_name = "FILE")]
     model: PathBuf,
     /// Instead of pictures so many scenes of MDS-HR: those of `dvp generate` with the same seed

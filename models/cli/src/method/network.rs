@@ -46,7 +46,7 @@ pub fn load_looking(
     }
 }
 
-/// The network of a file as `dvp train --model monet` writes it, which finds no scene but divides the picture.
+/// The network of a file as `dvp train --model monet` or `slots` writes it, which finds no scene but divides the picture.
 ///
 /// # Errors
 /// [`LoadNetworkError`] if the file cannot be read or is no such network.

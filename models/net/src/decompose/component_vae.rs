@@ -2,25 +2,22 @@
 
 use dvp_core::tensor::{Backend, Stride, Tensor, TensorError};
 
+use super::broadcast::{BroadcastDecoder, Component};
 use super::monet::MonetConfig;
 use crate::error::NetError;
-use crate::layers::{Convolution, Mlp, places, repeated};
+use crate::layers::{Convolution, Mlp};
 use crate::weights::Weights;
 
-/// A variational autoencoder of an image under a mask. Encoder: convolutions with steps of 2 and ReLU, a perceptron. Decoder:
-/// the numbers at every place of a grid, with two that tell where it is, and convolutions that keep the grid.
+/// A variational autoencoder of an image under a mask. Encoder: convolutions with steps of 2 and ReLU, a perceptron. Decoder: a
+/// [`BroadcastDecoder`].
 ///
-/// *Source*: Burgess et al.: MONet (2019), appendix B.1; Watters et al.: Spatial Broadcast Decoder (2019). There the grid is
-/// larger than the image by what convolutions without padding take away; here they are padded with zeros.
+/// *Source*: Burgess et al.: MONet (2019), appendix B.1.
 #[derive(Clone, Debug)]
 pub(super) struct ComponentVae<B: Backend> {
     encoder: Vec<Convolution<B>>,
     perceptron: Mlp<B>,
-    decoder: Vec<Convolution<B>>,
-    last: Convolution<B>,
+    decoder: BroadcastDecoder<B>,
     latents: usize,
-    /// Places along a side of the grid, and pixels of the image for each.
-    grid: [usize; 2],
 }
 
 /// A normal distribution for each number of each item: means, and logarithms of variances, items x latents.
@@ -28,15 +25,6 @@ pub(super) struct ComponentVae<B: Backend> {
 pub(super) struct Latents<B: Backend> {
     pub(super) mean: Tensor<B>,
     pub(super) log_variance: Tensor<B>,
-}
-
-/// What is decoded of latents.
-#[derive(Clone, Debug)]
-pub(super) struct Component<B: Backend> {
-    /// items x 3 x side x side.
-    pub(super) colors: Tensor<B>,
-    /// Of the mask, before the softmax over parts: items x 1 x side x side.
-    pub(super) logits: Tensor<B>,
 }
 
 impl<B: Backend> ComponentVae<B> {
@@ -55,16 +43,9 @@ impl<B: Backend> ComponentVae<B> {
         }
         let widths = [from * side * side, config.encoder_hidden, 2 * config.latents];
         let perceptron = Mlp::load(&weights.under("perceptron"), &widths)?;
-        let mut from = config.latents + 2;
-        let mut decoder = Vec::with_capacity(config.decoder_channels.len());
-        for (k, &to) in config.decoder_channels.iter().enumerate() {
-            let keeping = Stride { step: 1, padding: 1 };
-            decoder.push(Convolution::load(&weights.under(&format!("decoder.{k}")), [from, to], 3, keeping)?);
-            from = to;
-        }
-        let last = Convolution::load(&weights.under("last"), [from, 4], 1, Stride { step: 1, padding: 0 })?;
         let grid = [config.side / config.decoder_step, config.decoder_step];
-        Ok(Self { encoder, perceptron, decoder, last, latents: config.latents, grid })
+        let decoder = BroadcastDecoder::load(weights, config.latents, &config.decoder_channels, 3, grid)?;
+        Ok(Self { encoder, perceptron, decoder, latents: config.latents })
     }
 
     /// The latents of images under masks: items x 3 x side x side, and logarithms of masks, items x 1 x side x side.
@@ -85,17 +66,8 @@ impl<B: Backend> ComponentVae<B> {
     /// What latents stand for: items x latents.
     ///
     /// # Errors
-    /// As [`Tensor::conv2d`].
+    /// As [`BroadcastDecoder::decode`].
     pub(super) fn decode(&self, latents: &Tensor<B>) -> Result<Component<B>, TensorError> {
-        let items = latents.dims().get(0).unwrap_or(1);
-        let [side, step] = self.grid;
-        let spread = latents.reshape(&[items, self.latents, 1, 1])?.expand(&[items, self.latents, side, side])?;
-        let places = latents.like(places(side, side), &[1, 2, side, side])?.expand(&[items, 2, side, side])?;
-        let mut x = Tensor::concat(&[&spread, &places], 1)?;
-        for convolution in &self.decoder {
-            x = convolution.forward(&x)?.relu()?;
-        }
-        let x = repeated(&self.last.forward(&x)?, step)?;
-        Ok(Component { colors: x.slice(1, 0, 3)?.sigmoid()?, logits: x.slice(1, 3, 1)? })
+        self.decoder.decode(latents)
     }
 }

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Decomposer;
 use super::monet::{Monet, MonetConfig};
+use super::slots::{Slots, SlotsConfig};
 use crate::error::NetError;
 use crate::weights::Weights;
 
@@ -15,6 +16,8 @@ use crate::weights::Weights;
 pub enum DecomposerConfig {
     /// Masks by recurrent attention, appearances by a variational autoencoder.
     Monet(MonetConfig),
+    /// Slots that compete for the places of an image.
+    Slots(SlotsConfig),
 }
 
 impl DecomposerConfig {
@@ -23,6 +26,7 @@ impl DecomposerConfig {
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Monet(_) => "monet",
+            Self::Slots(_) => "slots",
         }
     }
 
@@ -31,6 +35,7 @@ impl DecomposerConfig {
     pub fn side(&self) -> usize {
         match self {
             Self::Monet(config) => config.side,
+            Self::Slots(config) => config.side,
         }
     }
 
@@ -39,6 +44,7 @@ impl DecomposerConfig {
     pub fn slots(&self) -> usize {
         match self {
             Self::Monet(config) => config.slots,
+            Self::Slots(config) => config.slots,
         }
     }
 
@@ -49,6 +55,7 @@ impl DecomposerConfig {
     pub fn validate(&self) -> Result<(), NetError> {
         match self {
             Self::Monet(config) => config.validate(),
+            Self::Slots(config) => config.validate(),
         }
     }
 
@@ -59,6 +66,7 @@ impl DecomposerConfig {
     pub fn load<B: Backend>(&self, weights: &Weights<'_, B>) -> Result<Decomposer<B>, NetError> {
         Ok(match self {
             Self::Monet(config) => Decomposer::Monet(Box::new(Monet::load(config, weights)?)),
+            Self::Slots(config) => Decomposer::Slots(Box::new(Slots::load(config, weights)?)),
         })
     }
 }

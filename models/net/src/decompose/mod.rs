@@ -10,15 +10,25 @@
 //! | `attention_net` | its attention, a U-Net |
 //! | `component_vae` | its autoencoder |
 //! | `terms` | the terms of its loss |
+//! | `slots` | [`slots::Slots`]: Slot Attention, parts compete for the places of an image |
+//! | `slot_attention` | the competition |
+//! | `broadcast` | the decoder of both: numbers to colors and a mask |
+//! | `inputs` | what both take: images of a side, chance; checks of sizes |
 //! | `parts` | [`Parts`], and [`PartsOf`] an image: labels, reconstruction |
 //! | `divider` | [`Divider`]: a trained decomposer that reads pictures of any size, on the host |
 
 mod attention_net;
+mod broadcast;
 mod component_vae;
 mod config;
 mod divider;
+mod inputs;
 pub mod monet;
 mod parts;
+mod slot_attention;
+pub mod slots;
+#[cfg(test)]
+mod slots_tests;
 mod terms;
 #[cfg(test)]
 mod tests;
@@ -31,6 +41,7 @@ pub use parts::{Parts, PartsOf};
 pub use terms::Terms;
 
 use self::monet::Monet;
+use self::slots::Slots;
 use crate::error::NetError;
 
 /// A network that divides images into parts.
@@ -39,6 +50,8 @@ use crate::error::NetError;
 pub enum Decomposer<B: Backend> {
     /// Masks by recurrent attention, appearances by a variational autoencoder.
     Monet(Box<Monet<B>>),
+    /// Slots that compete for the places of an image.
+    Slots(Box<Slots<B>>),
 }
 
 /// A batch, judged.
@@ -61,16 +74,18 @@ impl<B: Backend> Decomposer<B> {
     pub fn judge(&self, images: &Tensor<B>, chance: u64) -> Result<Verdict<B>, NetError> {
         match self {
             Self::Monet(monet) => monet.judge(images, chance),
+            Self::Slots(slots) => slots.judge(images, chance),
         }
     }
 
-    /// The parts of images, batch x 3 x side x side; nothing is drawn at random.
+    /// The parts of images, batch x 3 x side x side; nothing is drawn anew: the same images have the same parts.
     ///
     /// # Errors
     /// As [`Self::judge`].
     pub fn parts(&self, images: &Tensor<B>) -> Result<Parts<B>, NetError> {
         match self {
             Self::Monet(monet) => monet.parts(images),
+            Self::Slots(slots) => slots.parts(images),
         }
     }
 }

@@ -1,17 +1,16 @@
 //! MONet: attention takes one part of an image after the other, an autoencoder describes each.
 
 use dvp_core::tensor::{Backend, Tensor, TensorError};
-use rand::SeedableRng as _;
-use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
 use super::Verdict;
 use super::attention_net::AttentionNet;
-use super::component_vae::{Component, ComponentVae, Latents};
+use super::broadcast::Component;
+use super::component_vae::{ComponentVae, Latents};
+use super::inputs::{batch_of, check_channels, check_step, noise};
 use super::parts::Parts;
 use super::terms::{Terms, apart, mixture, told};
 use crate::error::{NetError, require};
-use crate::initial::normal;
 use crate::weights::Weights;
 
 /// What networks see of masks and scopes: logarithms below are cut, a share of 5e-5.
@@ -118,13 +117,11 @@ impl MonetConfig {
             ("encoder_channels", &self.encoder_channels),
             ("decoder_channels", &self.decoder_channels),
         ] {
-            let some = !channels.is_empty() && channels.len() < 16 && !channels.contains(&0);
-            require(some, key, format!("{channels:?}"), "must be one to 15 numbers, none of them 0")?;
+            check_channels(key, channels)?;
         }
         let tiled = self.side.is_multiple_of(1 << (blocks - 1)) && self.side >> (blocks - 1) > 1;
         require(tiled, "side", self.side, "must be 2 or more times 2 for each attention block but the first")?;
-        let tiled = self.decoder_step > 0 && self.side.is_multiple_of(self.decoder_step);
-        require(tiled, "decoder_step", self.decoder_step, "must divide the side")?;
+        check_step("decoder_step", self.decoder_step, self.side)?;
         for (key, value) in [("beta", self.beta), ("gamma", self.gamma)] {
             require(value.is_finite() && value >= 0.0, key, value, "must be 0 or above")?;
         }
@@ -198,21 +195,15 @@ impl<B: Backend> Monet<B> {
     }
 
     fn see(&self, images: &Tensor<B>, chance: Option<u64>) -> Result<Seen<B>, NetError> {
-        let MonetConfig { side, slots, latents: width, .. } = self.config;
-        let batch = match *images.dims().extents() {
-            [batch, 3, h, w] if h == side && w == side && batch > 0 => batch,
-            _ => {
-                let must = "must be batch x 3 x side x side, with the side of the model's sizes";
-                return Err(NetError::Input { input: "images", dims: *images.dims(), must });
-            }
-        };
+        let MonetConfig { side, slots, .. } = self.config;
+        let batch = batch_of(images, side)?;
         let log_masks = self.attend(images, batch)?;
         // Part after part, with all images each.
         let all: Vec<&Tensor<B>> = log_masks.iter().collect();
         let repeated = Tensor::concat(&vec![images; slots], 0)?;
         let latents = self.vae.encode(&repeated, &cut(&Tensor::concat(&all, 0)?)?)?;
         let drawn = match chance {
-            Some(chance) => draw(&latents, chance, slots * batch * width)?,
+            Some(chance) => draw(&latents, chance)?,
             None => latents.mean.clone(),
         };
         let Component { colors, logits } = self.vae.decode(&drawn)?;
@@ -239,9 +230,8 @@ impl<B: Backend> Monet<B> {
 }
 
 /// A draw from the distributions of latents.
-fn draw<B: Backend>(latents: &Latents<B>, chance: u64, count: usize) -> Result<Tensor<B>, TensorError> {
-    let mut rng = ChaCha8Rng::seed_from_u64(chance);
-    let noise = latents.mean.like((0..count).map(|_| normal(&mut rng)).collect(), latents.mean.dims().extents())?;
+fn draw<B: Backend>(latents: &Latents<B>, chance: u64) -> Result<Tensor<B>, TensorError> {
+    let noise = noise(&latents.mean, latents.mean.dims().extents(), chance)?;
     latents.log_variance.affine(0.5, 0.0)?.exp()?.mul(&noise)?.add(&latents.mean)
 }
 

@@ -6,6 +6,7 @@
 //! | `layer_norm` | [`LayerNorm`] |
 //! | `mlp` | [`Mlp`]: linear maps with ReLU between |
 //! | `attention` | [`attend`]: attention of several heads |
+//! | `gru` | a gated recurrent unit |
 //! | `batch_norm` | [`BatchNorm`] |
 //! | `convolution`, `instance_norm`, `nearest` | images: kernels, norms per channel, half and twice the size |
 //! | `bicubic` | resampling along an axis |
@@ -16,6 +17,7 @@ mod attention;
 mod batch_norm;
 mod bicubic;
 mod convolution;
+mod gru;
 mod instance_norm;
 mod layer_norm;
 mod linear;
@@ -29,6 +31,7 @@ pub(crate) use attention::join_heads;
 pub use batch_norm::{BatchNorm, Normed, Phase};
 pub(crate) use bicubic::{Taps, bicubic, taps};
 pub(crate) use convolution::Convolution;
+pub(crate) use gru::Gru;
 pub(crate) use instance_norm::InstanceNorm;
 pub use layer_norm::LayerNorm;
 pub use linear::Linear;

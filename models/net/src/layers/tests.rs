@@ -2,7 +2,7 @@
 
 use dvp_core::tensor::{Host, HostDevice, Parameters, Tensor};
 
-use super::{InstanceNorm, Mlp, attend, halved, join_heads, places, repeated};
+use super::{Gru, InstanceNorm, Mlp, attend, halved, join_heads, places, repeated};
 use crate::weights::Weights;
 
 fn tensor(values: &[f64], extents: &[usize]) -> Tensor<Host> {
@@ -21,6 +21,26 @@ fn attention_by_hand() {
     for (found, expected) in mixed.to_f64().unwrap().iter().zip([5.0, 15.0, 1.0, 1.0]) {
         assert!((found - expected).abs() < 1e-14, "{found} for {expected}");
     }
+}
+
+#[test]
+fn a_gated_recurrent_unit_by_hand() {
+    // Width 1, h = 2, x = 1. r = s(ln 3) = 3/4: weight ln 3 of x. z = s(-ln 4) = 1/5: biases -ln 2 each. n = tanh(1 + r (2 + 2)) with
+    // weight 1 of x, weight 1 of h and a bias of 2 that the gate r holds back: tanh(4). (1 - z) n + z h.
+    let ln = |x: f64| x.ln();
+    let mut parameters = Parameters::new();
+    for (name, values, extents) in [
+        ("input.weight", [ln(3.0), 0.0, 1.0], &[3, 1][..]),
+        ("input.bias", [0.0, -ln(2.0), 0.0], &[3]),
+        ("state.weight", [0.0, 0.0, 1.0], &[3, 1]),
+        ("state.bias", [0.0, -ln(2.0), 2.0], &[3]),
+    ] {
+        parameters.insert(name, &tensor(&values, extents)).unwrap();
+    }
+    let gru = Gru::load(&Weights::new(&parameters), 1).unwrap();
+    let state = gru.forward(&tensor(&[1.0], &[1, 1, 1]), &tensor(&[2.0], &[1, 1, 1])).unwrap();
+    let (found, expected) = (state.to_f64().unwrap()[0], 0.8 * 4.0_f64.tanh() + 0.2 * 2.0);
+    assert!((found - expected).abs() < 1e-14, "{found} for {expected}");
 }
 
 #[test]

@@ -18,6 +18,8 @@ mod checkpoint;
 mod decomposer;
 mod decomposer_file;
 mod gradients;
+#[cfg(test)]
+mod half_tests;
 mod judge;
 mod look_file;
 #[cfg(test)]

@@ -110,11 +110,31 @@ impl<C: Clone + PartialEq + Serialize + DeserializeOwned> WeightsFile<C> {
     /// # Errors
     /// [`NetError::Parameters`]; nothing is known to refuse.
     pub fn to_bytes(&self) -> Result<Vec<u8>, NetError> {
-        let Self { config, steps, about, tensors } = self;
+        Ok(self.tensors.to_safetensors_with(Some(&self.note(&self.tensors)?))?)
+    }
+
+    /// The bytes of a file of half the size, to look with: matrices and kernels of the weights as F16, without the optimizer.
+    /// Biases, factors of norms and shapes are few and stay as they are.
+    ///
+    /// # Errors
+    /// [`NetError::Parameters`] for a weight beyond 65504.
+    pub fn to_half_bytes(&self) -> Result<Vec<u8>, NetError> {
+        let mut kept = Parameters::new();
+        for (name, tensor) in self.tensors.iter().filter(|(name, _)| !name.starts_with("adam.")) {
+            kept.insert(name, tensor)?;
+        }
+        let half = |name: &str, dims: &Dims| name.starts_with("model.") && dims.rank() > 1;
+        // The checksum is that of the numbers as they will be read.
+        let rounded = Parameters::from_safetensors(&kept.to_safetensors_half(None, half)?, &HostDevice)?;
+        Ok(kept.to_safetensors_half(Some(&self.note(&rounded)?), half)?)
+    }
+
+    /// What the file says beside these numbers.
+    fn note(&self, tensors: &Parameters<Host>) -> Result<String, NetError> {
+        let Self { config, steps, about, .. } = self;
         let (config, about, checksum) = (config.clone(), about.clone(), checksum(tensors)?);
         let note = Note { version: VERSION, config, steps: *steps, about, checksum };
-        let note = serde_json::to_string(&note).map_err(|error| NetError::Checkpoint(error.to_string()))?;
-        Ok(tensors.to_safetensors_with(Some(&note))?)
+        serde_json::to_string(&note).map_err(|error| NetError::Checkpoint(error.to_string()))
     }
 
     /// Reads a file, given by its bytes.

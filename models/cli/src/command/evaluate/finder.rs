@@ -55,6 +55,8 @@ enum Source {
     RandOptZ,
     /// MONet of --model: masks and what they show, no scene
     Monet,
+    /// Slot Attention of --model: masks and what they show, no scene
+    Slots,
 }
 
 /// What is done with what the network sees.
@@ -80,12 +82,24 @@ impl NetworkArguments {
 
     /// The network that divides pictures instead of finding their scenes, if one is asked.
     pub(super) fn divider(&self) -> Result<Option<Divider>> {
-        let (Some(Source::Monet), model) = (self.method, &self.model) else { return Ok(None) };
+        let kind = match self.method {
+            Some(Source::Monet) => "monet",
+            Some(Source::Slots) => "slots",
+            _ => return Ok(None),
+        };
         if self.then != Then::None {
-            bail!("--then goes on from scenes, and --method monet finds none");
+            bail!("--then goes on from scenes, and --method {kind} finds none");
         }
-        let model = model.as_deref().context("--method monet needs the weights of a run: --model FILE")?;
-        Ok(Some(load_divider(model)?))
+        let file = self
+            .model
+            .as_deref()
+            .with_context(|| format!("--method {kind} needs the weights of a run: --model FILE"))?;
+        let divider = load_divider(file)?;
+        let found = divider.config().kind();
+        if found != kind {
+            bail!("{}: weights of --method {found}, not {kind}", file.display());
+        }
+        Ok(Some(divider))
     }
 
     /// What finds the scenes, made ready.
@@ -101,7 +115,7 @@ impl NetworkArguments {
             (Source::LivePublished, _) => Method::LivePublished,
             (Source::RandOptP, _) => Method::RandOptP,
             (Source::RandOptZ, _) => Method::RandOptZ,
-            (Source::Monet, _) => bail!("--method monet finds no scenes"),
+            (Source::Monet | Source::Slots, _) => bail!("--method monet and slots find no scenes"),
             (Source::Net, Then::None) => Method::Net,
             (Source::Net, Then::OptP) => Method::NetOptP,
             (Source::Net, Then::OptZ) => Method::OptZ,

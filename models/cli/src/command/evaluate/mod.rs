@@ -26,8 +26,9 @@ use crate::suite::Suite;
 /// doubt if the image is painted better with them; those of opt-z count if their confidence is above 1/2. Objects are looked at again one
 /// by one (--looks, --look), and where they stand and which shape they have is what the last look says.
 ///
-/// MONet (--method monet --model FILE) divides the picture: its objects own the pixels in which their mask is the largest, the mask with
-/// the most pixels is the background, and masks with fewer than two pixels of a thousand belong to it.
+/// MONet (--method monet --model FILE) and Slot Attention (--method slots) divide the picture: their objects own the pixels in which
+/// their mask is the largest, the mask with the most pixels is the background, and masks with fewer than two pixels of a thousand belong
+/// to it.
 ///
 /// MAE, MSE and SSIM compare images; IoU (pooled over all images), ARI and the share of exact object counts need the
 /// true scenes (scenes.jsonl) or, beside a picture STEM.png, a label map STEM.labels.png: gray of 8 or 16 bits, 0 for the

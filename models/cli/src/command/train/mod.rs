@@ -38,7 +38,7 @@ use self::store::Store;
 use super::{Console, Outcome};
 use crate::format::write_atomic;
 
-/// Trains a network that proposes the scene of an image, a second look at what one found, or MONet, which divides an image into masks.
+/// Trains a network that proposes the scene of an image, a second look at what one found, or MONet or Slot Attention, which divide an image into masks.
 ///
 /// Writes the settings, two checkpoints, the best weights by the image loss on validation images (best.safetensors, for
 /// `dvp fit --start` and `dvp evaluate --model`), curves (losses.csv, losses.svg) and sample reconstructions. It may be
@@ -86,7 +86,7 @@ pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Ou
             write()?;
             go_on(backend, &run, &store, arguments.resume, console)
         }
-        ModelName::Monet => {
+        ModelName::Monet | ModelName::Slots => {
             let run = PartsRun::new(&settings)?;
             write()?;
             go_on(backend, &run, &store, arguments.resume, console)

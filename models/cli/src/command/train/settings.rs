@@ -7,6 +7,7 @@ use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
 use dvp_net::decompose::DecomposerConfig;
 use dvp_net::decompose::monet::MonetConfig;
+use dvp_net::decompose::slots::SlotsConfig;
 use dvp_net::look::LookConfig;
 use dvp_net::model::ModelConfig;
 use dvp_net::train::Mode;
@@ -27,7 +28,7 @@ pub(super) struct Settings {
     /// What computes [host]
     #[arg(long, value_enum)]
     pub(super) backend: Option<BackendName>,
-    /// Size of the model: tiny, small, cells, paper (of monet tiny, small, published; of look tiny, small), or a JSON file of sizes [small]
+    /// Size of the model: tiny, small, cells, paper (of monet and slots tiny, small, published; of look tiny, small), or a JSON file of sizes [small]
     #[arg(long, value_name = "SIZE")]
     pub(super) size: Option<String>,
     /// Folder of pictures to learn from, with their scenes for gp and gi; else MDS-HR scenes are generated
@@ -80,7 +81,7 @@ pub(super) struct Settings {
     /// Weight of rotations in L_p [0.05]
     #[arg(long, value_name = "WEIGHT")]
     pub(super) rotation_weight: Option<f64>,
-    /// Pixels along a side of the images of monet, which are resampled or generated so: 64 or 128, say [64]
+    /// Pixels along a side of the images of monet and slots, which are resampled or generated so: 64 or 128, say [64]
     #[arg(long, value_name = "N")]
     pub(super) side: Option<usize>,
     /// Parts of a batch that are worked on at the same time [1]
@@ -106,6 +107,8 @@ pub(super) enum ModelName {
     Scene,
     /// MONet: divides an image into masks and what they show; learns from images alone
     Monet,
+    /// Slot Attention: parts compete for the places of an image; learns from images alone
+    Slots,
     /// A second look: puts objects right that were found, one by one; learns from scenes that are shaken
     Look,
 }
@@ -170,7 +173,7 @@ impl Settings {
                 threads: Some(1),
                 ..both
             },
-            ModelName::Monet => Self { side: Some(64), ..both },
+            ModelName::Monet | ModelName::Slots => Self { side: Some(64), ..both },
             ModelName::Look => Self { bank: Some("mdshr".into()), harmonics: Some(16), degraded: Some(0.0), ..both },
         })
     }
@@ -194,19 +197,20 @@ impl Settings {
             ("--harmonics", self.harmonics.is_some()),
             ("--degraded", self.degraded.is_some()),
         ];
-        let of_monet = [("--side", self.side.is_some())];
+        let of_decomposers = [("--side", self.side.is_some())];
         let foreign: Vec<(&str, bool)> = match model {
-            ModelName::Scene => of_monet.to_vec(),
-            ModelName::Monet => [&of_scenes[..], &of_looks].concat(),
-            ModelName::Look => [&of_scenes[..], &of_monet].concat(),
+            ModelName::Scene => of_decomposers.to_vec(),
+            ModelName::Monet | ModelName::Slots => [&of_scenes[..], &of_looks].concat(),
+            ModelName::Look => [&of_scenes[..], &of_decomposers].concat(),
         };
         match foreign.into_iter().find(|(_, is)| *is) {
-            Some((option, _)) if model == ModelName::Scene => bail!("{option} is for --model monet"),
+            Some((option, _)) if model == ModelName::Scene => bail!("{option} is for --model monet and slots"),
             Some((option, _)) if model == ModelName::Look => {
                 bail!("--model look learns from scenes that are shaken, whatever found them: leave {option} away")
             }
             Some((option, _)) => {
-                bail!("--model monet learns from images alone, as they are, and knows no shapes: leave {option} away")
+                let name = if model == ModelName::Slots { "slots" } else { "monet" };
+                bail!("--model {name} learns from images alone, as they are, and knows no shapes: leave {option} away")
             }
             None => Ok(()),
         }
@@ -227,18 +231,28 @@ impl Settings {
         Ok(config)
     }
 
-    /// The sizes of MONet.
+    /// The sizes of MONet or Slot Attention.
     pub(super) fn decomposer(&self) -> Result<DecomposerConfig> {
         let side = self.side.unwrap_or(64);
         let name = self.size.as_deref().unwrap_or("small");
-        let config = match name {
-            "tiny" => DecomposerConfig::Monet(MonetConfig::tiny(side)),
-            "small" => DecomposerConfig::Monet(MonetConfig::small(side)),
-            "published" => DecomposerConfig::Monet(MonetConfig::published(side)),
-            file => {
+        let (slots, monet) = (DecomposerConfig::Slots, DecomposerConfig::Monet);
+        let config = match (name, self.model == Some(ModelName::Slots)) {
+            ("tiny", true) => slots(SlotsConfig::tiny(side)),
+            ("tiny", false) => monet(MonetConfig::tiny(side)),
+            ("small", true) => slots(SlotsConfig::small(side)),
+            ("small", false) => monet(MonetConfig::small(side)),
+            ("published", true) => slots(SlotsConfig::published(side)),
+            ("published", false) => monet(MonetConfig::published(side)),
+            (file, is_slots) => {
                 let text =
                     fs::read(file).with_context(|| format!("--size {file}: no tiny, small, published, nor a file"))?;
-                serde_json::from_slice(&text).with_context(|| format!("{file}: no sizes of a decomposer"))?
+                let config: DecomposerConfig =
+                    serde_json::from_slice(&text).with_context(|| format!("{file}: no sizes of a decomposer"))?;
+                let model = if is_slots { "slots" } else { "monet" };
+                if config.kind() != model {
+                    bail!("{file}: sizes of {}, with --model {model}", config.kind());
+                }
+                config
             }
         };
         if config.side() != side {
