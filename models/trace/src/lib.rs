@@ -52,7 +52,7 @@ use alloc::vec::Vec;
 use dvp_core::{ImageView, Scene};
 
 use crate::partition::{NoPartition, Partition};
-pub use crate::scene::PoseDeviation;
+pub use crate::scene::PoseCovariance;
 
 /// A picture as a drawing.
 #[derive(Clone, Debug)]
@@ -61,7 +61,7 @@ pub struct Traced {
     /// The drawing.
     pub scene: Scene<f32>,
     /// How far the poses of its objects may be off, where that is known.
-    pub deviations: Vec<Option<PoseDeviation>>,
+    pub covariances: Vec<Option<PoseCovariance>>,
     /// Description length of its outlines, and of what they miss, bits.
     pub bits: f64,
     /// Share of the pixels just beyond edges that still show the other side, [0, 1]: near 0 if edges are of area coverage, as the
@@ -137,8 +137,8 @@ pub fn trace(image: &ImageView<'_, f32>, known: &Known) -> Result<Traced, NoDraw
     }
     let bits = layers.bits();
     ties::tie(&mut layers, partition.size);
-    let (scene, deviations) = scene::scene(&layers, image.size(), known.matte.is_some(), partition.is_hard);
-    Ok(Traced { scene, deviations, bits, stained })
+    let (scene, covariances) = scene::scene(&layers, image.size(), known.matte.is_some(), partition.is_hard);
+    Ok(Traced { scene, covariances, bits, stained })
 }
 
 /// Whether edges have another profile than area coverage: wider, or steeper with stains beyond.

@@ -24,7 +24,7 @@ fn drawing(forms: Vec<Form>) -> Layers {
 
 fn filled(shapes: Vec<OutlineShape>) -> Form {
     Form::Filled(
-        shapes.into_iter().map(|shape| Outline { shape, bits: 0.0, misfit: 0.0, deviations: Vec::new() }).collect(),
+        shapes.into_iter().map(|shape| Outline { shape, bits: 0.0, misfit: 0.0, covariance: Vec::new() }).collect(),
     )
 }
 
