@@ -1,7 +1,7 @@
 //! Pictures with clear edges to drawings: what people draw, found again.
 //!
 //! ```text
-//! image -> partition -> boundary -> stroke | outline -> layers -> ties -> scene
+//! image -> partition -> boundary -> stroke | outline -> layers -> ties -> centers -> scene
 //! ```
 //!
 //! | module | comes in | goes out |
@@ -14,6 +14,7 @@
 //! | `stroke` | the boundary of a face | the lines of a pen that drew it |
 //! | `layers` | faces and their boundaries | objects, back to front, whole where others hide them |
 //! | `ties` | layers | the same on the grid that they were drawn on, with equal numbers equal |
+//! | `centers` | layers of a picture without a mixed pixel | the same with the middle of every pixel on the right side |
 //!
 //! Lengths are in pixels (the center of the pixel (row r, column c) is at (c + 0.5, r + 0.5), y down) and prices in bits,
 //! unless a name says otherwise. Everything is computed in f64; images come in f32. The arithmetic of f64 is inherent with std and
@@ -35,6 +36,7 @@ extern crate alloc;
 extern crate std;
 
 pub mod boundary;
+pub mod centers;
 pub mod layers;
 pub mod outline;
 pub mod partition;
@@ -135,8 +137,11 @@ pub fn trace(image: &ImageView<'_, f32>, known: &Known) -> Result<Traced, NoDraw
             layers = others;
         }
     }
-    let bits = layers.bits();
     ties::tie(&mut layers, partition.size);
+    if partition.is_hard {
+        centers::meet(&mut layers, &partition);
+    }
+    let bits = layers.bits();
     let (scene, covariances) = scene::scene(&layers, image.size(), known.matte.is_some(), partition.is_hard);
     Ok(Traced { scene, covariances, bits, stained })
 }
