@@ -65,7 +65,7 @@ pub fn meet(layers: &mut Layers, partition: &Partition) {
         if layer.faces.is_empty() {
             continue;
         }
-        let facts = Facts::of(partition, &owners, number, &layer.faces);
+        let facts = Facts::of(partition, &owners, number, &layer.faces, outlines);
         layer.bits += facts.meet(outlines, &ruler);
     }
 }
@@ -82,12 +82,17 @@ struct Facts(Vec<Fact>);
 
 impl Facts {
     /// Of the layer `number`, which `faces` are seen of: its own pixels are inside, those of what lies behind outside; what lies in front hides it.
-    fn of(partition: &Partition, owners: &[usize], number: usize, faces: &[u32]) -> Self {
+    fn of(partition: &Partition, owners: &[usize], number: usize, faces: &[u32], outlines: &[Outline]) -> Self {
         let [width, height] = partition.size;
         let mut bounds = [usize::MAX, usize::MAX, 0, 0];
         for face in faces.iter().map(|&face| &partition.faces[face as usize]) {
             let [left, top, right, bottom] = face.bounds;
             bounds = [bounds[0].min(left), bounds[1].min(top), bounds[2].max(right), bounds[3].max(bottom)];
+        }
+        // Behind what hides it an outline may go anywhere, but must not come out beyond.
+        for point in outlines.iter().flat_map(|outline| polygon(&outline.shape)) {
+            let [x, y] = point.to_array().map(|at| at.max(0.0) as usize);
+            bounds = [bounds[0].min(x), bounds[1].min(y), bounds[2].max(x + 1), bounds[3].max(y + 1)];
         }
         let known = |x: usize, y: usize| -> Option<bool> {
             let face = partition.face_at([x, y]);
@@ -99,7 +104,7 @@ impl Facts {
             for x in bounds[0].saturating_sub(REACH)..(bounds[2] + REACH).min(width) {
                 let Some(is_inside) = known(x, y) else { continue };
                 let around = |at: usize| at.saturating_sub(REACH)..=at + REACH;
-                if around(y).any(|v| around(x).any(|u| known(u, v) == Some(!is_inside))) {
+                if around(y).any(|v| around(x).any(|u| known(u, v) != Some(is_inside))) {
                     facts.push(Fact { at: Vec2::new(x as f64 + 0.5, y as f64 + 0.5), is_inside });
                 }
             }
