@@ -23,10 +23,10 @@ use crate::ruler::Ruler;
 use crate::tuning;
 use numbers::{curves, cut, numbers, polygon, with_numbers};
 
-/// How far outlines are held from the middles of pixels, pixels: what renderers' polygons are off, and then some.
-const MARGIN: f64 = 0.04;
+/// How far outlines are held from the middles of pixels, pixels; and, where that cannot be, once more.
+const MARGINS: [f64; 2] = [0.04, 0.01];
 /// Nearer ones count as on the wrong side, pixels: polygons are off by less.
-const SURE: f64 = 0.02;
+const SURE: f64 = 0.006;
 /// How exactly, pixels.
 const SOFT: f64 = 0.01;
 /// How far a number moves for a pixel that is on the wrong side by the same, pixels.
@@ -154,17 +154,25 @@ impl Facts {
     fn state(&self, shapes: &[OutlineShape]) -> State {
         let polygons: Vec<Vec<Vec2<f64>>> = shapes.iter().map(polygon).collect();
         let depths: Vec<f64> = self.0.iter().map(|fact| fact.depth(&polygons)).collect();
-        let strain = depths.iter().map(|depth| (MARGIN - depth).max(0.0).powi(2)).sum();
-        State { wrong: depths.iter().filter(|&&depth| depth < SURE).count(), strain, depths }
+        State { wrong: depths.iter().filter(|&&depth| depth < SURE).count(), depths }
     }
 
     /// Moves the numbers of outlines toward where all facts are met, as little as that takes.
     fn approach(&self, shapes: &mut Vec<OutlineShape>, state: &mut State) {
+        for margin in MARGINS {
+            if state.wrong > 0 {
+                self.keep(shapes, state, margin);
+            }
+        }
+    }
+
+    /// The same with outlines that are held so far from what they must not cover or miss, pixels.
+    fn keep(&self, shapes: &mut Vec<OutlineShape>, state: &mut State, margin: f64) {
         let (mut now, mut then) = (shapes.clone(), state.clone());
         let mut damping = 1.0;
         let mut slopes = self.slopes(&now, &then);
         for _ in 0..STEPS {
-            let Some(change) = slopes.change(damping) else { break };
+            let Some(change) = slopes.change(damping, margin) else { break };
             let mut at = 0;
             let moved: Vec<OutlineShape> = now
                 .iter()
@@ -179,10 +187,11 @@ impl Facts {
                 })
                 .collect();
             let next = self.state(&moved);
-            if next.strain < then.strain {
-                let is_idle = next.strain > LEAST_GAIN * then.strain;
+            let [strain, before] = [&next, &then].map(|state| state.strain(margin));
+            if strain < before {
+                let is_idle = strain > LEAST_GAIN * before;
                 (now, then, damping) = (moved, next, damping * 0.2);
-                if (then.wrong, then.strain) < (state.wrong, state.strain) {
+                if (then.wrong, strain) < (state.wrong, state.strain(margin)) {
                     (shapes.clone_from(&now), state.clone_from(&then));
                 }
                 if then.wrong == 0 || is_idle {
@@ -234,8 +243,8 @@ impl Facts {
         for (fact, depth) in self.0.iter().zip(&state.depths).filter(|&(_, &depth)| depth < SURE) {
             let nearest = fact.nearest(&curves);
             match strains.iter_mut().find(|(_, place)| *place == nearest) {
-                Some((strain, _)) => *strain += MARGIN - depth,
-                None => strains.push((MARGIN - depth, nearest)),
+                Some((strain, _)) => *strain += MARGINS[0] - depth,
+                None => strains.push((MARGINS[0] - depth, nearest)),
             }
         }
         strains.into_iter().max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, place)| place)
@@ -251,7 +260,7 @@ struct Slopes {
 
 impl Slopes {
     /// How numbers change so that outlines meet what they miss and miss nothing else, to first order.
-    fn change(&self, damping: f64) -> Option<Vec<f64>> {
+    fn change(&self, damping: f64, margin: f64) -> Option<Vec<f64>> {
         let Self { depths, columns } = self;
         let count = columns.len();
         let mut normal = vec![0.0; count * count];
@@ -263,8 +272,8 @@ impl Slopes {
             for (i, is_active) in active.iter_mut().enumerate() {
                 let depth = depths[i]
                     + columns.iter().zip(&change).map(|((slopes, _), change)| slopes[i] * change).sum::<f64>();
-                is_new |= depth < MARGIN && !*is_active;
-                *is_active |= depth < MARGIN;
+                is_new |= depth < margin && !*is_active;
+                *is_active |= depth < margin;
             }
             if !is_new {
                 break;
@@ -276,7 +285,7 @@ impl Slopes {
                     normal[i * count + j] = held().map(|k| slopes[k] * columns[j].0[k]).sum::<f64>() / (SOFT * SOFT);
                 }
                 normal[i * count + i] += damping * (lever / LOOSE).powi(2);
-                change[i] = held().map(|k| slopes[k] * (MARGIN - depths[k])).sum::<f64>() / (SOFT * SOFT);
+                change[i] = held().map(|k| slopes[k] * (margin - depths[k])).sum::<f64>() / (SOFT * SOFT);
             }
             if !solve(&mut normal, &mut change) {
                 return None;
@@ -291,10 +300,15 @@ impl Slopes {
 struct State {
     /// Pixels on the wrong side.
     wrong: usize,
-    /// Sum of the squares of what outlines are too near to the middles of pixels by, or beyond.
-    strain: f64,
     /// Of each fact: how far the outline is from it, pixels, negative on the wrong side.
     depths: Vec<f64>,
+}
+
+impl State {
+    /// Sum of the squares of what outlines are too near to the middles of pixels by, or beyond.
+    fn strain(&self, margin: f64) -> f64 {
+        self.depths.iter().map(|depth| (margin - depth).max(0.0).powi(2)).sum()
+    }
 }
 
 impl Fact {

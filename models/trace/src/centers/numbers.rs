@@ -11,7 +11,7 @@ use num_traits::Float as _;
 use crate::outline::OutlineShape;
 
 /// Farthest that polygons may be from curves, pixels: far less than an outline is held away from the middles of pixels.
-const FLAT: f64 = 0.02;
+const FLAT: f64 = 0.008;
 /// Steps of a cubic.
 const CUBIC_STEPS: usize = 12;
 
