@@ -192,7 +192,8 @@ impl Facts {
                 let is_idle = strain > LEAST_GAIN * before;
                 (now, then, damping) = (moved, next, damping * 0.2);
                 if (then.wrong, strain) < (state.wrong, state.strain(margin)) {
-                    (shapes.clone_from(&now), state.clone_from(&then));
+                    shapes.clone_from(&now);
+                    state.clone_from(&then);
                 }
                 if then.wrong == 0 || is_idle {
                     break;

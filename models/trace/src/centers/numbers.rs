@@ -204,7 +204,7 @@ pub(super) fn cut(ring: &PathRing<f64>, k: usize) -> PathRing<f64> {
             let half = |controls: [Vec2<f64>; 2]| Segment::Cubic { controls: controls.map(Vec2::to_array) };
             (before.lerp(behind, 0.5), [half([first, before]), half([behind, last])])
         }
-        ref segment => (from.lerp(to, 0.5), [segment.clone(), segment.clone()]),
+        segment => (from.lerp(to, 0.5), [segment; 2]),
     };
     ring.points.insert(k + 1, middle.to_array());
     ring.segments.splice(k..=k, halves);
