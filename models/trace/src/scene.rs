@@ -2,9 +2,6 @@
 
 use alloc::vec::Vec;
 
-#[cfg(not(feature = "std"))]
-use num_traits::Float as _;
-
 use dvp_core::render::{Compositing, EdgeProfile};
 use dvp_core::shape::{
     AnyShape, Circle, Ellipse, FillRule, Path, PathRing, Rectangle, RegularPolygon, Segment, Star, Stroke,
