@@ -18,7 +18,6 @@ use crate::sample::Sample;
 use crate::tuning;
 
 pub use profile::{stained, wobble};
-pub(crate) use window::{STRAIGHTENED_NOISE, straightened};
 
 /// A step along the boundary of a face.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -10,21 +10,12 @@ use dvp_core::contour::Heading;
 
 use super::{Ring, Step};
 use crate::partition::{OUTSIDE, Partition};
-use crate::sample::Sample;
-use crate::tuning;
+use crate::sample::{Sample, straightened};
 
 /// Cracks before and behind one that tell which way the boundary goes there.
 const AROUND: usize = 4;
 /// Most mixed pixels on either side of a crack: an edge of area coverage has one or two, one that a picture was scaled with three.
 const REACH: usize = 4;
-
-/// Variance of a position that was corrected for the bend, per variance of what the windows told: with d of the second and f of the fourth difference
-/// the sum of the squares of 1 + 2 d + 6 f, twice d + 4 f, twice f. Over many windows the corrections cancel, and nothing of this is left.
-pub(crate) const STRAIGHTENED_NOISE: f64 = {
-    let [d, f] = [1.0 / 24.0, 3.0 / 640.0];
-    let [here, beside, beyond] = [1.0 + 2.0 * d + 6.0 * f, d + 4.0 * f, f];
-    here * here + 2.0 * (beside * beside + beyond * beyond)
-};
 
 /// Fills in the samples of a ring.
 pub(super) fn read(partition: &Partition, ring: &mut Ring) {
@@ -141,18 +132,6 @@ fn straighten(partition: &Partition, ring: &mut Ring) {
     for (k, sample) in corrected {
         ring.steps[k].sample = Some(sample);
     }
-}
-
-/// How far the position in the middle of a window lies from the mean over it, by the means over the windows beside it and beyond those, less the
-/// one over it; none where there is a corner between them.
-pub(crate) fn straightened([before, behind]: [f64; 2], beyond: Option<[f64; 2]>) -> Option<f64> {
-    let bend = before + behind;
-    let fourth = match beyond {
-        // Where they say that the boundary is not smooth they are not believed.
-        Some([first, last]) => (first + last - 4.0 * bend).clamp(-bend.abs(), bend.abs()),
-        None => 0.0,
-    };
-    (bend.abs() < tuning::MOST_BEND).then_some(fourth * (3.0 / 640.0) - bend / 24.0)
 }
 
 /// The next crack, ahead or back, with the same heading; none if the boundary leads too far across before.

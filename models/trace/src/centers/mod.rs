@@ -5,9 +5,10 @@
 //! measurement with a deviation but a fact: to deny it costs the color of that pixel. Numbers move as little as the facts ask for; an outline that
 //! cannot meet them gets another piece where a piece is cheaper than what is wrong.
 //!
-//! `numbers` takes outlines apart and puts them together.
+//! `numbers` takes outlines apart and puts them together, `slopes` finds the change that they ask for.
 
 mod numbers;
+mod slopes;
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -21,22 +22,15 @@ use crate::outline::{Outline, OutlineShape};
 use crate::partition::{OUTSIDE, Partition};
 use crate::ruler::Ruler;
 use crate::tuning;
-use numbers::{curves, cut, numbers, polygon, with_numbers};
+use numbers::{FAR, curves, cut, distance, numbers, polygon, square, with_numbers};
+use slopes::Slopes;
 
 /// How far outlines are held from the middles of pixels, pixels; and, where that cannot be, once more.
 const MARGINS: [f64; 2] = [0.04, 0.01];
 /// Nearer ones count as on the wrong side, pixels: polygons are off by less.
 const SURE: f64 = 0.006;
-/// How exactly, pixels.
-const SOFT: f64 = 0.01;
-/// How far a number moves for a pixel that is on the wrong side by the same, pixels.
-const LOOSE: f64 = 0.5;
 /// Steps of an outline.
 const STEPS: usize = 12;
-/// Rounds in which what a step would miss is added to what it is held by.
-const ROUNDS: usize = 6;
-/// How far a middle is, pixels, does not matter beyond.
-const FAR: f64 = 3.0;
 /// Middles of pixels that are nearer to an outline, pixels, may be missed by a step.
 const NEAR: f64 = 1.0;
 /// Share of what is missed that is missed still after a step that leads nowhere.
@@ -252,50 +246,6 @@ impl Facts {
     }
 }
 
-/// How depths change with numbers.
-struct Slopes {
-    depths: Vec<f64>,
-    /// Of each number: by how much it changes each of the depths, and its lever.
-    columns: Vec<(Vec<f64>, f64)>,
-}
-
-impl Slopes {
-    /// How numbers change so that outlines meet what they miss and miss nothing else, to first order.
-    fn change(&self, damping: f64, margin: f64) -> Option<Vec<f64>> {
-        let Self { depths, columns } = self;
-        let count = columns.len();
-        let mut normal = vec![0.0; count * count];
-        let mut change = vec![0.0; count];
-        let mut active = vec![false; depths.len()];
-        for _ in 0..ROUNDS {
-            // What is missed after the change so far, with what was missed before: it holds the outline where it gets to.
-            let mut is_new = false;
-            for (i, is_active) in active.iter_mut().enumerate() {
-                let depth = depths[i]
-                    + columns.iter().zip(&change).map(|((slopes, _), change)| slopes[i] * change).sum::<f64>();
-                is_new |= depth < margin && !*is_active;
-                *is_active |= depth < margin;
-            }
-            if !is_new {
-                break;
-            }
-            let held = || (0..depths.len()).filter(|&i| active[i]);
-            for i in 0..count {
-                let (slopes, lever) = &columns[i];
-                for j in 0..=i {
-                    normal[i * count + j] = held().map(|k| slopes[k] * columns[j].0[k]).sum::<f64>() / (SOFT * SOFT);
-                }
-                normal[i * count + i] += damping * (lever / LOOSE).powi(2);
-                change[i] = held().map(|k| slopes[k] * (margin - depths[k])).sum::<f64>() / (SOFT * SOFT);
-            }
-            if !solve(&mut normal, &mut change) {
-                return None;
-            }
-        }
-        Some(change)
-    }
-}
-
 /// How outlines stand to facts.
 #[derive(Clone, Debug)]
 struct State {
@@ -336,51 +286,4 @@ impl Fact {
         }
         if is_inside == self.is_inside { nearest.sqrt() } else { -nearest.sqrt() }
     }
-}
-
-/// Square of the distance of a point from a line between two others; that of the box around it if it is far.
-fn square(from: Vec2<f64>, to: Vec2<f64>, point: Vec2<f64>) -> f64 {
-    let beyond = |from: f64, to: f64, at: f64| (from.min(to) - at).max(at - from.max(to)).max(0.0);
-    let (across, down) = (beyond(from.x, to.x, point.x), beyond(from.y, to.y, point.y));
-    let far = across * across + down * down;
-    if far >= FAR * FAR {
-        return far;
-    }
-    let (chord, offset) = (to - from, point - from);
-    let share = (offset.dot(chord) / chord.length_squared().max(1e-300)).clamp(0.0, 1.0);
-    (offset - chord * share).length_squared()
-}
-
-/// How far a point is from the nearest of the lines between points.
-fn distance(line: &[Vec2<f64>], point: Vec2<f64>) -> f64 {
-    let lines = line.windows(2).map(|pair| square(pair[0], pair[1], point));
-    lines.fold(f64::INFINITY, f64::min).sqrt()
-}
-
-/// Solves normal equations, of which the lower triangle is given; false if they are singular.
-fn solve(normal: &mut [f64], right: &mut [f64]) -> bool {
-    let count = right.len();
-    for i in 0..count {
-        for j in 0..=i {
-            let sum: f64 = (0..j).map(|k| normal[i * count + k] * normal[j * count + k]).sum();
-            let value = normal[i * count + j] - sum;
-            if i == j {
-                if value.is_nan() || value <= 0.0 {
-                    return false;
-                }
-                normal[i * count + i] = value.sqrt();
-            } else {
-                normal[i * count + j] = value / normal[j * count + j];
-            }
-        }
-    }
-    for i in 0..count {
-        let sum: f64 = (0..i).map(|k| normal[i * count + k] * right[k]).sum();
-        right[i] = (right[i] - sum) / normal[i * count + i];
-    }
-    for i in (0..count).rev() {
-        let sum: f64 = (i + 1..count).map(|k| normal[k * count + i] * right[k]).sum();
-        right[i] = (right[i] - sum) / normal[i * count + i];
-    }
-    true
 }

@@ -12,6 +12,8 @@ use crate::outline::OutlineShape;
 
 /// Farthest that polygons may be from curves, pixels: far less than an outline is held away from the middles of pixels.
 const FLAT: f64 = 0.008;
+/// How far a middle is, pixels, does not matter beyond.
+pub(super) const FAR: f64 = 3.0;
 /// Steps of a cubic.
 const CUBIC_STEPS: usize = 12;
 
@@ -209,4 +211,23 @@ pub(super) fn cut(ring: &PathRing<f64>, k: usize) -> PathRing<f64> {
     ring.points.insert(k + 1, middle.to_array());
     ring.segments.splice(k..=k, halves);
     ring
+}
+
+/// Square of the distance of a point from a line between two others; that of the box around it if it is far.
+pub(super) fn square(from: Vec2<f64>, to: Vec2<f64>, point: Vec2<f64>) -> f64 {
+    let beyond = |from: f64, to: f64, at: f64| (from.min(to) - at).max(at - from.max(to)).max(0.0);
+    let (across, down) = (beyond(from.x, to.x, point.x), beyond(from.y, to.y, point.y));
+    let far = across * across + down * down;
+    if far >= FAR * FAR {
+        return far;
+    }
+    let (chord, offset) = (to - from, point - from);
+    let share = (offset.dot(chord) / chord.length_squared().max(1e-300)).clamp(0.0, 1.0);
+    (offset - chord * share).length_squared()
+}
+
+/// How far a point is from the nearest of the lines between points.
+pub(super) fn distance(line: &[Vec2<f64>], point: Vec2<f64>) -> f64 {
+    let lines = line.windows(2).map(|pair| square(pair[0], pair[1], point));
+    lines.fold(f64::INFINITY, f64::min).sqrt()
 }

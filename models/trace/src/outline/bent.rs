@@ -11,8 +11,7 @@ use dvp_core::Vec2;
 use num_traits::Float as _;
 
 use super::figure::{Figure, MOST_NUMBERS};
-use crate::boundary::straightened;
-use crate::sample::Sample;
+use crate::sample::{Sample, straightened};
 
 /// Windows to either side that the position in one is made of.
 const REACH: usize = 2;

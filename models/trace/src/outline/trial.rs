@@ -11,9 +11,8 @@ use super::figure::{Figure, MOST_NUMBERS, as_f64};
 use super::solve::spoiled_chi2;
 use super::track::{LEAST_COSINE, Track};
 use super::{Outline, OutlineShape};
-use crate::boundary::STRAIGHTENED_NOISE;
 use crate::ruler::Ruler;
-use crate::sample::Sample;
+use crate::sample::{STRAIGHTENED_NOISE, Sample};
 use crate::tuning;
 
 /// Samples that a figure is first held against: enough for its numbers, and few, since most are refused.
