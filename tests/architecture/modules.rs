@@ -28,6 +28,7 @@ const TRACE: Order = &[
     &["boundary"],
     &["layers"],
     &["ties"],
+    &["centers"],
     &["scene"],
 ];
 

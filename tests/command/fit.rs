@@ -184,7 +184,7 @@ fn what_is_hidden_and_marginal_gains_are_said() {
     jsonschema::validate(&schema, &written).unwrap();
     // Deviations are those of the covariance, that of the logarithm of the scale times the scale.
     let covariance = found["covariance"][1].as_array().unwrap();
-    let variance = |k: usize| covariance[5 * k].as_f64().unwrap();
+    let variance = |k: usize| covariance[6 * k].as_f64().unwrap();
     let scale = written["objects"][1]["scale"].as_f64().unwrap_or(1.0);
     let deviations = &known[1]["deviations"];
     for (deviation, expected) in [

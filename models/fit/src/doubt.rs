@@ -14,7 +14,7 @@ use crate::tuning::COVARIANCE_ASTRAY_PX;
 /// angle. They keep the covariance finite where the image says nothing (the angle of a disk).
 pub(crate) const PRIOR_VARIANCE: [f64; 4] = [1.0, 1.0, 1.0, 3.29];
 
-/// Covariance of (x, y in scene units, log scale, rotation), row-major, from the normal equations of the samples.
+/// Covariance of (x, y in scene units, log scale, rotation, log stretch), row-major, from the normal equations of the samples.
 ///
 /// `outline_px` is the closed posed outline, `center_px` the point it turns and grows about; `pixel_noise` the standard
 /// deviation of a channel. Samples are taken as independent. Where they miss the outline by more than noise explains, they
@@ -26,7 +26,7 @@ pub(crate) fn covariance<T: Real>(
     unit_px: T,
     pixel_noise: T,
     lanes: &mut EdgeLanes<T>,
-) -> [T; 16] {
+) -> [T; 25] {
     lanes.set(outline_px);
     let noise = T::one() / (pixel_noise * pixel_noise);
     let (mut information, misfit, count) =
@@ -36,7 +36,12 @@ pub(crate) fn covariance<T: Real>(
     for (i, &variance) in PRIOR_VARIANCE.iter().enumerate() {
         information[i][i] += T::of(1.0 / variance);
     }
-    inverse4(information)
+    with_stretch(inverse4(information))
+}
+
+/// The covariance of the pose of a shape that keeps its stretch, from that of (x, y, log scale, rotation).
+pub(crate) fn with_stretch<T: Real>(block: [T; 16]) -> [T; 25] {
+    core::array::from_fn(|k| if k / 5 < 4 && k % 5 < 4 { block[4 * (k / 5) + k % 5] } else { T::zero() })
 }
 
 /// Makes the normal equations of a pose in scene units, the sum of its squared misfits, and the number of samples in them.

@@ -174,8 +174,9 @@ pub struct Fit<T> {
     pub steps: usize,
     /// Why the last optimisation stopped.
     pub stop: StopReason,
-    /// Per object, row-major 4 x 4: covariance of (x, y, log scale, rotation) from the normal equations.
-    pub covariance: Vec<[T; 16]>,
+    /// Per object, row-major 5 x 5: covariance of (x, y, log scale, rotation, log stretch) from the normal equations. The stretch, the
+    /// square root of width over height along the object's own axes, is that of ellipses in drawings; other shapes keep theirs (zeros).
+    pub covariance: Vec<[T; 25]>,
     /// What remains open.
     pub ambiguity: Vec<Ambiguity>,
     /// Share of the picture's variance that neither the scene nor noise explains, [0, 1]; NaN if it was not counted.

@@ -55,8 +55,8 @@ impl<T: Real> Fit<T> {
     /// What the fit says against itself, as yes or no. `dvp stability` counts how often it is right.
     #[must_use]
     pub fn doubts(&self) -> Doubts {
-        let is_wide = |(block, object): (&[T; 16], &Object<T>)| {
-            let [x, y, size] = [0, 5, 10].map(|k| block[k].as_f64().max(0.0));
+        let is_wide = |(block, object): (&[T; 25], &Object<T>)| {
+            let [x, y, size] = [0, 6, 12].map(|k| block[k].as_f64().max(0.0));
             let radius = squared_radius(object);
             // Only descriptors tell a radius here.
             let is_loose = radius > 0.0 && x.max(y) > WIDE_POSITION * WIDE_POSITION * radius;

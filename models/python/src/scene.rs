@@ -25,7 +25,7 @@ pub(crate) struct Scene {
     scene: dvp_core::Scene<f32>,
     json: SceneJson,
     size: ImageSize,
-    covariance: Vec<[f32; 16]>,
+    covariance: Vec<[f32; 25]>,
     bank: Option<Arc<Bank<f32>>>,
     /// What the objects are called, one number each.
     numbers: Vec<u32>,
@@ -161,10 +161,10 @@ impl Scene {
         self.bank.as_ref().map_or_else(|| "none".to_owned(), |bank| bank_to_json(bank))
     }
 
-    /// Per object, row by row: covariance of (x, y, log scale, rotation); no row where the fit tells nothing.
+    /// Per object, row by row: covariance of (x, y, log scale, rotation, log stretch); no row where the fit tells nothing.
     #[getter]
     fn covariance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        self.covariance.as_flattened().to_vec().into_pyarray(py).reshape([self.covariance.len(), 16])
+        self.covariance.as_flattened().to_vec().into_pyarray(py).reshape([self.covariance.len(), 25])
     }
 
     /// One line of JSON, as in STEM.json.

@@ -1,7 +1,7 @@
 //! Pictures with clear edges to drawings: what people draw, found again.
 //!
 //! ```text
-//! image -> partition -> boundary -> stroke | outline -> layers -> ties -> scene
+//! image -> partition -> boundary -> stroke | outline -> layers -> ties -> centers -> scene
 //! ```
 //!
 //! | module | comes in | goes out |
@@ -14,6 +14,7 @@
 //! | `stroke` | the boundary of a face | the lines of a pen that drew it |
 //! | `layers` | faces and their boundaries | objects, back to front, whole where others hide them |
 //! | `ties` | layers | the same on the grid that they were drawn on, with equal numbers equal |
+//! | `centers` | layers of a picture without a mixed pixel | the same with the middle of every pixel on the right side |
 //!
 //! Lengths are in pixels (the center of the pixel (row r, column c) is at (c + 0.5, r + 0.5), y down) and prices in bits,
 //! unless a name says otherwise. Everything is computed in f64; images come in f32. The arithmetic of f64 is inherent with std and
@@ -35,6 +36,7 @@ extern crate alloc;
 extern crate std;
 
 pub mod boundary;
+pub mod centers;
 pub mod layers;
 pub mod outline;
 pub mod partition;
@@ -52,7 +54,7 @@ use alloc::vec::Vec;
 use dvp_core::{ImageView, Scene};
 
 use crate::partition::{NoPartition, Partition};
-pub use crate::scene::PoseDeviation;
+pub use crate::scene::PoseCovariance;
 
 /// A picture as a drawing.
 #[derive(Clone, Debug)]
@@ -61,7 +63,7 @@ pub struct Traced {
     /// The drawing.
     pub scene: Scene<f32>,
     /// How far the poses of its objects may be off, where that is known.
-    pub deviations: Vec<Option<PoseDeviation>>,
+    pub covariances: Vec<Option<PoseCovariance>>,
     /// Description length of its outlines, and of what they miss, bits.
     pub bits: f64,
     /// Share of the pixels just beyond edges that still show the other side, [0, 1]: near 0 if edges are of area coverage, as the
@@ -135,10 +137,13 @@ pub fn trace(image: &ImageView<'_, f32>, known: &Known) -> Result<Traced, NoDraw
             layers = others;
         }
     }
-    let bits = layers.bits();
     ties::tie(&mut layers, partition.size);
-    let (scene, deviations) = scene::scene(&layers, image.size(), known.matte.is_some(), partition.is_hard);
-    Ok(Traced { scene, deviations, bits, stained })
+    if partition.is_hard {
+        centers::meet(&mut layers, &partition);
+    }
+    let bits = layers.bits();
+    let (scene, covariances) = scene::scene(&layers, image.size(), known.matte.is_some(), partition.is_hard);
+    Ok(Traced { scene, covariances, bits, stained })
 }
 
 /// Whether edges have another profile than area coverage: wider, or steeper with stains beyond.

@@ -2,9 +2,6 @@
 
 use alloc::vec::Vec;
 
-#[cfg(not(feature = "std"))]
-use num_traits::Float as _;
-
 use dvp_core::render::{Compositing, EdgeProfile};
 use dvp_core::shape::{
     AnyShape, Circle, Ellipse, FillRule, Path, PathRing, Rectangle, RegularPolygon, Segment, Star, Stroke,
@@ -22,39 +19,49 @@ pub fn scene(
     size: ImageSize,
     transparent: bool,
     is_hard: bool,
-) -> (Scene<f32>, Vec<Option<PoseDeviation>>) {
+) -> (Scene<f32>, Vec<Option<PoseCovariance>>) {
     let unit = size.unit_px() as f64;
-    let objects = layers.layers.iter().filter_map(|layer| Some((object(layer, unit)?, deviation(layer, unit))));
-    let (objects, deviations) = objects.unzip();
+    let objects = layers.layers.iter().filter_map(|layer| Some((object(layer, unit)?, covariance(layer, unit))));
+    let (objects, covariances) = objects.unzip();
     let background = layers.background.map(|value| f32::of(value.clamp(0.0, 1.0)));
     let edge = if is_hard { EdgeProfile::hard(f32::of(unit)) } else { EdgeProfile::area() };
-    (Scene { background, transparent, objects, edge, compositing: Compositing::Over }, deviations)
+    (Scene { background, transparent, objects, edge, compositing: Compositing::Over }, covariances)
 }
 
-/// How far the pose of an object may be off: standard deviations.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PoseDeviation {
-    /// Of the middle, scene units.
-    pub translation: [f64; 2],
-    /// Of the logarithm of the size.
-    pub log_scale: f64,
-    /// Of the angle, radians; none of what looks alike at every angle.
-    pub rotation: Option<f64>,
+/// How far the pose of an object may be off.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PoseCovariance {
+    /// Covariance of x and y (scene units), log scale, rotation (radians) and log stretch: the scale is the square root of width times
+    /// height, the stretch that of width over height, along the object's own axes.
+    pub numbers: [[f64; 5]; 5],
+    /// Whether it looks alike at every angle.
+    pub is_round: bool,
 }
 
 /// What is known of the pose of a layer's object, if it is a whole outline.
-fn deviation(layer: &Layer, unit: f64) -> Option<PoseDeviation> {
+fn covariance(layer: &Layer, unit: f64) -> Option<PoseCovariance> {
     let Form::Filled(outlines) = &layer.form else { return None };
-    let [Outline { shape, deviations, .. }] = &outlines[..] else { return None };
-    let (log_scale, rotation) = match (shape, &deviations[..]) {
-        (OutlineShape::Circle { radius, .. }, &[_, _, of_radius]) => (of_radius / radius, None),
-        (OutlineShape::Ellipse { radii, .. }, &[_, _, of_first, of_second, of_angle]) => {
-            // The logarithm of the square root of the product of both radii.
-            (0.5 * (of_first / radii[0]).hypot(of_second / radii[1]), Some(of_angle))
+    let [Outline { shape, covariance, .. }] = &outlines[..] else { return None };
+    // How the numbers of the pose change with those of the outline, which come in the order of the columns.
+    let [x, y] = [[1.0 / unit, 0.0, 0.0, 0.0, 0.0], [0.0, 1.0 / unit, 0.0, 0.0, 0.0]];
+    let (count, changes) = match *shape {
+        OutlineShape::Circle { radius, .. } => (3, [x, y, [0.0, 0.0, 1.0 / radius, 0.0, 0.0], [0.0; 5], [0.0; 5]]),
+        OutlineShape::Ellipse { radii: [a, b], .. } => {
+            let [of_a, of_b] = [0.5 / a, 0.5 / b];
+            let scale = [0.0, 0.0, of_a, of_b, 0.0];
+            (5, [x, y, scale, [0.0, 0.0, 0.0, 0.0, 1.0], [0.0, 0.0, of_a, -of_b, 0.0]])
         }
         _ => return None,
     };
-    Some(PoseDeviation { translation: [deviations[0] / unit, deviations[1] / unit], log_scale, rotation })
+    if covariance.len() != count * count {
+        return None;
+    }
+    let entry = |one: &[f64; 5], other: &[f64; 5]| -> f64 {
+        let rows = covariance.chunks_exact(count).zip(one);
+        rows.map(|(row, by)| by * row.iter().zip(other).map(|(value, by)| value * by).sum::<f64>()).sum()
+    };
+    let numbers = changes.each_ref().map(|one| changes.each_ref().map(|other| entry(one, other)));
+    Some(PoseCovariance { numbers, is_round: count == 3 })
 }
 
 /// The object of a layer; none if it has no outline.

@@ -92,7 +92,7 @@ export interface Fitted {
   scene: Scene;
   /** Mean absolute error against the picture, channels from 0 to 1. */
   mae: number;
-  /** Per object, row by row, the covariance of (x, y, log scale, rotation), null where nothing is known; or empty. */
+  /** Per object, row by row, the covariance of (x, y, log scale, rotation, log stretch), null where nothing is known; or empty. */
   covariance: (number | null)[][];
 }
 

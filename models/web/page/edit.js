@@ -1,5 +1,5 @@
 // Edits of scenes: plain functions from one state to the next. A state is { scene, covariance }: a scene as in its JSON, and per
-// object the 16 numbers of the covariance of its pose, or null. States are never changed, so undoing is going back to an older one.
+// object the 25 numbers of the covariance of its pose, or null. States are never changed, so undoing is going back to an older one.
 
 const object = (state, k) => state.scene.objects[k];
 
@@ -78,10 +78,10 @@ export function shaken(state, random) {
   return { scene: { ...state.scene, objects }, covariance: objects.map(() => null) };
 }
 
-/** The covariance as the module takes it: 16 numbers per object, NaN where nothing is known; none if nothing is known at all. */
+/** The covariance as the module takes it: 25 numbers per object, NaN where nothing is known; none if nothing is known at all. */
 export function flatCovariance(state) {
   if (state.covariance.every((block) => block === null)) return new Float32Array();
-  const unknown = new Array(16).fill(NaN);
+  const unknown = new Array(25).fill(NaN);
   return Float32Array.from(state.covariance.flatMap((block) => (block ?? unknown).map((value) => value ?? NaN)));
 }
 

@@ -97,7 +97,7 @@ impl Drawing {
         Ok(pixels.flat_map(|((&r, &g), &b)| [to_byte(r), to_byte(g), to_byte(b), 255]).collect())
     }
 
-    /// The table of measures as CSV, the same as `dvp fit --table` writes. `covariance` is that of the fit: 16 numbers per object,
+    /// The table of measures as CSV, the same as `dvp fit --table` writes. `covariance` is that of the fit: 25 numbers per object,
     /// NaN where nothing is known; or empty.
     ///
     /// # Errors
@@ -156,7 +156,7 @@ impl Drawing {
     }
 
     fn measured(&self, name: &str, covariance: &[f32]) -> Result<MeasuredPicture, WebError> {
-        let (blocks, rest) = covariance.as_chunks::<16>();
+        let (blocks, rest) = covariance.as_chunks::<25>();
         let objects = self.scene.objects.len();
         if !rest.is_empty() || !(blocks.is_empty() || blocks.len() == objects) {
             return Err(WebError::Covariance { len: covariance.len(), objects });

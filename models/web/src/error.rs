@@ -59,7 +59,7 @@ pub enum WebError {
     #[error("the scene does not say how large its image is; add `width` and `height`")]
     NoSize,
     /// Covariances that do not fit the objects.
-    #[error("{len} numbers of covariances, must be 16 for each of {objects} objects or none")]
+    #[error("{len} numbers of covariances, must be 25 for each of {objects} objects or none")]
     Covariance {
         /// How many numbers there are.
         len: usize,

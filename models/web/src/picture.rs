@@ -31,8 +31,8 @@ struct Fitted {
     scene: SceneJson,
     /// Mean absolute error against the picture, channels from 0 to 1.
     mae: f32,
-    /// Per object, row by row: covariance of (x, y, log scale, rotation), null where nothing is known; or empty.
-    covariance: Vec<[Option<f32>; 16]>,
+    /// Per object, row by row: covariance of (x, y, log scale, rotation, log stretch), null where nothing is known; or empty.
+    covariance: Vec<[Option<f32>; 25]>,
 }
 
 /// What a refinement gives, as JSON.

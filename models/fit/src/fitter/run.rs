@@ -273,7 +273,7 @@ impl<T: Real> Run<'_, T> {
                 .any(|(k, a)| others().skip(k + 1).any(|b| distance(own, mean(a, b)) < T::of(MEAN_OF_TWO_COLOR)))
     }
 
-    fn covariances(&mut self, scene: &Scene<T>, found: &Found<T>) -> Result<Vec<[T; 16]>, FitError> {
+    fn covariances(&mut self, scene: &Scene<T>, found: &Found<T>) -> Result<Vec<[T; 25]>, FitError> {
         let unit = self.unit_px();
         scene.draw(&self.fitter.outlines, &mut self.scratch.drawing)?;
         let mut out = Vec::with_capacity(scene.objects.len());
@@ -286,7 +286,7 @@ impl<T: Real> Run<'_, T> {
             let noise = scratch.segmentation.noise();
             let mut block = covariance(&scratch.outline, center, samples, unit, noise, &mut scratch.lanes);
             if object.prototype().is_none() {
-                block[10] += bend_variance(signed_area(&scratch.outline));
+                block[12] += bend_variance(signed_area(&scratch.outline));
             }
             out.push(block);
         }

@@ -90,7 +90,7 @@ impl Subsampling {
         scene.edge = scene.edge.magnified(units);
         for covariance in &mut fit.covariance {
             for (k, value) in covariance.iter_mut().enumerate() {
-                let positions = usize::from(k / 4 < 2) + usize::from(k % 4 < 2);
+                let positions = usize::from(k / 5 < 2) + usize::from(k % 5 < 2);
                 (0..positions).for_each(|_| *value *= units);
             }
         }

@@ -28,7 +28,7 @@ use core::cmp::Ordering;
 use dvp_core::loss::{ImagePair, Loss as _};
 use dvp_core::render::{EdgeLaw, PixelLoss};
 use dvp_core::{ImageView, Real as _};
-use dvp_trace::{PoseDeviation, Traced, tuning};
+use dvp_trace::{PoseCovariance, Traced, tuning};
 
 use crate::paint::Canvas;
 use crate::prototypes::Decoder;
@@ -134,7 +134,7 @@ fn drawing(
     let (painted, drawing) = scratch.canvas.paint(&traced.scene, image.size())?;
     let loss = PixelLoss::Mae.value(ImagePair::new(painted.view(), image)?, &mut ())?;
     let fit = Fit::of_painted(traced.scene, &drawing, &image, painted.data());
-    let (covariance, ambiguity) = doubt_of_poses(&traced.deviations);
+    let (covariance, ambiguity) = doubt_of_poses(&traced.covariances);
     let drawn = Fit { loss, bits: traced.bits, stop: StopReason::Converged, covariance, ambiguity, ..fit };
     if !is_doubtful {
         return Ok(drawn);
@@ -162,25 +162,19 @@ fn leaves_doubt(traced: &Traced) -> bool {
     traced.stained.abs() > tuning::DOUBTFUL_STAINED
 }
 
-/// What is known of poses as a fit says it: covariances of (x, y, log scale, rotation), NaN where nothing is known, and which objects
-/// look alike at every angle.
-fn doubt_of_poses(deviations: &[Option<PoseDeviation>]) -> (Vec<[f32; 16]>, Vec<Ambiguity>) {
-    if deviations.iter().all(Option::is_none) {
+/// What is known of poses as a fit says it: covariances of (x, y, log scale, rotation, log stretch), NaN where nothing is known, and which
+/// objects look alike at every angle.
+fn doubt_of_poses(known: &[Option<PoseCovariance>]) -> (Vec<[f32; 25]>, Vec<Ambiguity>) {
+    if known.iter().all(Option::is_none) {
         return (Vec::new(), Vec::new());
     }
     let mut ambiguity = Vec::new();
-    let covariance = deviations.iter().enumerate().map(|(object, deviation)| {
-        let Some(PoseDeviation { translation: [x, y], log_scale, rotation }) = *deviation else {
-            return [f32::NAN; 16];
-        };
-        if rotation.is_none() {
+    let covariance = known.iter().enumerate().map(|(object, known)| {
+        let Some(known) = known else { return [f32::NAN; 25] };
+        if known.is_round {
             ambiguity.push(Ambiguity::Symmetry { object, order: 0 });
         }
-        let mut covariance = [0.0_f32; 16];
-        for (at, deviation) in [x, y, log_scale, rotation.unwrap_or(0.0)].into_iter().enumerate() {
-            covariance[5 * at] = f32::of(deviation * deviation);
-        }
-        covariance
+        core::array::from_fn(|k| f32::of(known.numbers[k / 5][k % 5]))
     });
     let covariance = covariance.collect();
     (covariance, ambiguity)

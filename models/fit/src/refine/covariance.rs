@@ -9,13 +9,13 @@ use alloc::vec::Vec;
 use dvp_core::Real;
 
 use crate::cholesky::{factor, packed, solve};
-use crate::doubt::PRIOR_VARIANCE;
+use crate::doubt::{PRIOR_VARIANCE, with_stretch};
 use crate::joint::{JointScratch, PER_OBJECT};
 use crate::segment::PIXEL_NOISE;
 
-/// Per object, row-major 4 x 4 in (x, y in scene units, log scale, rotation); empty if the equations are singular.
+/// Per object, row-major 5 x 5 in (x, y in scene units, log scale, rotation, log stretch); empty if the equations are singular.
 /// Expects the equations of `objects` objects in `joint`, with their cost, and leaves it without them.
-pub(super) fn covariances<T: Real>(joint: &mut JointScratch<T>, cost: T, objects: usize, unit_px: T) -> Vec<[T; 16]> {
+pub(super) fn covariances<T: Real>(joint: &mut JointScratch<T>, cost: T, objects: usize, unit_px: T) -> Vec<[T; 25]> {
     let n = objects * PER_OBJECT + 3;
     // Noise as unit: entries of the inverse are far below the rounding of f32 otherwise.
     let noise = T::of(PIXEL_NOISE * PIXEL_NOISE).max(cost / T::of_usize(3 * joint.near.max(1)));
@@ -46,7 +46,7 @@ pub(super) fn covariances<T: Real>(joint: &mut JointScratch<T>, cost: T, objects
                     block[4 * j + i] = column[first + j] / (units[i] * units[j]);
                 }
             }
-            block
+            with_stretch(block)
         })
         .collect()
 }

@@ -54,7 +54,7 @@ pub struct MeasuredObject {
 }
 
 /// Standard deviations of measures, from the covariance of the pose: what the noise of the picture does to position, size
-/// and angle of a shape that is as it was found. Every length changes with the size in the same ratio; bounds, which change with the
+/// and angle of a shape, and to the stretch of one that has a width and a height of its own. Every length changes with the size in the same ratio; bounds, which change with the
 /// angle in ways of their own, and colors have none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -96,7 +96,7 @@ impl MeasuredObject {
 /// [`ExportError::Render`] if it cannot be drawn.
 pub fn measure(
     scene: &Scene<f32>,
-    covariance: &[[f32; 16]],
+    covariance: &[[f32; 25]],
     bank: Option<&Bank<f32>>,
     numbers: &[u32],
     size: ImageSize,
@@ -153,23 +153,28 @@ fn measured(object: &Object<f64>, region: Region, moments: Option<Moments<f64>>)
 }
 
 impl Deviations {
-    /// From the covariance of (x, y, log scale, rotation), row by row, positions in scene units; none for what encloses nothing.
-    fn of(covariance: &[f64; 16], pose: &Pose<f64>, object: &MeasuredObject, unit: f64) -> Option<Self> {
+    /// From the covariance of (x, y, log scale, rotation, log stretch), row by row, positions in scene units; none for what encloses nothing.
+    fn of(covariance: &[f64; 25], pose: &Pose<f64>, object: &MeasuredObject, unit: f64) -> Option<Self> {
         let (moments, axes) = (object.moments?, object.axes?);
         let [dx, dy] = [0, 1].map(|axis| moments.centroid[axis] / unit - pose.translation[axis]);
         // How a coordinate of the centroid moves with each number of the pose.
-        let moves = [[1.0, 0.0, dx, -dy], [0.0, 1.0, dy, dx]];
-        let rows = covariance.as_chunks::<4>().0;
-        let variance = |by: [f64; 4]| -> f64 {
+        let moves = [[1.0, 0.0, dx, -dy, 0.0], [0.0, 1.0, dy, dx, 0.0]];
+        let rows = covariance.as_chunks::<5>().0;
+        let variance = |by: [f64; 5]| -> f64 {
             rows.iter().zip(by).map(|(row, b)| b * row.iter().zip(by).map(|(c, b)| c * b).sum::<f64>()).sum()
         };
-        let [scale, rotation] = [[0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]].map(|by| variance(by).sqrt());
+        let [scale, rotation] = [[0.0, 0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0, 0.0]].map(|by| variance(by).sqrt());
+        // Stretching along a direction lengthens what lies along it and shortens what lies across, by the cosine of twice the angle between.
+        let share = (2.0 * (axes.angle - pose.rotation)).cos();
+        let axes = [(axes.major, share), (axes.minor, -share)]
+            .map(|(length, share)| length * variance([0.0, 0.0, 1.0, 0.0, share]).sqrt());
+        let along = object.region.perimeter_along(pose.rotation) / object.perimeter;
         let centroid = moves.map(|by| variance(by).sqrt() * unit);
         Some(Self {
             centroid,
             area: 2.0 * moments.area * scale,
-            perimeter: object.perimeter * scale,
-            axes: [axes.major, axes.minor].map(|length| length * scale),
+            perimeter: object.perimeter * variance([0.0, 0.0, 1.0, 0.0, along]).sqrt(),
+            axes,
             angle: rotation.to_degrees(),
         })
     }

@@ -76,6 +76,19 @@ impl Region {
         self.rings().map(perimeter).sum()
     }
 
+    /// How the length of all rings changes, px, when everything is made longer along a direction and narrower across it, per logarithm of the factor.
+    #[must_use]
+    pub fn perimeter_along(&self, angle: f64) -> f64 {
+        let along = Vec2::from_angle(angle);
+        let edges = |ring: &[[f64; 2]]| -> f64 {
+            let next = ring.iter().cycle().skip(1);
+            let chords = ring.iter().zip(next).map(|(&from, &to)| Vec2::from(to) - Vec2::from(from));
+            let by = |chord: Vec2<f64>| chord.dot(along).powi(2) - chord.cross(along).powi(2);
+            chords.filter(|chord| chord.length() > 0.0).map(|chord| by(chord) / chord.length()).sum()
+        };
+        self.rings().map(|ring| edges(ring)).sum()
+    }
+
     /// The smallest upright box around it; none if nothing is enclosed.
     #[must_use]
     pub fn bounds(&self) -> Option<Bounds<f64>> {

@@ -10,8 +10,7 @@ use dvp_core::contour::Heading;
 
 use super::{Ring, Step};
 use crate::partition::{OUTSIDE, Partition};
-use crate::sample::Sample;
-use crate::tuning;
+use crate::sample::{Sample, straightened};
 
 /// Cracks before and behind one that tell which way the boundary goes there.
 const AROUND: usize = 4;
@@ -124,17 +123,11 @@ fn straighten(partition: &Partition, ring: &mut Ring) {
         let [Some(before), Some(behind)] = sides.map(at) else {
             continue;
         };
-        let bend = before + behind;
-        if bend.abs() >= tuning::MOST_BEND {
-            continue;
-        }
         let beyond = [0, 1].map(|side| sides[side].and_then(|k| at(beside(ring, k, side == 1))));
-        let fourth = match beyond {
-            // Where they say that the boundary is not smooth they are not believed.
-            [Some(first), Some(last)] => (first + last - 4.0 * bend).clamp(-bend.abs(), bend.abs()),
-            _ => 0.0,
-        };
-        corrected.push((k, Sample { point: here.point + here.axis * (fourth * (3.0 / 640.0) - bend / 24.0), ..here }));
+        let beyond = if let [Some(first), Some(last)] = beyond { Some([first, last]) } else { None };
+        if let Some(moved) = straightened([before, behind], beyond) {
+            corrected.push((k, Sample { point: here.point + here.axis * moved, ..here }));
+        }
     }
     for (k, sample) in corrected {
         ring.steps[k].sample = Some(sample);

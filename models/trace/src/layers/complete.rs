@@ -288,7 +288,7 @@ impl Completion<'_> {
             let points = vec![[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]];
             let shape = OutlineShape::Path(PathRing::polygon(points));
             completed.bits += FRAME_BITS;
-            completed.outlines.push(Outline { shape, bits: FRAME_BITS, misfit: 0.0, deviations: Vec::new() });
+            completed.outlines.push(Outline { shape, bits: FRAME_BITS, misfit: 0.0, covariance: Vec::new() });
         }
         completed
     }
@@ -330,7 +330,7 @@ impl Completion<'_> {
             points = ring.steps.iter().map(|step| step.crack.start.map(|value| value as f64)).collect();
         }
         let bits = 2.0 * points.len() as f64 * self.ruler.number(0.1);
-        Outline { shape: OutlineShape::Path(PathRing::polygon(points)), bits, misfit: 0.0, deviations: Vec::new() }
+        Outline { shape: OutlineShape::Path(PathRing::polygon(points)), bits, misfit: 0.0, covariance: Vec::new() }
     }
 }
 

@@ -4,10 +4,19 @@ use alloc::collections::{BTreeMap, BTreeSet};
 use alloc::vec;
 use alloc::vec::Vec;
 
-use dvp_core::geometry::DisjointSets;
+use dvp_core::Vec2;
+use dvp_core::geometry::{DisjointSets, LineSegment};
+use dvp_core::shape::Segment;
 
 use super::complete::{Completed, Completion};
+use super::raster;
+use crate::boundary::Ring;
+use crate::outline::{Outline, OutlineShape};
+use crate::partition::OUTSIDE;
 use crate::tuning;
+
+/// Cracks that are nearer to a side, pixels, are of it: those of a slanted one are up to half the diagonal of a pixel off.
+const BESIDE: f64 = 0.75;
 
 /// What is painted, from back to front.
 pub(super) fn painted(completion: &mut Completion<'_>) -> Vec<Group> {
@@ -63,7 +72,40 @@ impl Group {
     /// Whether it is a thing as people draw them; what is seen of a few pixels, and a piece of a line, may be a part of anything.
     fn is_whole(&self, completion: &Completion<'_>) -> bool {
         let is_pen = completion.pen(&self.faces).is_some();
-        self.completed.is_whole() && !is_pen && !self.faces.iter().all(|&face| completion.is_small(face))
+        let is_whole = self.completed.is_whole() || self.is_all_seen(completion);
+        is_whole && !is_pen && !self.faces.iter().all(|&face| completion.is_small(face))
+    }
+
+    /// Whether it is a polygon of which nothing is hidden: it covers what is seen of it and no more, and nothing in front is beside the whole of any of
+    /// its sides. A part of something that is cut off ends where what cuts it begins, in a side of which nothing is seen.
+    fn is_all_seen(&self, completion: &Completion<'_>) -> bool {
+        let outlines = &self.completed.outlines;
+        let is_drawn = |outline: &&Outline| match &outline.shape {
+            OutlineShape::Path(ring) => ring.segments.iter().all(|segment| *segment == Segment::Line),
+            _ => true,
+        };
+        let polygons: Vec<Vec<[f64; 2]>> = outlines.iter().filter(is_drawn).filter_map(raster::polygon).collect();
+        if polygons.len() < outlines.len() {
+            return false;
+        }
+        let rank = self.faces.iter().map(|&face| completion.rank(face)).min().unwrap_or(0);
+        let steps = self.faces.iter().flat_map(|&face| &completion.rings[face as usize]).flat_map(|ring| &ring.steps);
+        let is_own = |other: u32| other == OUTSIDE || completion.rank(other) <= rank || self.faces.contains(&other);
+        let seen: Vec<Vec2<f64>> =
+            steps.filter(|step| is_own(step.other)).map(|step| Ring::middle(step.crack)).collect();
+        let is_seen = |from: Vec2<f64>, to: Vec2<f64>| {
+            let side = LineSegment::new(from, to);
+            // What is beside the ends may be of the next side.
+            let is_between = |at: Vec2<f64>| [from, to].iter().all(|&end| (at - end).length() > BESIDE);
+            seen.iter().any(|&at| side.nearest(at).distance() < BESIDE && is_between(at))
+        };
+        let of_lines =
+            outlines.iter().zip(&polygons).filter(|(outline, _)| matches!(outline.shape, OutlineShape::Path(_)));
+        let all_seen = of_lines.map(|(_, polygon)| polygon).all(|polygon| {
+            let next = polygon.iter().cycle().skip(1);
+            polygon.iter().zip(next).all(|(&from, &to)| is_seen(from.into(), to.into()))
+        });
+        all_seen && raster::check(completion.partition, &polygons, |face| Some(self.faces.contains(&face))).is_ok()
     }
 
     /// Both as one, at the place of the hindmost in the order, with the bits that are saved; none if that is no shorter.

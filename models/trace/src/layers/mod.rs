@@ -54,6 +54,8 @@ pub struct Layer {
     pub color: Color,
     /// Its form.
     pub form: Form,
+    /// The faces that are seen of it; none of a line that was taken out before the picture was cut into faces.
+    pub faces: Vec<u32>,
     /// Description length of the form, and of what it misses, bits.
     pub bits: f64,
 }
@@ -125,12 +127,13 @@ pub fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<Color>) 
                 layers.extend(pen.strokes.iter().map(|stroke| Layer {
                     color,
                     form: Form::Stroked(stroke.clone()),
+                    faces: group.clone(),
                     bits,
                 }));
             }
             None => {
                 let bits = outlines.iter().map(|outline| outline.bits + outline.misfit).sum();
-                layers.push(Layer { color, form: Form::Filled(outlines), bits });
+                layers.push(Layer { color, form: Form::Filled(outlines), faces: group, bits });
             }
         }
     }
@@ -140,7 +143,7 @@ pub fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<Color>) 
         let points: usize = stroke.rings.iter().map(|ring| ring.points.len()).sum();
         // Where it passes and how wide it is can be seen, where it ends less so.
         let bits = (2 * points - 1) as f64 * ruler.number(tuning::THIN_SIGMA) + 2.0 * ruler.number(tuning::CRACK_SIGMA);
-        Layer { color: partition.rgb(color), form: Form::Stroked(stroke), bits: bits + misfit }
+        Layer { color: partition.rgb(color), form: Form::Stroked(stroke), faces: Vec::new(), bits: bits + misfit }
     }));
     Layers { background: partition.rgb(partition.color(background)), layers }
 }

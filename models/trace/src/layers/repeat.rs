@@ -127,7 +127,7 @@ fn best(completion: &Completion<'_>, groups: &[Group], faces: &[u32], most: f64,
             shape: outline.shape.moved(placed.scale, placed.shift),
             bits: numbers / count,
             misfit: completion.ruler.misfit(misfit) / count,
-            deviations: Vec::new(),
+            covariance: Vec::new(),
         };
         let outlines: Vec<Outline> = template.outlines.iter().map(moved).collect();
         if completion.check(&outlines, |face| completion.wanted(face, faces, rank)).is_ok() {

@@ -8,8 +8,6 @@ use dvp_core::Vec2;
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
-use crate::sample::Sample;
-
 /// Most numbers of a figure.
 pub(super) const MOST_NUMBERS: usize = 6;
 
@@ -63,23 +61,6 @@ impl Figure {
             Self::Polygon { sides } => spokes(sides, [a, a * (PI / as_f64(sides)).cos()], b, offset),
             Self::Star { points } => spokes(points, [a, b], c, offset),
         }
-    }
-
-    /// Second derivative of a circle or an ellipse along the window of a sample beside it, 1/px; 0 of other figures.
-    pub(super) fn bend(self, numbers: &[f64; MOST_NUMBERS], sample: &Sample) -> f64 {
-        let [x, y, a, b, c, _] = *numbers;
-        let [a, b, turn] = match self {
-            Self::Circle => [a, a, 0.0],
-            Self::Ellipse => [a, b, c],
-            _ => return 0.0,
-        };
-        let turn = Vec2::from_angle(turn);
-        let q = (sample.point - Vec2::new(x, y)).turned(conjugate(turn));
-        let slope = Vec2::new(q.x / (a * a), q.y / (b * b));
-        let steepness = slope.length_squared().sqrt();
-        let curvature = 1.0 / (a * a * b * b * steepness.powi(3));
-        let cosine = slope.turned(turn).dot(sample.axis).abs() / steepness;
-        curvature / cosine.powi(3)
     }
 
     /// How many numbers it has.

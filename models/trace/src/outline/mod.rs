@@ -15,10 +15,12 @@
 //! | `path` | from samples to a path |
 //! | `as_ring` | outlines of any kind as rings of lines, arcs and cubics |
 //! | `behind` | regular polygons and stars that show one side, or one tip |
-//! | `figure`, `conic`, `whole` | circles, ellipses, rectangles, regular polygons and stars, fitted to all samples |
+//! | `bent` | what windows across circles and ellipses are off by |
+//! | `figure`, `conic`, `whole`, `trial` | circles, ellipses, rectangles, regular polygons and stars, fitted to all samples |
 
 mod as_ring;
 mod behind;
+mod bent;
 mod chain;
 mod conic;
 mod cubic;
@@ -38,6 +40,7 @@ mod solve;
 mod tests;
 mod ties;
 mod track;
+mod trial;
 mod whole;
 
 use alloc::vec::Vec;
@@ -59,10 +62,10 @@ pub struct Outline {
     pub bits: f64,
     /// Bits of what it misses the samples by.
     pub misfit: f64,
-    /// Standard deviations of the numbers of a circle (x and y of its middle, radius), an ellipse (middle, radii, angle) or a rectangle
-    /// (middle, width, height, corner radius, angle), in pixels and radians: from their covariance and from what the samples are found to be off
-    /// by. 0 for numbers that are not fitted (the angle of what is upright); empty for other kinds.
-    pub deviations: Vec<f64>,
+    /// Covariance, row by row, of the numbers of a circle (x and y of its middle, radius), an ellipse (middle, radii, angle) or a rectangle
+    /// (middle, width, height, corner radius, angle), in pixels and radians, from what the samples are found to be off by. 0 for numbers
+    /// that are not fitted (the angle of what is upright); empty for other kinds.
+    pub covariance: Vec<f64>,
 }
 
 /// The kinds of outlines that are tried.
@@ -150,7 +153,7 @@ pub fn fit_closed(ring: &RingSamples, ruler: &Ruler) -> Option<Outline> {
     let path = mended.unwrap_or_else(|| draft.finish(&track, ruler));
     let whole = whole::fit(&track, ring.as_ref().unwrap_or(&path.ring), path.bits + path.misfit, ruler);
     let FittedPath { ring, bits, misfit } = path;
-    whole.or(Some(Outline { shape: OutlineShape::Path(ring), bits, misfit, deviations: Vec::new() }))
+    whole.or(Some(Outline { shape: OutlineShape::Path(ring), bits, misfit, covariance: Vec::new() }))
 }
 
 /// The shortest description of an open line through samples.

@@ -35,8 +35,19 @@ pub(super) fn sides(colors: &[u16], is_flat: &[bool], [width, height]: [usize; 2
             let rows = (y..height - FAR).take_while(|&y| corner(x, y).is_some()).count();
             let [cx, cy] = [x + columns / 2, y + rows / 2];
             let (ne, nw) = (colors[(y - NEAR) * width + x + NEAR], colors[(y - NEAR) * width + x - NEAR]);
-            for py in cy.saturating_sub(NEAR + 1)..(cy + NEAR + 2).min(height) {
-                for px in cx.saturating_sub(NEAR + 1)..(cx + NEAR + 2).min(width) {
+            let [columns_near, rows_near] = [(cx, width), (cy, height)]
+                .map(|(middle, side)| middle.saturating_sub(NEAR + 1)..(middle + NEAR + 2).min(side));
+            // Fields that nothing of their color joins are apart as they are.
+            let meet = |from: [usize; 2], to| {
+                let is_own = |[px, py]: [usize; 2]| colors[py * width + px] == colors[from[1] * width + from[0]];
+                meet(from, to, |at| columns_near.contains(&at[0]) && rows_near.contains(&at[1]) && is_own(at))
+            };
+            let [rises, falls] = [
+                rises && meet([x + NEAR, y - NEAR], [x - NEAR, y + NEAR]),
+                falls && meet([x - NEAR, y - NEAR], [x + NEAR, y + NEAR]),
+            ];
+            for py in rows_near.clone() {
+                for px in columns_near.clone() {
                     let i = py * width + px;
                     let first = if rises && colors[i] == ne {
                         px + cy >= cx + py
@@ -52,4 +63,22 @@ pub(super) fn sides(colors: &[u16], is_flat: &[bool], [width, height]: [usize; 2
         }
     }
     sides
+}
+
+/// Whether steps to the eight pixels around lead from one pixel to another where these are `open`; both may lie beyond.
+fn meet(from: [usize; 2], to: [usize; 2], open: impl Fn([usize; 2]) -> bool) -> bool {
+    let mut seen = vec![from];
+    let mut next = 0;
+    while let Some(&[x, y]) = seen.get(next) {
+        next += 1;
+        for at in (y.saturating_sub(1)..=y + 1).flat_map(|v| (x.saturating_sub(1)..=x + 1).map(move |u| [u, v])) {
+            if at == to {
+                return true;
+            }
+            if open(at) && !seen.contains(&at) {
+                seen.push(at);
+            }
+        }
+    }
+    false
 }

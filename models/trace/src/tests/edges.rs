@@ -58,7 +58,7 @@ fn edges_are_as_uneven_as_the_renderer_left_them() {
 }
 
 /// What a pixel shows of things that are there or not at its center.
-fn hard(color_at: impl Fn([f64; 2]) -> [f32; 3]) -> Image<f32> {
+pub(super) fn hard(color_at: impl Fn([f64; 2]) -> [f32; 3]) -> Image<f32> {
     let center = |i: usize| [(i % SIZE) as f64 + 0.5, (i / SIZE) as f64 + 0.5];
     let pixels: Vec<f32> = (0..SIZE * SIZE).flat_map(|i| color_at(center(i))).collect();
     Image::from_interleaved(size(), &pixels).unwrap()

@@ -1,6 +1,8 @@
 //! From pictures to drawings and back: what is painted by exact coverage is found again.
 
 mod edges;
+mod hard;
+mod known;
 mod lines;
 mod nested;
 mod repeated;

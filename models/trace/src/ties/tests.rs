@@ -18,13 +18,13 @@ const SIDE: usize = 256;
 const RULER: Ruler = Ruler { extent: SIDE as f64 };
 
 fn drawing(forms: Vec<Form>) -> Layers {
-    let layers = forms.into_iter().map(|form| Layer { color: [0.0; 3], form, bits: 0.0 }).collect();
+    let layers = forms.into_iter().map(|form| Layer { color: [0.0; 3], form, faces: Vec::new(), bits: 0.0 }).collect();
     Layers { background: [1.0; 3], layers }
 }
 
 fn filled(shapes: Vec<OutlineShape>) -> Form {
     Form::Filled(
-        shapes.into_iter().map(|shape| Outline { shape, bits: 0.0, misfit: 0.0, deviations: Vec::new() }).collect(),
+        shapes.into_iter().map(|shape| Outline { shape, bits: 0.0, misfit: 0.0, covariance: Vec::new() }).collect(),
     )
 }
 

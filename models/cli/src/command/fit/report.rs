@@ -47,8 +47,8 @@ pub(super) struct FoundScene {
     objects_known: Vec<ObjectKnownJson>,
     /// Objects by falling marginal gain.
     ranking: Vec<usize>,
-    /// Per object, row by row: covariance of (x, y, log scale, rotation).
-    covariance: Vec<[f32; 16]>,
+    /// Per object, row by row: covariance of (x, y, log scale, rotation, log stretch).
+    covariance: Vec<[f32; 25]>,
     /// What goes into the files of all pictures.
     #[serde(skip)]
     pub(super) measured: Option<MeasuredPicture>,

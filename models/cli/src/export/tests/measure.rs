@@ -84,9 +84,9 @@ fn what_is_seen_is_a_share_of_the_area() {
 #[test]
 fn standard_deviations_follow_the_pose() {
     // (x, y) to 0.001 and 0.002 units of 10 px, scale to 1 %, angle to 0.1 radians; independent.
-    let mut covariance = [0.0_f32; 16];
+    let mut covariance = [0.0_f32; 25];
     for (at, deviation) in [0.001_f32, 0.002, 0.01, 0.1].into_iter().enumerate() {
-        covariance[5 * at] = deviation * deviation;
+        covariance[6 * at] = deviation * deviation;
     }
     // Twice as wide as high; the pose stands in its upper left corner, the centroid (0.2, 0.1) units from there.
     let mut bar = polygons(&[&corners([0.0, 0.0], [4.0, 2.0])], [0.0; 3]);
@@ -102,6 +102,28 @@ fn standard_deviations_follow_the_pose() {
     let [major, minor] = [4.0, 2.0].map(|side| side * 2.0 / 3.0_f64.sqrt() * 0.01);
     assert!(close(deviations.axes[0], major, 5) && close(deviations.axes[1], minor, 5), "{deviations:?}");
     assert!(close(deviations.perimeter, 12.0 * 0.01, 5), "{deviations:?}");
+}
+
+#[test]
+fn axes_change_with_the_stretch() {
+    // Radii of 4 and 2 px, turned by 30 degrees, their logarithms known to .01 and .02, independent: scale is half of their sum, stretch half of
+    // their difference.
+    let [wide, high] = [0.01_f32, 0.02].map(|deviation| deviation * deviation);
+    let mut covariance = [0.0_f32; 25];
+    (covariance[12], covariance[24]) = (0.25 * (wide + high), 0.25 * (wide + high));
+    (covariance[14], covariance[22]) = (0.25 * (wide - high), 0.25 * (wide - high));
+    let of = |radii: [f32; 2]| {
+        let mut ellipse = polygons(&[&corners([0.0, 0.0], [1.0, 1.0])], [0.0; 3]);
+        ellipse.shape = dvp_core::shape::Ellipse { radii }.into();
+        (ellipse.pose.translation, ellipse.pose.rotation) = ([0.5, 0.5], 0.5236);
+        measure(&scene(vec![ellipse]), &[covariance], None, &[1], size()).unwrap()[0].deviations.unwrap()
+    };
+    let wide = of([0.4, 0.2]);
+    assert!(close(wide.axes[0], 8.0 * 0.01, 4) && close(wide.axes[1], 4.0 * 0.02, 4), "{wide:?}");
+    assert!(close(wide.area, core::f64::consts::PI * 8.0 * 0.01_f64.hypot(0.02), 3), "{wide:?}");
+    // The longer axis is the second.
+    let high = of([0.2, 0.4]);
+    assert!(close(high.axes[0], 8.0 * 0.02, 4) && close(high.axes[1], 4.0 * 0.01, 4), "{high:?}");
 }
 
 #[test]

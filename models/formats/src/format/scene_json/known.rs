@@ -237,9 +237,9 @@ impl ObjectKnownJson {
 }
 
 impl DeviationsJson {
-    /// Those of a pose; `covariance`, row by row, is that of (x, y, log scale, rotation).
-    fn of_pose<T: Real>(object: &Object<T>, covariance: &[T; 16]) -> Self {
-        let [x, y, log_scale, rotation] = [0, 5, 10, 15].map(|k| covariance[k].sqrt());
+    /// Those of a pose; `covariance`, row by row, is that of (x, y, log scale, rotation, log stretch).
+    fn of_pose<T: Real>(object: &Object<T>, covariance: &[T; 25]) -> Self {
+        let [x, y, log_scale, rotation] = [0, 6, 12, 18].map(|k| covariance[k].sqrt());
         let known = |deviation: T| finite(shortest(deviation));
         Self {
             translation: known(x).zip(known(y)).map(<[f64; 2]>::from),

@@ -78,7 +78,7 @@ impl Stated {
                 [Some(b[0] - a[0]), Some(b[1] - a[1]), Some(growth), None]
             };
             for (i, off) in off.into_iter().enumerate() {
-                let deviation = f64::from(covariance[5 * i]).sqrt();
+                let deviation = f64::from(covariance[6 * i]).sqrt();
                 if let Some(off) = off {
                     stated.0[i].add(off, deviation);
                 }
