@@ -6,12 +6,16 @@
 
 use alloc::vec::Vec;
 
-use dvp_core::{Real, simd};
+use dvp_core::scene::Pose;
+use dvp_core::{Efd, Real, simd};
 
 use super::basis::Basis;
 use super::foot::{EdgeLanes, foot};
 use crate::cholesky::{factor, packed, solve};
 use crate::segment::EdgeSample;
+
+/// Weaker damping, in units of the mean diagonal, lets vertices slide along the outline and fold it.
+pub(super) const WEAKEST_DAMPING: f64 = 1e-3;
 
 /// Center (px) and rows (a, b, c, d) in px: x = cx + sum a cos + b sin, y = cy + sum c cos + d sin.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -48,7 +52,49 @@ pub(crate) struct OutlineSettings<T> {
     pub(crate) max_steps: usize,
 }
 
+impl<T: Real> OutlineSettings<T> {
+    /// Of an outline that is within half a pixel or so of the samples.
+    pub(crate) fn settled(pixel_noise: T) -> Self {
+        Self { width_px: T::of(0.5), pixel_noise, smoothness: T::of(1e-3), max_steps: 3 }
+    }
+
+    /// Of an outline that may be some pixels away from them.
+    pub(crate) fn rough(pixel_noise: T) -> Self {
+        Self { width_px: T::of(2.0), ..Self::settled(pixel_noise) }
+    }
+}
+
 impl<T: Real> FreeOutline<T> {
+    /// The same outline started on the long axis of its first harmonic, as the normal form of descriptors is: what is fitted from
+    /// there is drawn with the vertices that it was fitted with.
+    pub(crate) fn aligned(self) -> Self {
+        let mut efd = Efd::new(self.rows);
+        if let Ok(normal) = efd.normalize() {
+            efd.shift(normal.phase);
+        }
+        Self { center: self.center, rows: efd.rows().to_vec() }
+    }
+
+    /// Its first `harmonics`.
+    pub(crate) fn cut(&self, harmonics: usize) -> Self {
+        Self { center: self.center, rows: self.rows[..harmonics].to_vec() }
+    }
+
+    /// Pose in scene units of `unit` px and descriptors of an outline that was aligned before it was fitted. Its vertices stay where they
+    /// are: a second search for the long axis would move them, far where the first harmonic is nearly a circle. None if it has no size.
+    pub(crate) fn posed(&self, unit: T) -> Option<(Pose<T>, Efd<T>)> {
+        let &[a, _, c, _] = self.rows.first()?;
+        let size = a.hypot(c);
+        if !(size.is_normal() && self.rows.iter().flatten().all(|value| value.is_finite())) {
+            return None;
+        }
+        let rotation = c.atan2(a);
+        let mut efd = Efd::new(self.rows.clone());
+        efd.rotate_scale(-rotation, size.recip());
+        let translation = self.center.map(|v| v / unit);
+        Some((Pose { translation, scale: size / unit, rotation }, efd))
+    }
+
     pub(crate) fn write_vertices(&self, basis: &Basis<T>, vertex_count: usize, vertices: &mut Vec<[T; 2]>) {
         vertices.clear();
         for i in 0..vertex_count {
@@ -107,8 +153,7 @@ fn steps<T: Real>(
     let half = 1 + 2 * outline.rows.len();
     let n = 2 * half;
     let mut cost = gather(outline, samples, basis, vertex_count, settings, scratch);
-    // Weaker damping lets vertices slide along the outline and fold it.
-    let weakest = T::of(1e-3);
+    let weakest = T::of(WEAKEST_DAMPING);
     let mut damping = T::of(4e-3);
     for _ in 0..settings.max_steps {
         expand(outline, basis, settings, scratch);
