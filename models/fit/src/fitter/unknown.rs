@@ -32,6 +32,7 @@ impl<T: Real> Run<'_, T> {
             if !self.scratch.segmentation.is_compressed() {
                 self.split_unknown(&mut found)?;
             }
+            self.refine_together(&mut found);
         }
         Ok(found)
     }
