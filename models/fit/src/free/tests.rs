@@ -180,15 +180,15 @@ fn as_many_harmonics_are_chosen_as_there_are() {
 #[test]
 fn an_aligned_outline_is_drawn_with_the_vertices_that_it_has() {
     // A first harmonic that is nearly a circle: its long axis is anywhere.
-    let rows = vec![[10.0, 0.01, -0.02, -10.0], [0.5, 1.0, -0.7, 0.3]];
-    let aligned = FreeOutline { center: [31.0, 33.0], rows }.aligned();
+    let rows = vec![[10.0_f64, 0.01, -0.02, -10.0], [0.5, 1.0, -0.7, 0.3]];
+    let aligned = FreeOutline { center: [31.0_f64, 33.0], rows }.aligned();
     let mut fitted = aligned.clone();
     fitted.rows[0][1] += 0.05;
     let (basis, mut vertices) = (Basis::new(VERTICES, 2), Vec::new());
     fitted.write_vertices(&basis, VERTICES, &mut vertices);
     // In units of 64 px.
     let (pose, efd) = fitted.posed(64.0).unwrap();
-    let mut drawn = vec![[0.0; 2]; VERTICES];
+    let mut drawn = vec![[0.0_f64; 2]; VERTICES];
     OutlineBasis::new(VERTICES, 2).unwrap().outline(efd.rows(), &mut drawn).unwrap();
     pose.transform(&mut drawn);
     for (a, b) in vertices.iter().zip(&drawn) {
@@ -197,7 +197,7 @@ fn an_aligned_outline_is_drawn_with_the_vertices_that_it_has() {
     let [a, b, c, d] = aligned.rows[0];
     // Started on the long axis: the first harmonic is at right angles to where it is a quarter on.
     assert!((a * b + c * d).abs() < 1e-9 && a.hypot(c) >= b.hypot(d));
-    assert!(FreeOutline { center: [0.0; 2], rows: vec![[0.0; 4]] }.posed(64.0).is_none());
+    assert!(FreeOutline { center: [0.0_f64; 2], rows: vec![[0.0; 4]] }.posed(64.0).is_none());
 }
 
 #[test]
