@@ -17,7 +17,8 @@ use crate::free::basis::Basis;
 use crate::free::choose::{ChooseScratch, choose};
 use crate::free::foot::{EdgeLanes, foot};
 use crate::free::grow::hold_outside;
-use crate::free::outline_fit::{FreeOutline, OutlineScratch, OutlineSettings, refine};
+use crate::free::outline::FreeOutline;
+use crate::free::outline_fit::{OutlineScratch, OutlineSettings, refine};
 use crate::price::misfit_bits;
 use crate::segment::{EdgeKind, EdgeSample};
 

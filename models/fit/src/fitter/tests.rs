@@ -235,6 +235,6 @@ fn where_outlines_cross_harmonics_are_paid_for_neither() {
     renderer.render(&drawing, size, &mut Default::default(), image.data_mut()).unwrap();
     let fit = Fitter::new(FitOptions::default()).unwrap().fit(image.view(), &mut FitScratch::default()).unwrap();
     assert_eq!(fit.scene.objects.iter().map(|object| object.efd_rows().len()).collect::<Vec<_>>(), [1, 1]);
-    // A hundredth of a step of 8 bits on average.
-    assert!(fit.loss < 4e-5, "{}", fit.loss);
+    // A fortieth of a step of 8 bits on average.
+    assert!(fit.loss < 1e-4, "{}", fit.loss);
 }

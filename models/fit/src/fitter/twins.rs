@@ -10,7 +10,7 @@ use super::known::Source;
 use super::run::{Found, FoundObject, Run};
 use crate::FitError;
 use crate::free::grow::{Freedom, GrowSettings};
-use crate::free::outline_fit::FreeOutline;
+use crate::free::outline::FreeOutline;
 use crate::joint::{JointObject, JointScene};
 use crate::pose::field::OutlineField;
 use crate::pose::gauss_newton::{Frame, PosePx};

@@ -10,7 +10,8 @@ use alloc::vec::Vec;
 use dvp_core::{Real, simd};
 
 use super::basis::Basis;
-use super::outline_fit::{FreeOutline, OutlineScratch, OutlineSettings, WEAKEST_DAMPING, expand, gather};
+use super::outline::FreeOutline;
+use super::outline_fit::{OutlineScratch, OutlineSettings, WEAKEST_DAMPING, expand, gather};
 use crate::cholesky::{factor, packed, solve_lower, solve_upper};
 use crate::price::misfit_bits;
 use crate::segment::EdgeSample;

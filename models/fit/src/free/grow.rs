@@ -7,7 +7,8 @@ use dvp_core::contour::resample;
 
 use super::basis::Basis;
 use super::choose::{ChooseScratch, choose};
-use super::outline_fit::{FreeOutline, OutlineScratch, OutlineSettings, refine};
+use super::outline::FreeOutline;
+use super::outline_fit::{OutlineScratch, OutlineSettings, refine};
 use super::polygon_fit::{PolygonScratch, move_vertices, transform};
 use crate::price::{Prices, misfit_bits};
 use crate::segment::EdgeSample;
@@ -90,8 +91,13 @@ pub(crate) fn grow<T: Real>(
     let mut best = fit(traced.cut(1), &[rough, settled], outline_scratch);
     // More harmonics cannot pay for themselves if what is missed costs less than the second one.
     if max_harmonics > 1 && best.bits >= price(2) {
-        let coarse = fit(traced.cut(COARSE_HARMONICS.min(max_harmonics)), &[rough], outline_scratch);
-        let mut all = coarse.outline.clone();
+        let mut coarse = fit(traced.cut(COARSE_HARMONICS.min(max_harmonics)), &[rough], outline_scratch);
+        let misses_all = |grown: &Grown<T>| grown.bits - price(grown.outline.rows.len()) > price(max_harmonics);
+        if misses_all(&coarse) {
+            coarse = fit(coarse.outline, &[settled], outline_scratch);
+        }
+        // Where a few miss more than all of them cost, what was traced is nearer: a cog is no circle.
+        let mut all = if misses_all(&coarse) { traced } else { coarse.outline.clone() };
         all.rows.resize(max_harmonics, [T::zero(); 4]);
         if coarse.bits < best.bits {
             best = coarse;

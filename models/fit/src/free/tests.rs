@@ -5,7 +5,8 @@ use super::basis::Basis;
 use super::choose::{ChooseScratch, choose};
 use super::foot::EdgeLanes;
 use super::grow::{Freedom, GrowScratch, GrowSettings, Grown, grow};
-use super::outline_fit::{FreeOutline, OutlineScratch, OutlineSettings, expand, gather};
+use super::outline::FreeOutline;
+use super::outline_fit::{OutlineScratch, OutlineSettings, expand, gather};
 use dvp_core::shape::OutlineBasis;
 
 use crate::price::Prices;

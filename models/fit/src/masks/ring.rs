@@ -11,7 +11,8 @@ use super::smooth::smooth_polygon;
 use crate::free::basis::Basis;
 use crate::free::foot::{EdgeLanes, foot};
 use crate::free::grow::{Freedom, GrowScratch, GrowSettings, grow};
-use crate::free::outline_fit::{FreeOutline, OutlineScratch};
+use crate::free::outline::FreeOutline;
+use crate::free::outline_fit::OutlineScratch;
 use crate::price::Prices;
 use crate::segment::EdgeSample;
 
