@@ -36,7 +36,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let fit = fit_image(image.view(), &FitOptions::default())?;
     for (k, object) in fit.scene.objects.iter().enumerate() {
         let Pose { translation: [x, y], scale, .. } = object.pose;
-        // The covariance is that of (x, y, log scale, rotation), row by row.
+        // The covariance is that of (x, y, log scale, rotation, log stretch), row by row.
         let deviation = fit.covariance.get(k).map_or(f32::NAN, |covariance| covariance[0].sqrt());
         println!("object {k}: at ({x:.4} +- {deviation:.0e}, {y:.4}), size {scale:.3}, color {:.2?}", object.color());
     }

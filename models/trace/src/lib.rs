@@ -131,15 +131,17 @@ pub fn trace(image: &ImageView<'_, f32>, known: &Known) -> Result<Traced, NoDraw
     let mut layers = layers::layers(&partition, &rings, matte);
     // What slivers are, and lines that cross, the shorter description tells.
     let others = [Some(&partition), faces.as_ref()].into_iter().flatten().filter_map(Partition::with_slivers);
-    for other in others.chain(faces.clone()) {
-        let others = layers::layers(&other, &boundary::rings(&other), matte);
-        if others.bits_of_things() < layers.bits_of_things() {
-            layers = others;
+    let mut read = &partition;
+    let others: Vec<Partition> = others.chain(faces.clone()).collect();
+    for other in &others {
+        let of_other = layers::layers(other, &boundary::rings(other), matte);
+        if of_other.bits_of_things() < layers.bits_of_things() {
+            (layers, read) = (of_other, other);
         }
     }
     ties::tie(&mut layers, partition.size);
-    if partition.is_hard {
-        centers::meet(&mut layers, &partition);
+    if read.is_hard {
+        centers::meet(&mut layers, read);
     }
     let bits = layers.bits();
     let (scene, covariances) = scene::scene(&layers, image.size(), known.matte.is_some(), partition.is_hard);

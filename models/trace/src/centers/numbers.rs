@@ -14,6 +14,8 @@ use crate::outline::OutlineShape;
 const FLAT: f64 = 0.008;
 /// How far a middle is, pixels, does not matter beyond.
 pub(super) const FAR: f64 = 3.0;
+/// Most points of an ellipse or an arc: steps that lead astray make larger ones than there are pictures.
+const MOST_POINTS: f64 = 1024.0;
 /// Steps of a cubic.
 const CUBIC_STEPS: usize = 12;
 
@@ -121,7 +123,7 @@ fn end(ring: &PathRing<f64>, k: usize) -> Vec2<f64> {
 pub(super) fn polygon(shape: &OutlineShape) -> Vec<Vec2<f64>> {
     let ellipse = |center: Vec2<f64>, [a, b]: [f64; 2], angle: f64| {
         let step = 2.0 * (1.0 - FLAT / a.max(b).max(1.0)).acos();
-        let count = (2.0 * PI / step).ceil();
+        let count = (2.0 * PI / step).ceil().min(MOST_POINTS);
         let turn = Vec2::from_angle(angle);
         let at = |k: usize| {
             let (sin, cos) = (2.0 * PI * k as f64 / count).sin_cos();
@@ -172,7 +174,7 @@ fn push(ring: &PathRing<f64>, k: usize, points: &mut Vec<Vec2<f64>>) {
             let center = from.lerp(to, 0.5) + (to - from).perp() * (0.5 / (0.5 * sweep).tan());
             let radius = (from - center).length();
             let step = 2.0 * (1.0 - FLAT / radius.max(1.0)).acos();
-            let count = (sweep.abs() / step).ceil().max(1.0);
+            let count = (sweep.abs() / step).ceil().clamp(1.0, MOST_POINTS);
             let at = |i: usize| center + (from - center).turned(Vec2::from_angle(sweep * i as f64 / count));
             points.extend((1..count as usize).map(at));
         }
