@@ -71,15 +71,18 @@ impl Group {
 
     /// Whether it is a thing as people draw them; what is seen of a few pixels, and a piece of a line, may be a part of anything.
     fn is_whole(&self, completion: &Completion<'_>) -> bool {
-        let is_pen = completion.pen(&self.faces).is_some();
-        let is_whole = self.completed.is_whole() || self.is_all_seen(completion);
-        is_whole && !is_pen && !self.faces.iter().all(|&face| completion.is_small(face))
+        let is_whole = match completion.pen(&self.faces) {
+            // What a pen has drawn is whole if its ends are seen.
+            Some(_) => self.is_all_seen(&completion.outlines(&self.faces), completion),
+            None => self.completed.is_whole() || self.is_all_seen(&self.completed, completion),
+        };
+        is_whole && !self.faces.iter().all(|&face| completion.is_small(face))
     }
 
     /// Whether it is a polygon of which nothing is hidden: it covers what is seen of it and no more, and nothing in front is beside the whole of any of
     /// its sides. A part of something that is cut off ends where what cuts it begins, in a side of which nothing is seen.
-    fn is_all_seen(&self, completion: &Completion<'_>) -> bool {
-        let outlines = &self.completed.outlines;
+    fn is_all_seen(&self, completed: &Completed, completion: &Completion<'_>) -> bool {
+        let outlines = &completed.outlines;
         let is_drawn = |outline: &&Outline| match &outline.shape {
             OutlineShape::Path(ring) => ring.segments.iter().all(|segment| *segment == Segment::Line),
             _ => true,

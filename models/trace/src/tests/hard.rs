@@ -86,6 +86,23 @@ fn what_is_seen_whole_is_no_part_of_something_behind() {
 }
 
 #[test]
+fn what_a_pen_has_drawn_is_whole_where_its_ends_are_seen() {
+    // The red hook at the border is as wide as a pen everywhere, and the blue piece touches it at a corner.
+    let is_in = |[x, y]: [f64; 2], [left, top, right, bottom]: [f64; 4]| {
+        (left..right).contains(&x) && (top..bottom).contains(&y)
+    };
+    let red = [[3.0, 0.0, 8.0, 10.0], [3.0, 5.0, 18.0, 10.0], [5.0, 23.0, 15.0, 28.0], [0.0, 28.0, 10.0, 33.0]];
+    let blue = [[15.0, 10.0, 20.0, 25.0], [15.0, 20.0, 25.0, 25.0]];
+    let picture = hard(|at| match () {
+        () if red.iter().any(|&place| is_in(at, place)) => RED,
+        () if blue.iter().any(|&place| is_in(at, place)) => BLUE,
+        () => WHITE,
+    });
+    let found = found(&picture);
+    assert_eq!(found.objects.len(), 3, "{:?}", found.objects);
+}
+
+#[test]
 fn fields_with_a_gap_between_are_not_cut() {
     // The upper piece ends a pixel beside the lower one, two pixels lower than that begins: around there four fields seem to meet.
     let is_upper = |[x, y]: [f64; 2]| (44.0..54.0).contains(&x) && (30.0..41.0).contains(&y);
