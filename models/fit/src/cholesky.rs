@@ -31,27 +31,15 @@ pub(crate) fn factor<T: Real>(matrix: &mut [T], n: usize) -> bool {
 /// Solves L L^T x = b in place, `factor`ed matrix.
 #[inline(always)]
 pub(crate) fn solve<T: Real>(factor: &[T], n: usize, b: &mut [T]) {
-    solve_lower(factor, n, b);
-    solve_upper(factor, n, b);
-}
-
-/// Solves L y = b in place.
-#[inline(always)]
-pub(crate) fn solve_lower<T: Real>(factor: &[T], n: usize, b: &mut [T]) {
     for i in 0..n {
         let row = &factor[packed(i, 0)..=packed(i, i)];
         b[i] = (b[i] - dot(&row[..i], &b[..i])) / row[i];
     }
-}
-
-/// Solves L^T x = y in place.
-#[inline(always)]
-pub(crate) fn solve_upper<T: Real>(factor: &[T], n: usize, y: &mut [T]) {
     for i in (0..n).rev() {
         let row = &factor[packed(i, 0)..=packed(i, i)];
-        let x = y[i] / row[i];
-        y[i] = x;
-        for (target, &l) in y[..i].iter_mut().zip(&row[..i]) {
+        let x = b[i] / row[i];
+        b[i] = x;
+        for (target, &l) in b[..i].iter_mut().zip(&row[..i]) {
             *target -= l * x;
         }
     }

@@ -1,7 +1,7 @@
 //! Segment-and-fit: the pipeline from an image to a [`Fit`].
 //!
 //! `pieces` joins what another object cuts in two, `order` decides which objects are in front, `known` poses the
-//! prototypes of a bank, `unknown` fits free outlines, `outlines` refines them together, `twins` splits what is several objects of one color; `run` is what
+//! prototypes of a bank, `unknown` fits free outlines, `twins` splits what is several objects of one color; `run` is what
 //! they share: rendering (`shown`: only where something changed), colors, pruning, and the doubt that goes with the result
 //! (`ambiguity`: what it leaves open). `flat` puts one color in the place of a scene that is worse. `readings` chooses between clean, noisy and faint pictures (`faint`); `subsample` takes
 //! large pictures with wide edges down to the size that they need.
@@ -11,7 +11,6 @@ mod faint;
 mod flat;
 mod known;
 mod order;
-mod outlines;
 mod pieces;
 mod readings;
 mod run;
@@ -42,7 +41,6 @@ use crate::segment::{EdgeKind, EdgeSample, Evidence, Segmentation};
 use crate::split::simple_shapes::SimpleShapes;
 use crate::split::twins::TwinScratch;
 use crate::{Fit, FitError, FitOptions};
-use outlines::TogetherScratch;
 use run::{Care, Run};
 use shown::Shown;
 use subsample::Subsampling;
@@ -70,7 +68,6 @@ pub struct FitScratch<T: Real> {
     free: GrowScratch<T>,
     simple: SimpleShapes<T>,
     twins: TwinScratch<T>,
-    together: TogetherScratch<T>,
     lanes: EdgeLanes<T>,
     samples: Vec<EdgeSample<T>>,
     colors: ColorScratch<T>,

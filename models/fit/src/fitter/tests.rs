@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use dvp_core::render::contour::ContourRenderer;
 use dvp_core::render::{Compositing, EdgeLaw, EdgeProfile, Renderer, TriangleRenderer};
 use dvp_core::shape::{OutlineBasis, mdshr_bank};
-use dvp_core::{Drawing, Efd, Image, ImageSize, Object, Pose, Scene};
+use dvp_core::{Drawing, Image, ImageSize, Object, Pose, Scene};
 
 use super::shown::Shown;
 use super::subsample::Subsampling;
@@ -210,31 +210,4 @@ fn what_no_objects_explain_becomes_one_flat_color() {
     // Outlines of its arms, filled where they run into one another, miss more of it than gray does.
     let fit = Fitter::new(FitOptions::default()).unwrap().fit(spiral().view(), &mut FitScratch::default()).unwrap();
     assert_eq!(fit.stop, StopReason::NoBetterThanFlat, "{} objects", fit.scene.objects.len());
-}
-
-#[test]
-fn where_outlines_cross_harmonics_are_paid_for_neither() {
-    // Two ellipses that overlap, of mixed colors where they do, by the reference's edges: one harmonic each tells all of it.
-    let ellipse = |translation, rotation, color| {
-        let pose = Pose { translation, scale: 0.2, rotation };
-        Object::of_efd(pose, color, 1.0, Efd::new(vec![[1.0, 0.0, 0.0, 0.5]]), None)
-    };
-    let objects = vec![ellipse([0.42, 0.45], 0.3, [0.9, 0.2, 0.1]), ellipse([0.58, 0.52], 2.0, [0.1, 0.3, 0.8])];
-    let scene = Scene {
-        background: [0.2, 0.6, 0.3],
-        transparent: false,
-        objects,
-        edge: EdgeProfile::reference(),
-        compositing: Compositing::Blend,
-    };
-    let mut drawing = Drawing::default();
-    scene.draw(&OutlineBasis::new(64, 1).unwrap(), &mut drawing).unwrap();
-    let size = ImageSize::new(128, 128).unwrap();
-    let renderer = ContourRenderer::new(scene.edge, scene.compositing);
-    let mut image = Image::zeros(size);
-    renderer.render(&drawing, size, &mut Default::default(), image.data_mut()).unwrap();
-    let fit = Fitter::new(FitOptions::default()).unwrap().fit(image.view(), &mut FitScratch::default()).unwrap();
-    assert_eq!(fit.scene.objects.iter().map(|object| object.efd_rows().len()).collect::<Vec<_>>(), [1, 1]);
-    // A fortieth of a step of 8 bits on average.
-    assert!(fit.loss < 1e-4, "{}", fit.loss);
 }

@@ -9,8 +9,8 @@ use dvp_core::{Efd, Object, Real};
 use super::known::Source;
 use super::run::{Found, FoundObject, Run};
 use crate::FitError;
-use crate::free::grow::{Freedom, GrowSettings};
-use crate::free::outline::FreeOutline;
+use crate::free::grow::{Freedom, GrowSettings, Thrift};
+use crate::free::outline_fit::FreeOutline;
 use crate::joint::{JointObject, JointScene};
 use crate::pose::field::OutlineField;
 use crate::pose::gauss_newton::{Frame, PosePx};
@@ -199,6 +199,7 @@ impl<T: Real> Run<'_, T> {
                 vertex_count: REFERENCE_VERTICES,
                 max_harmonics: self.fitter.options.max_harmonics,
                 freedom: Freedom::Full,
+                thrift: Thrift::Fitted,
                 noise: scratch.segmentation.noise(),
                 prices: self.fitter.options.prices,
             },

@@ -3,11 +3,12 @@
 use alloc::vec::Vec;
 
 use dvp_core::contour::perimeter;
+use dvp_core::scene::Pose;
 use dvp_core::shape::REFERENCE_VERTICES;
 use dvp_core::{Efd, Object, Real};
 
 use super::run::{Care, Found, FoundObject, Run};
-use crate::free::grow::{Freedom, GrowSettings, Grown, grow, hold_outside};
+use crate::free::grow::{Freedom, GrowSettings, Grown, Thrift, grow, hold_outside};
 use crate::free::start::{shrink, trace};
 use crate::pose::search::symmetry_order;
 use crate::tuning::{CLEARLY_LESS_LOSS, CODED_ALIKE, FOLDED_PIXELS, SEGMENT_HARMONIC_PX};
@@ -32,7 +33,6 @@ impl<T: Real> Run<'_, T> {
             if !self.scratch.segmentation.is_compressed() {
                 self.split_unknown(&mut found)?;
             }
-            self.refine_together(&mut found);
         }
         Ok(found)
     }
@@ -74,11 +74,18 @@ impl<T: Real> Run<'_, T> {
 
     /// The object of a segment, the steps it took, and what completes it; none if it encloses nothing.
     fn object_of(&mut self, segment: usize, freedom: Freedom) -> Option<(Object<T>, usize, Completion)> {
-        let grown = self.outline_of(segment, freedom)?;
+        let grown = self.outline_of(segment, freedom, Thrift::Fitted)?;
         let completion = completion(&grown.outline.rows);
-        let (pose, efd) = grown.outline.posed(self.unit_px())?;
+        // A first harmonic of size 0 has no pose.
+        let normal = Efd::new(grown.outline.rows).normalize().ok()?;
+        let unit = self.unit_px();
+        let pose = Pose {
+            translation: grown.outline.center.map(|v| v / unit),
+            scale: normal.scale / unit,
+            rotation: normal.rotation,
+        };
         let segment = &self.scratch.segmentation.segments()[segment];
-        Some((Object::of_efd(pose, segment.color, segment.confidence, efd, None), grown.steps, completion))
+        Some((Object::of_efd(pose, segment.color, segment.confidence, normal.efd, None), grown.steps, completion))
     }
 
     /// The outline of a segment as traced (px); none if it encloses nothing.
@@ -93,7 +100,7 @@ impl<T: Real> Run<'_, T> {
     }
 
     /// The outline of a segment; where it is hidden, it goes on the shortest way.
-    pub(super) fn outline_of(&mut self, segment: usize, freedom: Freedom) -> Option<Grown<T>> {
+    pub(super) fn outline_of(&mut self, segment: usize, freedom: Freedom, thrift: Thrift) -> Option<Grown<T>> {
         let size = self.image.size();
         let contour = self.contour_of(segment)?;
         let scratch = &mut *self.scratch;
@@ -116,6 +123,7 @@ impl<T: Real> Run<'_, T> {
             vertex_count: REFERENCE_VERTICES,
             max_harmonics,
             freedom,
+            thrift,
             noise,
             prices: self.fitter.options.prices,
         };

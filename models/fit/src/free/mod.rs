@@ -1,15 +1,13 @@
 //! From edge samples to an outline of unknown shape.
 //!
 //! In: the samples of one segment. Out: an [`Efd`](dvp_core::Efd) with its pose, with as few harmonics as the samples
-//! support. `start` traces a first `outline`, `polygon_fit` moves its vertices and `outline_fit` its center and
-//! coefficients until it lies at the sampled distances (`foot` measures them, `basis` is the Fourier basis), `choose` tells
-//! how many harmonics pay, `grow` puts it together. Where others hide the outline, it goes on the shortest way.
+//! support. `start` traces a first outline, `polygon_fit` moves its vertices and `outline_fit` its center and
+//! coefficients until it lies at the sampled distances (`foot` measures them, `basis` is the Fourier basis), `grow` decides
+//! how many harmonics pay. Where others hide the outline, it goes on the shortest way.
 
 pub(crate) mod basis;
-pub(crate) mod choose;
 pub(crate) mod foot;
 pub(crate) mod grow;
-pub(crate) mod outline;
 pub(crate) mod outline_fit;
 pub(crate) mod polygon_fit;
 pub(crate) mod start;

@@ -10,12 +10,15 @@ use dvp_core::{Real, simd};
 
 use super::basis::Basis;
 use super::foot::{EdgeLanes, foot};
-use super::outline::FreeOutline;
 use crate::cholesky::{factor, packed, solve};
 use crate::segment::EdgeSample;
 
-/// Weaker damping, in units of the mean diagonal, lets vertices slide along the outline and fold it.
-pub(super) const WEAKEST_DAMPING: f64 = 1e-3;
+/// Center (px) and rows (a, b, c, d) in px: x = cx + sum a cos + b sin, y = cy + sum c cos + d sin.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct FreeOutline<T> {
+    pub(crate) center: [T; 2],
+    pub(crate) rows: Vec<[T; 4]>,
+}
 
 /// Memory of [`refine`].
 #[derive(Clone, Debug, Default)]
@@ -45,15 +48,18 @@ pub(crate) struct OutlineSettings<T> {
     pub(crate) max_steps: usize,
 }
 
-impl<T: Real> OutlineSettings<T> {
-    /// Of an outline that is within half a pixel or so of the samples.
-    pub(crate) fn settled(pixel_noise: T) -> Self {
-        Self { width_px: T::of(0.5), pixel_noise, smoothness: T::of(1e-3), max_steps: 3 }
-    }
-
-    /// Of an outline that may be some pixels away from them.
-    pub(crate) fn rough(pixel_noise: T) -> Self {
-        Self { width_px: T::of(2.0), ..Self::settled(pixel_noise) }
+impl<T: Real> FreeOutline<T> {
+    pub(crate) fn write_vertices(&self, basis: &Basis<T>, vertex_count: usize, vertices: &mut Vec<[T; 2]>) {
+        vertices.clear();
+        for i in 0..vertex_count {
+            let row = basis.row(i, self.rows.len());
+            let [mut x, mut y] = self.center;
+            for (pair, &[a, b, c, d]) in row[1..].chunks_exact(2).zip(&self.rows) {
+                x += a * pair[0] + b * pair[1];
+                y += c * pair[0] + d * pair[1];
+            }
+            vertices.push([x, y]);
+        }
     }
 }
 
@@ -101,7 +107,8 @@ fn steps<T: Real>(
     let half = 1 + 2 * outline.rows.len();
     let n = 2 * half;
     let mut cost = gather(outline, samples, basis, vertex_count, settings, scratch);
-    let weakest = T::of(WEAKEST_DAMPING);
+    // Weaker damping lets vertices slide along the outline and fold it.
+    let weakest = T::of(1e-3);
     let mut damping = T::of(4e-3);
     for _ in 0..settings.max_steps {
         expand(outline, basis, settings, scratch);

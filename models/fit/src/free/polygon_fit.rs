@@ -9,7 +9,7 @@ use dvp_core::{Real, simd};
 
 use super::basis::Basis;
 use super::foot::{EdgeLanes, foot};
-use super::outline::FreeOutline;
+use super::outline_fit::FreeOutline;
 use crate::cholesky::{factor, packed, solve};
 use crate::segment::EdgeSample;
 use crate::tuning::VERTEX_COUPLING;

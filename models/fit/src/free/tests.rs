@@ -2,13 +2,9 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use super::basis::Basis;
-use super::choose::{ChooseScratch, choose};
 use super::foot::EdgeLanes;
-use super::grow::{Freedom, GrowScratch, GrowSettings, Grown, grow};
-use super::outline::FreeOutline;
-use super::outline_fit::{OutlineScratch, OutlineSettings, expand, gather};
-use dvp_core::shape::OutlineBasis;
-
+use super::grow::{Freedom, GrowScratch, GrowSettings, Grown, Thrift, grow};
+use super::outline_fit::{FreeOutline, OutlineScratch, OutlineSettings, expand, gather};
 use crate::price::Prices;
 use crate::segment::EdgeSample;
 
@@ -118,6 +114,7 @@ fn grown(outline: &FreeOutline<f64>) -> Grown<f64> {
         vertex_count: VERTICES,
         max_harmonics: 31,
         freedom: Freedom::Full,
+        thrift: Thrift::Fitted,
         noise: 0.003,
         prices: Prices::default(),
     };
@@ -156,49 +153,6 @@ fn an_ellipse_pays_for_one_harmonic() {
     // The area pi |a d - b c| does not depend on where the outline starts.
     assert!(((a * d - b * c).abs() - 126.0).abs() < 0.5, "{:?}", grown.outline);
     assert!((grown.outline.center[0] - 30.0).abs() < 0.02 && (grown.outline.center[1] - 28.0).abs() < 0.02);
-}
-
-#[test]
-fn as_many_harmonics_are_chosen_as_there_are() {
-    // Three harmonics with exact samples; the outline that is asked about has a fourth and a fifth, which are 0.1 px of nothing.
-    let truth = outline();
-    let (_, samples) = exact_samples(&truth);
-    let mut wide = truth.clone();
-    wide.rows.extend([[0.1, 0.0, 0.0, 0.1], [0.0, 0.1, 0.1, 0.0]]);
-    let settings = OutlineSettings::settled(0.003);
-    // 32 bits per harmonic.
-    let price = |harmonics| f64::from(u32::try_from(32 * harmonics).unwrap());
-    let memory = (&mut OutlineScratch::default(), &mut ChooseScratch::default());
-    let chosen = choose(&wide, &samples, &Basis::new(VERTICES, 5), VERTICES, &settings, price, memory).unwrap();
-    assert_eq!(chosen.outline.rows.len(), 3);
-    // What misses by about 0.1 px at two samples an edge of weight 0.5: 126 (0.05 / 0.003)^2 / 2 log2 e, 25 000 bits.
-    assert!((5e3..5e4).contains(&chosen.missed), "{}", chosen.missed);
-    let off = |a: &[f64; 4], b: &[f64; 4]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-    let most = truth.rows.iter().zip(&chosen.outline.rows).map(|(a, b)| off(a, b)).fold(0.0, f64::max);
-    assert!(most < 0.1, "{most} px off");
-}
-
-#[test]
-fn an_aligned_outline_is_drawn_with_the_vertices_that_it_has() {
-    // A first harmonic that is nearly a circle: its long axis is anywhere.
-    let rows = vec![[10.0_f64, 0.01, -0.02, -10.0], [0.5, 1.0, -0.7, 0.3]];
-    let aligned = FreeOutline { center: [31.0_f64, 33.0], rows }.aligned();
-    let mut fitted = aligned.clone();
-    fitted.rows[0][1] += 0.05;
-    let (basis, mut vertices) = (Basis::new(VERTICES, 2), Vec::new());
-    fitted.write_vertices(&basis, VERTICES, &mut vertices);
-    // In units of 64 px.
-    let (pose, efd) = fitted.posed(64.0).unwrap();
-    let mut drawn = vec![[0.0_f64; 2]; VERTICES];
-    OutlineBasis::new(VERTICES, 2).unwrap().outline(efd.rows(), &mut drawn).unwrap();
-    pose.transform(&mut drawn);
-    for (a, b) in vertices.iter().zip(&drawn) {
-        assert!((a[0] - 64.0 * b[0]).hypot(a[1] - 64.0 * b[1]) < 1e-9, "{a:?} is not {b:?}");
-    }
-    let [a, b, c, d] = aligned.rows[0];
-    // Started on the long axis: the first harmonic is at right angles to where it is a quarter on.
-    assert!((a * b + c * d).abs() < 1e-9 && a.hypot(c) >= b.hypot(d));
-    assert!(FreeOutline { center: [0.0_f64; 2], rows: vec![[0.0; 4]] }.posed(64.0).is_none());
 }
 
 #[test]

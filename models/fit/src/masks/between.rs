@@ -11,8 +11,7 @@ use dvp_core::shape::REFERENCE_VERTICES;
 
 use crate::free::basis::Basis;
 use crate::free::foot::{EdgeLanes, foot};
-use crate::free::outline::FreeOutline;
-use crate::free::outline_fit::{OutlineScratch, OutlineSettings, refine};
+use crate::free::outline_fit::{FreeOutline, OutlineScratch, OutlineSettings, refine};
 use crate::segment::EdgeSample;
 
 /// The edge between a pixel of the mask and one that is not.

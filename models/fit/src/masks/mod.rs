@@ -23,7 +23,7 @@ use dvp_core::shape::{AnyShape, Polygon, Rectangle};
 use dvp_core::{Efd, ImageSize, Pose, Real};
 
 use self::ring::{Ring, RingFitter};
-use crate::free::outline::FreeOutline;
+use crate::free::outline_fit::FreeOutline;
 
 /// The outline of a label.
 #[derive(Clone, Debug, PartialEq)]

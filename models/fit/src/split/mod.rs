@@ -24,7 +24,7 @@ use dvp_core::Real;
 
 use simple_shapes::SimpleShapes;
 
-use crate::free::outline::FreeOutline;
+use crate::free::outline_fit::FreeOutline;
 use crate::pose::gauss_newton::PosePx;
 use crate::pose::search::Prototype;
 use crate::segment::Segment;
