@@ -92,6 +92,9 @@ pub struct Known {
     pub matte: Option<[f32; 3]>,
     /// Whether a coder of photographs (JPEG) has changed its pixels.
     pub coded: bool,
+    /// Whether outlines along edges without mixed pixels may be half a pixel off where that is shorter, instead of having the middle of every
+    /// pixel on the right side: so they are alike where objects share a shape.
+    pub loose: bool,
 }
 
 impl Known {
@@ -99,6 +102,12 @@ impl Known {
     #[must_use]
     pub fn with_matte(self, matte: Option<[f32; 3]>) -> Self {
         Self { matte, ..self }
+    }
+
+    /// The same, outlines half a pixel off or not.
+    #[must_use]
+    pub fn with_loose(self, loose: bool) -> Self {
+        Self { loose, ..self }
     }
 
     /// The same, changed by a coder of photographs or not.
@@ -140,7 +149,7 @@ pub fn trace(image: &ImageView<'_, f32>, known: &Known) -> Result<Traced, NoDraw
         }
     }
     ties::tie(&mut layers, partition.size);
-    if read.is_hard {
+    if read.is_hard && !known.loose {
         centers::meet(&mut layers, read);
     }
     let bits = layers.bits();

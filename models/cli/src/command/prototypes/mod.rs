@@ -103,7 +103,7 @@ fn learn_from(
     let mut failures = Vec::new();
     let free = Fitter::new(FitOptions::default())?;
     let fitted = each(arguments, paths, |image, index, scratch| {
-        let fit = fit_picture(&free, image, &Known::default(), scratch)?;
+        let fit = fit_picture(&free, image, &Known::default().with_loose(true), scratch)?;
         Ok((fit.scene.objects.len(), is_drawing(&fit.scene), members(&fit, image.size(), index)?))
     })?;
     let mut found = Vec::new();
