@@ -53,7 +53,7 @@ impl OutlineShape {
                     Segment::SmoothCubic { handle, control } => {
                         Segment::SmoothCubic { handle: handle * scale, control: place(control) }
                     }
-                    ref other => other.clone(),
+                    other => other,
                 };
                 let points = ring.points.iter().map(|&point| place(point)).collect();
                 Self::Path(PathRing { points, segments: ring.segments.iter().map(segment).collect() })
