@@ -86,7 +86,7 @@ impl Region {
             let by = |chord: Vec2<f64>| chord.dot(along).powi(2) - chord.cross(along).powi(2);
             chords.filter(|chord| chord.length() > 0.0).map(|chord| by(chord) / chord.length()).sum()
         };
-        self.rings().map(|ring| edges(ring)).sum()
+        self.rings().map(edges).sum()
     }
 
     /// The smallest upright box around it; none if nothing is enclosed.

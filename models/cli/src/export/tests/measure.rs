@@ -115,7 +115,7 @@ fn axes_change_with_the_stretch() {
     let of = |radii: [f32; 2]| {
         let mut ellipse = polygons(&[&corners([0.0, 0.0], [1.0, 1.0])], [0.0; 3]);
         ellipse.shape = dvp_core::shape::Ellipse { radii }.into();
-        (ellipse.pose.translation, ellipse.pose.rotation) = ([0.5, 0.5], 0.5236);
+        (ellipse.pose.translation, ellipse.pose.rotation) = ([0.5, 0.5], core::f32::consts::FRAC_PI_6);
         measure(&scene(vec![ellipse]), &[covariance], None, &[1], size()).unwrap()[0].deviations.unwrap()
     };
     let wide = of([0.4, 0.2]);
