@@ -14,100 +14,126 @@ use crate::tuning;
 
 /// Puts faces before and behind those that they meet as long as that saves bits.
 pub(super) fn settle(completion: &mut Completion<'_>) {
-    let order = completion.order;
-    let net = |front, behind| order.net(front, behind);
-    let mut search = Search { known: BTreeMap::new(), completion };
+    let order = completion.painted();
+    let mut search = Search { known: BTreeMap::new(), order, total: None, completion };
     let mut pairs = search.pairs();
-    pairs.retain(|&(a, b)| net(a, b).abs() < tuning::CLEAR_VOTE);
-    let mut order = search.completion.painted();
-    // Bits of everything in the present order, once asked for.
-    let mut total: Option<f64> = None;
+    pairs.retain(|&(a, b)| search.completion.order.net(a, b).abs() < tuning::CLEAR_VOTE);
     for _ in 0..tuning::MOST_ROUNDS {
-        let mut is_changed = false;
-        for &(a, b) in &pairs {
-            if search.completion.is_spent() {
-                break;
-            }
-            let place = |face: u32| order.iter().position(|&other| other == face);
-            let (Some(at_a), Some(at_b)) = (place(a), place(b)) else { continue };
-            let (back, front) = (at_a.min(at_b), at_a.max(at_b));
-            let against = net(order[front], order[back]).max(0.0);
-            // Either comes to lie just beyond the other.
-            for (from, to) in [(back, front), (front, back)] {
-                let mut moved = order.clone();
-                let face = moved.remove(from);
-                moved.insert(to, face);
-                let crossed = &order[back..=front];
-                let mut touched: Vec<u32> = search.completion.neighbors[face as usize].clone();
-                touched.retain(|other| crossed.contains(other));
-                touched.push(face);
-                let before = search.bits(&touched);
-                search.completion.paint(&moved);
-                // Shorter one by one, and with all that may be one thing behind others.
-                if search.bits(&touched) + against < before - tuning::LEAST_SAVED {
-                    search.completion.paint(&order);
-                    let before = *total.get_or_insert_with(|| join::total(search.completion));
-                    search.completion.paint(&moved);
-                    let after = join::total(search.completion);
-                    if after + against >= before - tuning::LEAST_SAVED {
-                        search.completion.paint(&order);
-                        continue;
-                    }
-                    total = Some(after);
-                    order = moved;
-                    is_changed = true;
-                    break;
-                }
-                search.completion.paint(&order);
-            }
-        }
-        is_changed |= search.fill(&mut order, &mut total);
-        is_changed |= search.open(&mut order, &mut total);
-        is_changed |= search.close(&mut order, &mut total);
-        is_changed |= search.unite(&mut order, &mut total);
-        is_changed |= search.frame(&mut order, &mut total);
+        let mut is_changed = search.exchange(&pairs);
+        is_changed |= search.fill();
+        is_changed |= search.open();
+        is_changed |= search.close();
+        is_changed |= search.unite();
+        is_changed |= search.frame();
         if !is_changed || search.completion.is_spent() {
             break;
         }
     }
-    search.stack(&mut order, &mut total);
+    search.stack();
     completion.memo.spent.set(0);
 }
 
+/// A search for the order of painting: every move proposes another one, and one rule takes it ([`Search::is_shorter`]).
 pub(super) struct Search<'a, 'b> {
     pub(super) completion: &'a mut Completion<'b>,
+    /// Faces from back to front, as they are painted.
+    pub(super) order: Vec<u32>,
+    /// Bits of everything in this order, once asked for.
+    pub(super) total: Option<f64>,
     /// Bits of a face behind some of its neighbors.
     known: BTreeMap<(u32, Vec<u32>), f64>,
 }
 
 impl Search<'_, '_> {
+    /// Takes another order if all that is painted is shorter by it, faces that are `united` by it one thing, by more than what is `against` it, bits.
+    fn is_shorter(&mut self, moved: Vec<u32>, united: &[(u32, u32)], against: f64) -> bool {
+        if self.completion.is_spent() {
+            return false;
+        }
+        let before = self.total();
+        let count = self.completion.united.len();
+        self.completion.united.extend(united);
+        self.completion.paint(&moved);
+        let after = join::total(self.completion);
+        let is_shorter = after + against < before - tuning::LEAST_SAVED;
+        if is_shorter {
+            (self.order, self.total) = (moved, Some(after));
+        } else {
+            self.completion.united.truncate(count);
+        }
+        self.completion.paint(&self.order);
+        is_shorter
+    }
+
+    /// Bits of everything in the present order.
+    pub(super) fn total(&mut self) -> f64 {
+        *self.total.get_or_insert_with(|| join::total(self.completion))
+    }
+
+    fn place(&self, face: u32) -> Option<usize> {
+        self.order.iter().position(|&other| other == face)
+    }
+
+    /// Puts one of two faces that meet just beyond the other.
+    fn exchange(&mut self, pairs: &BTreeSet<(u32, u32)>) -> bool {
+        let mut is_changed = false;
+        for &(a, b) in pairs {
+            if self.completion.is_spent() {
+                break;
+            }
+            let (Some(at_a), Some(at_b)) = (self.place(a), self.place(b)) else { continue };
+            let (back, front) = (at_a.min(at_b), at_a.max(at_b));
+            let against = self.completion.order.net(self.order[front], self.order[back]).max(0.0);
+            for (from, to) in [(back, front), (front, back)] {
+                let mut moved = self.order.clone();
+                let face = moved.remove(from);
+                moved.insert(to, face);
+                let crossed = &self.order[back..=front];
+                let mut touched: Vec<u32> = self.completion.neighbors[face as usize].clone();
+                touched.retain(|other| crossed.contains(other));
+                touched.push(face);
+                let before = self.bits(&touched);
+                self.completion.paint(&moved);
+                let after = self.bits(&touched);
+                self.completion.paint(&self.order);
+                // Shorter one by one, and with all that may be one thing behind others.
+                if after + against < before - tuning::LEAST_SAVED && self.is_shorter(moved, &[], against) {
+                    is_changed = true;
+                    break;
+                }
+            }
+        }
+        is_changed
+    }
+
     /// Takes away what is painted in the color of the background where the rest is shorter with an opening there: of what is seen through
     /// openings that others hide in part, junctions tell little.
-    fn open(&mut self, order: &mut Vec<u32>, total: &mut Option<f64>) -> bool {
+    fn open(&mut self) -> bool {
         let mut is_changed = false;
-        let open: Vec<u32> = order.iter().copied().filter(|&face| self.completion.shows_background(face)).collect();
+        let open: Vec<u32> =
+            self.order.iter().copied().filter(|&face| self.completion.shows_background(face)).collect();
         for face in open {
-            let without: Vec<u32> = order.iter().copied().filter(|&other| other != face).collect();
-            is_changed |= self.is_shorter(&without, 0.0, order, total);
+            let without = self.order.iter().copied().filter(|&other| other != face).collect();
+            is_changed |= self.is_shorter(without, &[], 0.0);
         }
         is_changed
     }
 
     /// Paints what shows the background through more than one thing as one more thing, where it is a figure and that is shorter.
-    fn close(&mut self, order: &mut Vec<u32>, total: &mut Option<f64>) -> bool {
+    fn close(&mut self) -> bool {
         let mut is_changed = false;
         for face in self.openings() {
             if self.completion.is_spent() {
                 break;
             }
-            let mut with = order.clone();
+            let mut with = self.order.clone();
             with.push(face);
             self.completion.paint(&with);
             let is_whole = self.completion.outlines(&[face]).is_whole();
-            self.completion.paint(order);
+            self.completion.paint(&self.order);
             let around = &self.completion.neighbors[face as usize];
-            let votes = around.iter().map(|&other| self.completion.order.net(other, face).max(0.0)).sum::<f64>();
-            is_changed |= is_whole && self.is_shorter(&with, votes, order, total);
+            let votes = around.iter().map(|&other| self.completion.order.net(other, face).max(0.0)).sum();
+            is_changed |= is_whole && self.is_shorter(with, &[], votes);
         }
         is_changed
     }
@@ -131,21 +157,20 @@ impl Search<'_, '_> {
 
     /// Puts what has openings behind all that is seen in them, where that is shorter: that something is seen through what lies around it is no
     /// more than a custom.
-    fn fill(&mut self, order: &mut Vec<u32>, total: &mut Option<f64>) -> bool {
+    fn fill(&mut self) -> bool {
         let mut is_changed = false;
         for (face, inner) in self.pierced() {
-            let place = |face: u32| order.iter().position(|&other| other == face);
-            let Some(at) = place(face) else { continue };
-            let Some(to) = inner.iter().map(|&inner| place(inner)).min().flatten().filter(|&to| to < at) else {
+            let Some(at) = self.place(face) else { continue };
+            let Some(to) = inner.iter().map(|&inner| self.place(inner)).min().flatten().filter(|&to| to < at) else {
                 continue;
             };
-            let mut moved = order.clone();
+            let mut moved = self.order.clone();
             moved.remove(at);
             moved.insert(to, face);
             let beside = &self.completion.neighbors[face as usize];
-            let crossed = order[to..at].iter().filter(|other| beside.contains(other));
+            let crossed = self.order[to..at].iter().filter(|other| beside.contains(other));
             let against = crossed.map(|&other| self.completion.order.net(face, other).max(0.0)).sum();
-            is_changed |= self.is_shorter(&moved, against, order, total);
+            is_changed |= self.is_shorter(moved, &[], against);
         }
         is_changed
     }
@@ -167,95 +192,55 @@ impl Search<'_, '_> {
         found
     }
 
-    /// Takes another order if all that is painted is shorter by it, by more than what is `against` it, bits.
-    fn is_shorter(&mut self, moved: &[u32], against: f64, order: &mut Vec<u32>, total: &mut Option<f64>) -> bool {
-        if self.completion.is_spent() {
-            return false;
-        }
-        let before = *total.get_or_insert_with(|| join::total(self.completion));
-        self.completion.paint(moved);
-        let after = join::total(self.completion);
-        let is_shorter = after + against < before - tuning::LEAST_SAVED;
-        if is_shorter {
-            *order = moved.to_vec();
-            *total = Some(after);
-        }
-        self.completion.paint(order);
-        is_shorter
-    }
-
     /// Puts what lies between two faces of one color in front of both where they are shorter as one thing: of what is seen on both sides
     /// of something, and within its openings, no junction need be clear.
-    fn unite(&mut self, order: &mut Vec<u32>, total: &mut Option<f64>) -> bool {
+    fn unite(&mut self) -> bool {
         let mut is_changed = false;
         for (a, b, between) in self.parted() {
             if self.completion.is_spent() {
                 break;
             }
-            let place = |face: u32| order.iter().position(|&other| other == face);
-            let (Some(at_a), Some(at_b), Some(at)) = (place(a), place(b), place(between)) else { continue };
+            let (Some(at_a), Some(at_b), Some(at)) = (self.place(a), self.place(b), self.place(between)) else {
+                continue;
+            };
             // What may be one thing as it is is so without this.
             let are_one =
                 join::candidates(self.completion).iter().any(|group| group.contains(&a) && group.contains(&b));
             if at > at_a && at > at_b || are_one {
                 continue;
             }
-            let mut moved = order.clone();
+            let mut moved = self.order.clone();
             moved.remove(at);
             moved.insert(at_a.max(at_b), between);
-            let crossed = &order[at..=at_a.max(at_b)];
-            let mut touched: Vec<u32> = self.completion.neighbors[between as usize].clone();
-            touched.retain(|other| crossed.contains(other));
+            let crossed = &self.order[at..=at_a.max(at_b)];
+            let touched = self.completion.neighbors[between as usize].iter().filter(|other| crossed.contains(other));
             // That lines lie on what they touch is no evidence but a custom.
-            let votes = |other: u32| {
+            let votes = |&other: &u32| {
                 let custom = if self.completion.pen(&[other]).is_some() { tuning::PEN_VOTE } else { 0.0 };
                 (self.completion.order.net(other, between) - custom).max(0.0)
             };
-            let against: f64 = touched.into_iter().map(votes).sum();
-            let before = *total.get_or_insert_with(|| join::total(self.completion));
-            self.completion.paint(&moved);
-            self.completion.united.push((a, b));
-            let after = join::total(self.completion);
-            if after + against < before - tuning::LEAST_SAVED {
-                *order = moved;
-                is_changed = true;
-                *total = Some(after);
-            } else {
-                self.completion.united.pop();
-            }
-            self.completion.paint(order);
+            let against = touched.map(votes).sum();
+            is_changed |= self.is_shorter(moved, &[(a, b)], against);
         }
         is_changed
     }
 
     /// Puts faces of one color at the border of the picture in front of everything, where they are shorter as one sheet with an opening.
-    fn frame(&mut self, order: &mut Vec<u32>, total: &mut Option<f64>) -> bool {
+    fn frame(&mut self) -> bool {
         let mut is_changed = false;
         for faces in self.at_border() {
-            let is_known = faces.windows(2).all(|pair| self.completion.united.contains(&(pair[0], pair[1])));
-            if is_known || self.completion.is_spent() {
+            let united: Vec<(u32, u32)> = faces.windows(2).map(|pair| (pair[0], pair[1])).collect();
+            if united.iter().all(|pair| self.completion.united.contains(pair)) {
                 continue;
             }
-            let mut moved = order.clone();
+            let mut moved = self.order.clone();
             moved.retain(|face| !faces.contains(face));
             moved.extend(&faces);
             let net = |other: u32, face: u32| self.completion.order.net(other, face).max(0.0);
             let behind =
                 |face: u32| self.completion.neighbors[face as usize].iter().map(move |&other| net(other, face));
-            let against: f64 = faces.iter().flat_map(|&face| behind(face)).sum();
-            let before = *total.get_or_insert_with(|| join::total(self.completion));
-            self.completion.paint(&moved);
-            let count = self.completion.united.len();
-            self.completion.united.extend(faces.windows(2).map(|pair| (pair[0], pair[1])));
-            let after = join::total(self.completion);
-            if after + against < before - tuning::LEAST_SAVED {
-                *order = moved;
-                is_changed = true;
-                *total = Some(after);
-            } else {
-                self.completion.united.truncate(count);
-            }
-            self.completion.paint(order);
+            let against = faces.iter().flat_map(|&face| behind(face)).sum();
+            is_changed |= self.is_shorter(moved, &united, against);
         }
         is_changed
     }

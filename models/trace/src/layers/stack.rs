@@ -30,43 +30,43 @@ impl Stack {
 impl Search<'_, '_> {
     /// Paints all of one color at one depth, and nothing in the color of the background, if that is shorter; pieces of what is seen in several
     /// places are then no lines of a pen.
-    pub(super) fn stack(&mut self, order: &mut Vec<u32>, total: &mut Option<f64>) {
+    pub(super) fn stack(&mut self) {
         let back = self.color(self.completion.background);
         let mut places: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-        for (place, &face) in order.iter().enumerate().filter(|&(_, &face)| self.color(face) != back) {
+        for (place, &face) in self.order.iter().enumerate().filter(|&(_, &face)| self.color(face) != back) {
             places.entry(self.color(face)).or_default().push(place);
         }
-        if places.len() > MOST_STACKED || places.len() == order.len() || self.completion.is_spent() {
+        if places.len() > MOST_STACKED || places.len() == self.order.len() || self.completion.is_spent() {
             return;
         }
-        let before = *total.get_or_insert_with(|| join::total(self.completion));
+        let before = self.total();
         let pens = self.completion.pens.clone();
-        for &face in places.values().filter(|places| places.len() > 1).flatten().map(|&place| &order[place]) {
+        for &face in places.values().filter(|places| places.len() > 1).flatten().map(|&place| &self.order[place]) {
             self.completion.pens[face as usize] = None;
         }
         self.completion.known.borrow_mut().clear();
-        let best = self.best_stack(order, &places);
+        let best = self.best_stack(&places);
         if best.price() < before - tuning::LEAST_SAVED {
-            (*order, *total) = (best.faces, Some(best.bits));
+            (self.order, self.total) = (best.faces, Some(best.bits));
         } else {
             self.completion.pens = pens;
             self.completion.known.borrow_mut().clear();
         }
-        self.completion.paint(order);
+        self.completion.paint(&self.order);
     }
 
     /// Colors by the middle of their places, neighbors exchanged as long as that is shorter.
-    fn best_stack(&mut self, order: &[u32], places: &BTreeMap<usize, Vec<usize>>) -> Stack {
+    fn best_stack(&mut self, places: &BTreeMap<usize, Vec<usize>>) -> Stack {
         let middle = |color: &usize| places[color].iter().sum::<usize>() as f64 / places[color].len() as f64;
         let mut colors: Vec<usize> = places.keys().copied().collect();
         colors.sort_by(|a, b| middle(a).total_cmp(&middle(b)));
-        let mut best = self.stacked(order, &colors);
+        let mut best = self.stacked(&colors);
         loop {
             let mut is_better = false;
             for k in 1..colors.len() {
                 let mut other = colors.clone();
                 other.swap(k - 1, k);
-                let tried = self.stacked(order, &other);
+                let tried = self.stacked(&other);
                 if tried.price() < best.price() {
                     (best, colors, is_better) = (tried, other, true);
                 }
@@ -78,23 +78,23 @@ impl Search<'_, '_> {
     }
 
     /// The faces of some colors, one color after the other.
-    fn stacked(&mut self, order: &[u32], colors: &[usize]) -> Stack {
-        let mut faces = order.to_vec();
+    fn stacked(&mut self, colors: &[usize]) -> Stack {
+        let mut faces = self.order.clone();
         faces.retain(|&face| colors.contains(&self.color(face)));
         faces.sort_by_key(|&face| colors.iter().position(|&color| color == self.color(face)));
         self.completion.paint(&faces);
         let bits = join::total(self.completion);
-        Stack { bits, against: self.against(order, &faces), faces }
+        Stack { bits, against: self.against(&faces), faces }
     }
 
     /// What junctions say against a new order, bits: of what touches and lies the other way round.
-    fn against(&self, old: &[u32], new: &[u32]) -> f64 {
+    fn against(&self, new: &[u32]) -> f64 {
         let ranks = |order: &[u32]| {
             let mut rank = vec![0; self.completion.rank.len()];
             order.iter().enumerate().for_each(|(place, &face)| rank[face as usize] = place + 1);
             rank
         };
-        let (old, rank) = (ranks(old), ranks(new));
+        let (old, rank) = (ranks(&self.order), ranks(new));
         let mut bits = 0.0;
         for &front in new {
             for &behind in &self.completion.neighbors[front as usize] {
