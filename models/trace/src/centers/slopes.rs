@@ -3,8 +3,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-#[cfg(not(feature = "std"))]
-use num_traits::Float as _;
+use crate::outline::Skyline;
 
 /// How exactly, pixels.
 const SOFT: f64 = 0.01;
@@ -25,7 +24,8 @@ impl Slopes {
     pub(super) fn change(&self, damping: f64, margin: f64) -> Option<Vec<f64>> {
         let Self { depths, columns } = self;
         let count = columns.len();
-        let mut normal = vec![0.0; count * count];
+        // Every number may meet every other one.
+        let mut normal = Skyline::new(vec![0; count]);
         let mut change = vec![0.0; count];
         let mut active = vec![false; depths.len()];
         for _ in 0..ROUNDS {
@@ -40,47 +40,21 @@ impl Slopes {
             if !is_new {
                 break;
             }
-            let held = || (0..depths.len()).filter(|&i| active[i]);
-            for i in 0..count {
-                let (slopes, lever) = &columns[i];
-                for j in 0..=i {
-                    normal[i * count + j] = held().map(|k| slopes[k] * columns[j].0[k]).sum::<f64>() / (SOFT * SOFT);
-                }
-                normal[i * count + i] += damping * (lever / LOOSE).powi(2);
-                change[i] = held().map(|k| slopes[k] * (margin - depths[k])).sum::<f64>() / (SOFT * SOFT);
+            let weight = 1.0 / (SOFT * SOFT);
+            normal.clear();
+            change.fill(0.0);
+            for (number, (_, lever)) in columns.iter().enumerate() {
+                normal.add_outer(&[(number, lever / LOOSE)], damping);
             }
-            if !solve(&mut normal, &mut change) {
-                return None;
+            for i in (0..depths.len()).filter(|&i| active[i]) {
+                let all = columns.iter().map(|(slopes, _)| slopes[i]).enumerate();
+                let slopes: Vec<(usize, f64)> = all.filter(|&(_, slope)| slope != 0.0).collect();
+                normal.add_outer(&slopes, weight);
+                slopes.iter().for_each(|&(number, slope)| change[number] += weight * slope * (margin - depths[i]));
             }
+            normal.factorize(0.0, 0.0)?;
+            normal.solve(&mut change);
         }
         Some(change)
     }
-}
-
-/// Solves normal equations, of which the lower triangle is given; false if they are singular.
-fn solve(normal: &mut [f64], right: &mut [f64]) -> bool {
-    let count = right.len();
-    for i in 0..count {
-        for j in 0..=i {
-            let sum: f64 = (0..j).map(|k| normal[i * count + k] * normal[j * count + k]).sum();
-            let value = normal[i * count + j] - sum;
-            if i == j {
-                if value.is_nan() || value <= 0.0 {
-                    return false;
-                }
-                normal[i * count + i] = value.sqrt();
-            } else {
-                normal[i * count + j] = value / normal[j * count + j];
-            }
-        }
-    }
-    for i in 0..count {
-        let sum: f64 = (0..i).map(|k| normal[i * count + k] * right[k]).sum();
-        right[i] = (right[i] - sum) / normal[i * count + i];
-    }
-    for i in (0..count).rev() {
-        let sum: f64 = (i + 1..count).map(|k| normal[k * count + i] * right[k]).sum();
-        right[i] = (right[i] - sum) / normal[i * count + i];
-    }
-    true
 }

@@ -5,6 +5,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 use core::ops::Range;
 
+use dvp_core::contour::signed_area;
 use dvp_core::shape::{FillRule, Outline as Polygons, Path, Shape as _};
 
 use crate::outline::Outline;
@@ -21,10 +22,7 @@ pub(super) fn polygon(outline: &Outline) -> Option<Vec<[f64; 2]>> {
 
 /// Whether an outline covers so little that no pixel shows it: less than a step of 8 bits of one.
 pub(super) fn is_nothing(outline: &Outline) -> bool {
-    let Some(points) = polygon(outline) else { return true };
-    let next = points.iter().cycle().skip(1);
-    let doubled: f64 = points.iter().zip(next).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum();
-    0.5 * doubled.abs() < 1.0 / 255.0
+    polygon(outline).is_none_or(|points| signed_area(&points).abs() < 1.0 / 255.0)
 }
 
 /// Whether what polygons (pixels, even-odd) cover is what they should cover, but for few pixels: of all pixels that are `wanted`

@@ -7,11 +7,13 @@
 use alloc::vec::Vec;
 
 use dvp_core::Vec2;
+use dvp_core::geometry::{LineSegment, Similarity};
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
 use super::complete::{Completed, Completion};
 use super::join::Group;
+use super::junction::solve;
 use super::raster;
 use super::visible::Hidden;
 use crate::outline::Outline;
@@ -30,8 +32,6 @@ const ALIKE: f64 = 0.1;
 const MOST_SCALE: f64 = 4.0;
 /// Squared pixels that a place may be off before how far counts no more.
 const FAR2: f64 = 0.25;
-/// Least determinant of three directions, with the template's size for a unit: three of them that are nearly parallel tell nothing.
-const LEAST_SPREAD: f64 = 0.02;
 /// Steps of the refinement.
 const STEPS: usize = 6;
 /// Pixels that shift and scale of a thing are known to.
@@ -114,9 +114,19 @@ fn best(completion: &Completion<'_>, groups: &[Group], faces: &[u32], most: f64,
         if template.outlines.is_empty() || !template.agrees {
             continue;
         }
-        let edges = edges(&template.outlines);
+        // Each takes about as long as an outline through as many samples.
+        completion.memo.spent.set(completion.memo.spent.get() + samples.len());
+        if completion.is_spent() {
+            break;
+        }
+        let edges: Vec<LineSegment<f64>> = template
+            .outlines
+            .iter()
+            .filter_map(raster::polygon)
+            .flat_map(|points| LineSegment::closed(&points).collect::<Vec<_>>())
+            .collect();
         let Some(guess) = guess(&stretches, &edges) else { continue };
-        let Some((placed, misfit)) = refined(guess, &edges, &samples) else { continue };
+        let Some((map, misfit)) = refined(guess, &edges, &samples) else { continue };
         let numbers = 3.0 * completion.ruler.number(SIGMA) + (groups.len() as f64).log2() + tuning::OUTLINE_PIECE_BITS;
         let bits = numbers + completion.ruler.misfit(misfit);
         if bits >= best.as_ref().map_or(most - tuning::LEAST_SAVED, |best| best.bits) {
@@ -124,7 +134,7 @@ fn best(completion: &Completion<'_>, groups: &[Group], faces: &[u32], most: f64,
         }
         let count = template.outlines.len() as f64;
         let moved = |outline: &Outline| Outline {
-            shape: outline.shape.moved(placed.scale, placed.shift),
+            shape: outline.shape.moved(&map),
             bits: numbers / count,
             misfit: completion.ruler.misfit(misfit) / count,
             covariance: Vec::new(),
@@ -173,50 +183,36 @@ fn stretches(runs: &[&Vec<Sample>]) -> Vec<Stretch> {
     all
 }
 
-/// An edge of a template: from, to, direction.
-type Edge = (Vec2<f64>, Vec2<f64>, Vec2<f64>);
-
-fn edges(outlines: &[Outline]) -> Vec<Edge> {
-    let of_polygon = |points: Vec<[f64; 2]>| {
-        let points: Vec<Vec2<f64>> = points.into_iter().map(Vec2::from).collect();
-        let next = points.iter().cycle().skip(1);
-        points.iter().zip(next).filter_map(|(&a, &b)| Some((a, b, (b - a).normalized()?))).collect::<Vec<Edge>>()
-    };
-    outlines.iter().filter_map(raster::polygon).flat_map(of_polygon).collect()
+/// A shift and a scale as a map; none if it makes things too large or too small.
+fn shift_and_scale([scale, x, y]: [f64; 3]) -> Option<Similarity<f64>> {
+    let map = Similarity { turn: Vec2::new(scale, 0.0), translation: Vec2::new(x, y), reflected: false };
+    (1.0 / MOST_SCALE..=MOST_SCALE).contains(&scale).then_some(map)
 }
 
-/// Where a template goes: every point times `scale`, plus `shift`.
-#[derive(Clone, Copy)]
-struct Placed {
-    scale: f64,
-    shift: Vec2<f64>,
-}
-
-impl Placed {
-    /// The nearest edge of the placed template to a point: the edge, the nearest point on it, the squared distance.
-    fn nearest<'a>(&self, edges: &'a [Edge], point: Vec2<f64>) -> Option<(&'a Edge, Vec2<f64>, f64)> {
-        let at = (point - self.shift) * (1.0 / self.scale);
-        let near = |edge: &'a Edge| {
-            let &(from, to, direction) = edge;
-            let along = (at - from).dot(direction).clamp(0.0, (to - from).length());
-            let on = from + direction * along;
-            (edge, on, (at - on).length_squared())
-        };
-        let (edge, on, off) = edges.iter().map(near).min_by(|a, b| a.2.total_cmp(&b.2))?;
-        Some((edge, on * self.scale + self.shift, off * self.scale * self.scale))
-    }
+/// The edge of a template that is nearest to a point where `map` puts it, and from there to the point.
+fn nearest<'a>(
+    map: &Similarity<f64>,
+    edges: &'a [LineSegment<f64>],
+    point: Vec2<f64>,
+) -> Option<(&'a LineSegment<f64>, Vec2<f64>)> {
+    let at = map.inverse()?.point(point);
+    let offsets = edges.iter().map(|edge| (edge, edge.nearest(at).offset));
+    let (edge, offset) = offsets.min_by(|a, b| a.1.length_squared().total_cmp(&b.1.length_squared()))?;
+    Some((edge, map.direction(offset)))
 }
 
 /// The shift and scale of a template that agrees with most of some stretches.
-fn guess(stretches: &[Stretch], edges: &[Edge]) -> Option<Placed> {
-    let is_like = |stretch: &Stretch, edge: &&Edge| edge.2.cross(stretch.direction).abs() < ALIKE;
-    let like: Vec<Vec<&Edge>> =
+fn guess(stretches: &[Stretch], edges: &[LineSegment<f64>]) -> Option<Similarity<f64>> {
+    let is_like = |stretch: &Stretch, edge: &&LineSegment<f64>| {
+        edge.along.normalized().is_some_and(|along| along.cross(stretch.direction).abs() < ALIKE)
+    };
+    let like: Vec<Vec<&LineSegment<f64>>> =
         stretches.iter().map(|stretch| edges.iter().filter(|edge| is_like(stretch, edge)).collect()).collect();
     let places = || stretches.iter().flat_map(|stretch| stretch.places);
-    let off = |placed: &Placed, limit: f64| {
+    let off = |map: &Similarity<f64>, limit: f64| {
         let mut sum = 0.0;
         for point in places() {
-            sum += placed.nearest(edges, point).map_or(FAR2, |(_, _, off)| off.min(FAR2));
+            sum += nearest(map, edges, point).map_or(FAR2, |(_, off)| off.length_squared().min(FAR2));
             if sum >= limit {
                 break;
             }
@@ -232,10 +228,10 @@ fn guess(stretches: &[Stretch], edges: &[Edge]) -> Option<Placed> {
                 for a in &like[i] {
                     for b in &like[j] {
                         for c in &like[k] {
-                            let Some(placed) = through([(at[0], *a), (at[1], *b), (at[2], *c)]) else { continue };
-                            let sum = off(&placed, least);
+                            let Some(map) = through([(at[0], *a), (at[1], *b), (at[2], *c)]) else { continue };
+                            let sum = off(&map, least);
                             if sum < least {
-                                (best, least) = (Some(placed), sum);
+                                (best, least) = (Some(map), sum);
                             }
                         }
                     }
@@ -247,68 +243,46 @@ fn guess(stretches: &[Stretch], edges: &[Edge]) -> Option<Placed> {
 }
 
 /// The shift and scale that bring three edges to three points.
-fn through(three: [(Vec2<f64>, &Edge); 3]) -> Option<Placed> {
-    let rows = three.map(|(point, edge)| {
-        let normal = edge.2.perp();
-        ([normal.dot(edge.0), normal.x, normal.y], normal.dot(point))
-    });
-    // Cramer's rule; the scale's column has the size of the template.
-    let minor = |a: usize, b: usize| rows[a].0[1] * rows[b].0[2] - rows[a].0[2] * rows[b].0[1];
-    let minors = [minor(1, 2), minor(2, 0), minor(0, 1)];
-    let determinant: f64 = (0..3).map(|k| rows[k].0[0] * minors[k]).sum();
-    let size = rows.iter().map(|row| row.0[0].abs()).fold(0.0, f64::max);
-    if determinant.abs() < LEAST_SPREAD * size {
-        return None;
+fn through(three: [(Vec2<f64>, &LineSegment<f64>); 3]) -> Option<Similarity<f64>> {
+    let mut matrix = [[0.0; 3]; 3];
+    let mut right = [0.0; 3];
+    for (k, (point, edge)) in three.into_iter().enumerate() {
+        let normal = edge.along.normalized()?.perp();
+        matrix[k] = [normal.dot(edge.from), normal.x, normal.y];
+        right[k] = normal.dot(point);
     }
-    let scale = (0..3).map(|k| rows[k].1 * minors[k]).sum::<f64>() / determinant;
-    if !(1.0 / MOST_SCALE..=MOST_SCALE).contains(&scale) {
-        return None;
-    }
-    // The two rows whose directions differ most tell the shift.
-    let [a, b] = *[[1, 2], [2, 0], [0, 1]]
-        .iter()
-        .max_by(|&&[a, b], &&[c, d]| minor(a, b).abs().total_cmp(&minor(c, d).abs()))?;
-    let rest = [a, b].map(|k| rows[k].1 - scale * rows[k].0[0]);
-    let shift =
-        Vec2::new(rest[0] * rows[b].0[2] - rest[1] * rows[a].0[2], rows[a].0[1] * rest[1] - rows[b].0[1] * rest[0])
-            * (1.0 / minor(a, b));
-    Some(Placed { scale, shift })
+    shift_and_scale(solve(matrix, right)?)
 }
 
 /// The same, nearest to all samples; and by how much it misses them, squares of standard deviations, each up to a bound.
-fn refined(mut placed: Placed, edges: &[Edge], samples: &[Sample]) -> Option<(Placed, f64)> {
+fn refined(mut map: Similarity<f64>, edges: &[LineSegment<f64>], samples: &[Sample]) -> Option<(Similarity<f64>, f64)> {
     let mut chi2 = 0.0;
     for step in 0..=STEPS {
         let mut matrix = [[0.0; 3]; 3];
         let mut right = [0.0; 3];
         chi2 = 0.0;
         for sample in samples {
-            let (edge, on, _) = placed.nearest(edges, sample.point)?;
-            let normal = edge.2.perp();
+            let (edge, off) = nearest(&map, edges, sample.point)?;
+            let normal = edge.along.normalized()?.perp();
             // What is known is the position along the axis of the window.
             let sigma = (sample.sigma * normal.dot(sample.axis).abs()).hypot(tuning::RENDERER_SIGMA);
-            let miss = (sample.point - on).dot(normal) / sigma;
-            let end = ((sample.point - on).length_squared() / (sigma * sigma) - miss * miss).max(0.0);
-            let off = (miss * miss + end).sqrt();
+            let sigmas = off.length() / sigma;
             // Windows at the ends of what is seen have a third thing in them: what is off by more tells nothing.
-            let weight = (tuning::OUTLINE_HUBER / off.max(tuning::OUTLINE_HUBER)).powi(2);
-            chi2 += weight * off * off;
-            let row = [normal.dot(on - placed.shift) / placed.scale, normal.x, normal.y].map(|value| value / sigma);
+            let weight = (tuning::OUTLINE_HUBER / sigmas.max(tuning::OUTLINE_HUBER)).powi(2);
+            chi2 += weight * sigmas * sigmas;
+            let on = (sample.point - off - map.translation) / map.scale();
+            let row = [normal.dot(on), normal.x, normal.y].map(|value| value / sigma);
             for i in 0..3 {
-                right[i] += weight * row[i] * miss;
+                right[i] += weight * row[i] * off.dot(normal) / sigma;
                 for j in 0..3 {
                     matrix[i][j] += weight * row[i] * row[j];
                 }
             }
         }
-        if step == STEPS {
-            break;
-        }
-        let [scale, x, y] = super::junction::solve(matrix, right)?;
-        placed = Placed { scale: placed.scale + scale, shift: placed.shift + Vec2::new(x, y) };
-        if !(1.0 / MOST_SCALE..=MOST_SCALE).contains(&placed.scale) {
-            return None;
+        if step < STEPS {
+            let [scale, x, y] = solve(matrix, right)?;
+            map = shift_and_scale([map.scale() + scale, map.translation.x + x, map.translation.y + y])?;
         }
     }
-    Some((placed, chi2))
+    Some((map, chi2))
 }

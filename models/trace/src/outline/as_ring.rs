@@ -4,6 +4,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use dvp_core::Vec2;
+use dvp_core::geometry::Similarity;
 use dvp_core::shape::{PathRing, Segment};
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
@@ -41,13 +42,13 @@ impl OutlineShape {
 }
 
 impl OutlineShape {
-    /// The same elsewhere and in another size: every point times `scale`, plus `shift`, pixels.
+    /// The same elsewhere, turned and in another size; `map` reflects nothing.
     #[must_use]
-    pub(crate) fn moved(&self, scale: f64, shift: Vec2<f64>) -> Self {
-        let place = |center: Vec2<f64>| center * scale + shift;
+    pub(crate) fn moved(&self, map: &Similarity<f64>) -> Self {
+        let (scale, turn) = (map.scale(), map.angle());
         match *self {
             Self::Path(ref ring) => {
-                let place = |point: [f64; 2]| place(Vec2::from(point)).to_array();
+                let place = |point: [f64; 2]| map.point(Vec2::from(point)).to_array();
                 let segment = |segment: &Segment<f64>| match *segment {
                     Segment::Cubic { controls } => Segment::Cubic { controls: controls.map(place) },
                     Segment::SmoothCubic { handle, control } => {
@@ -58,22 +59,27 @@ impl OutlineShape {
                 let points = ring.points.iter().map(|&point| place(point)).collect();
                 Self::Path(PathRing { points, segments: ring.segments.iter().map(segment).collect() })
             }
-            Self::Circle { center, radius } => Self::Circle { center: place(center), radius: radius * scale },
-            Self::Ellipse { center, radii, angle } => {
-                Self::Ellipse { center: place(center), radii: radii.map(|radius| radius * scale), angle }
-            }
+            Self::Circle { center, radius } => Self::Circle { center: map.point(center), radius: radius * scale },
+            Self::Ellipse { center, radii, angle } => Self::Ellipse {
+                center: map.point(center),
+                radii: radii.map(|radius| radius * scale),
+                angle: angle + turn,
+            },
             Self::Rectangle { center, size, corner_radius, angle } => Self::Rectangle {
-                center: place(center),
+                center: map.point(center),
                 size: size.map(|side| side * scale),
                 corner_radius: corner_radius * scale,
-                angle,
+                angle: angle + turn,
             },
             Self::RegularPolygon { center, sides, radius, angle } => {
-                Self::RegularPolygon { center: place(center), sides, radius: radius * scale, angle }
+                Self::RegularPolygon { center: map.point(center), sides, radius: radius * scale, angle: angle + turn }
             }
-            Self::Star { center, points, radii, angle } => {
-                Self::Star { center: place(center), points, radii: radii.map(|radius| radius * scale), angle }
-            }
+            Self::Star { center, points, radii, angle } => Self::Star {
+                center: map.point(center),
+                points,
+                radii: radii.map(|radius| radius * scale),
+                angle: angle + turn,
+            },
         }
     }
 
