@@ -21,7 +21,11 @@ use crate::sample::{RingSamples, Sample};
 use crate::tuning;
 
 /// Straight stretches of a boundary that are held against a template first: three of them make a guess.
-const STRETCHES: usize = 9;
+const STRETCHES: usize = 6;
+/// Edges of a template that each of them may be of, the longest ones; and most edges of a template: more are no straight shape.
+const LIKE: usize = 3;
+/// See [`LIKE`].
+const MOST_EDGES: usize = 96;
 /// Pixels that a straight stretch may be off its direction.
 const STRAIGHT: f64 = 0.5;
 /// Steps of samples to both sides that tell the direction of a boundary, and fewest of a stretch.
@@ -125,7 +129,11 @@ fn best(completion: &Completion<'_>, groups: &[Group], faces: &[u32], most: f64,
             .filter_map(raster::polygon)
             .flat_map(|points| LineSegment::closed(&points).collect::<Vec<_>>())
             .collect();
-        let Some(guess) = guess(&stretches, &edges) else { continue };
+        let Some(guess) =
+            Some(&edges).filter(|edges| edges.len() <= MOST_EDGES).and_then(|edges| guess(&stretches, edges))
+        else {
+            continue;
+        };
         let Some((map, misfit)) = refined(guess, &edges, &samples) else { continue };
         let numbers = 3.0 * completion.ruler.number(SIGMA) + (groups.len() as f64).log2() + tuning::OUTLINE_PIECE_BITS;
         let bits = numbers + completion.ruler.misfit(misfit);
@@ -206,8 +214,13 @@ fn guess(stretches: &[Stretch], edges: &[LineSegment<f64>]) -> Option<Similarity
     let is_like = |stretch: &Stretch, edge: &&LineSegment<f64>| {
         edge.along.normalized().is_some_and(|along| along.cross(stretch.direction).abs() < ALIKE)
     };
-    let like: Vec<Vec<&LineSegment<f64>>> =
-        stretches.iter().map(|stretch| edges.iter().filter(|edge| is_like(stretch, edge)).collect()).collect();
+    let like = |stretch: &Stretch| {
+        let mut like: Vec<&LineSegment<f64>> = edges.iter().filter(|edge| is_like(stretch, edge)).collect();
+        like.sort_by(|a, b| b.along.length_squared().total_cmp(&a.along.length_squared()));
+        like.truncate(LIKE);
+        like
+    };
+    let like: Vec<Vec<&LineSegment<f64>>> = stretches.iter().map(like).collect();
     let places = || stretches.iter().flat_map(|stretch| stretch.places);
     let off = |map: &Similarity<f64>, limit: f64| {
         let mut sum = 0.0;
