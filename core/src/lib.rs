@@ -74,6 +74,8 @@ pub mod render;
 pub mod scene;
 pub mod shape;
 pub mod simd;
+#[doc(hidden)]
+pub mod sort;
 pub mod tensor;
 
 pub use dims::ImageSize;

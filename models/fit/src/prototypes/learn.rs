@@ -5,6 +5,7 @@ use alloc::string::String;
 use alloc::vec;
 use alloc::vec::Vec;
 
+use dvp_core::sort;
 use dvp_core::{Efd, Real};
 use num_traits::Float;
 
@@ -156,7 +157,7 @@ pub fn learn(members: &[Member], options: &PrototypeOptions) -> Result<Learned, 
         return Err(LearnError::TooFewMembers { len: members.len(), least });
     }
     let mut used: Vec<usize> = (0..members.len()).collect();
-    used.sort_by(|&a, &b| members[b].radius_px.total_cmp(&members[a].radius_px));
+    sort::descending(&mut used, |&i| members[i].radius_px);
     used.truncate(MAX_MEMBERS);
     used.sort_unstable();
     let freedom = options.freedom();
@@ -190,7 +191,7 @@ pub fn learn(members: &[Member], options: &PrototypeOptions) -> Result<Learned, 
     if learned.prototypes.is_empty() {
         return Err(LearnError::NoShape { len: members.len() });
     }
-    learned.prototypes.sort_by_key(|prototype| core::cmp::Reverse(prototype.members.len()));
+    sort::descending(&mut learned.prototypes, |prototype| prototype.members.len() as f64);
     let taken = |i: &usize| learned.prototypes.iter().any(|prototype| prototype.members.contains(i));
     learned.outliers = (0..members.len()).filter(|i| !taken(i)).collect();
     Ok(learned)

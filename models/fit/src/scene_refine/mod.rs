@@ -19,6 +19,7 @@ use dvp_core::geometry::Px;
 use dvp_core::image::{CHANNELS, RGBA_CHANNELS};
 use dvp_core::render::{ContourRenderer, PixelLoss, Renderer};
 use dvp_core::shape::{Flattening, OutlineBasis, REFERENCE_VERTICES};
+use dvp_core::sort;
 use dvp_core::{Drawing, DrawingGrad, ImageSize, ImageView, Real, Scene, SceneGrad};
 
 use self::lbfgs::{Descended, Lbfgs, Objective};
@@ -270,7 +271,7 @@ impl<'a, T: Real, const N: usize> Drawn<'a, T, N> {
         let most = sums.iter().copied().fold(T::zero(), T::max);
         let is_seen = |sum: T| sum > most * T::of(UNSEEN * UNSEEN);
         let mut seen: Vec<T> = sums.iter().copied().filter(|&sum| is_seen(sum)).collect();
-        seen.sort_by(|a, b| a.as_f64().total_cmp(&b.as_f64()));
+        sort::ascending(&mut seen, |sum| sum.as_f64());
         let floor = seen.get(seen.len() / 2).copied().unwrap_or_default() * T::of(DAMPING);
         let scale = |sum: T| {
             if is_seen(sum) { (sum.max(floor) / T::of_usize(PROBES)).sqrt().recip() } else { T::zero() }

@@ -1,6 +1,7 @@
 //! Sets of parts that together explain the samples.
 
 use alloc::vec::Vec;
+use dvp_core::sort;
 
 use super::Part;
 use super::partial::Candidate;
@@ -50,7 +51,7 @@ fn extended<T>(sets: &[Set], candidates: &[Candidate<T>], samples: usize) -> Vec
                 out.push(Set { members, explained, count });
             }
         }
-        out.sort_by_key(|set| core::cmp::Reverse(set.count));
+        sort::descending(&mut out, |set| set.count as f64);
         out.truncate(MOST_SETS);
     }
     out

@@ -21,6 +21,7 @@ pub(crate) mod waist;
 use alloc::vec::Vec;
 
 use dvp_core::Real;
+use dvp_core::sort;
 
 use simple_shapes::SimpleShapes;
 
@@ -84,7 +85,7 @@ pub(crate) fn split<T: Real>(segment: &Segment<T>, prototypes: &[Prototype<T>]) 
         .collect();
     // A third part must make much of a difference.
     let price = |set: &PartSet<T>| if set.parts.len() > 2 { set.cost * T::of(THIRD_PART) } else { set.cost };
-    sets.sort_by(|a, b| price(a).partial_cmp(&price(b)).unwrap_or(core::cmp::Ordering::Equal));
+    sort::ascending(&mut sets, |set| price(set).as_f64());
     sets.truncate(MOST_SETS);
     sets
 }

@@ -6,6 +6,7 @@
 use alloc::vec::Vec;
 
 use dvp_core::Real;
+use dvp_core::sort;
 
 use super::{EXPLAINED_PX, Part};
 use crate::pose::equations::{Normal, Robustness, SampleLanes};
@@ -55,7 +56,7 @@ pub(super) fn search<T: Real>(segment: &Segment<T>, prototypes: &[Prototype<T>])
             }
         }
     }
-    found.sort_by_key(|candidate| core::cmp::Reverse(candidate.count));
+    sort::descending(&mut found, |candidate| candidate.count as f64);
     found
 }
 

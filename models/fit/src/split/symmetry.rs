@@ -7,6 +7,7 @@ use alloc::vec::Vec;
 
 use dvp_core::Real;
 use dvp_core::geometry::Similarity;
+use dvp_core::sort;
 
 use crate::free::foot::EdgeLanes;
 use crate::pose::equations::{Robustness, SampleLanes};
@@ -93,7 +94,7 @@ impl<'a, T: Real> PartlyKnown<'a, T> {
                     (self.miss(&mirror, &few), mirror)
                 })
                 .collect();
-            axes.sort_by(|a, b| a.0.partial_cmp(&b.0).unwrap_or(core::cmp::Ordering::Equal));
+            sort::ascending(&mut axes, |(miss, _)| miss.as_f64());
             let near = axes.iter().take(REFINED_AXES);
             let moved: Vec<Similarity<T>> = near.filter_map(|(_, axis)| refined(*axis, self.field, &few)).collect();
             found.extend(moved.into_iter().find(|mirror| self.holds(mirror, &few, &allowed)));

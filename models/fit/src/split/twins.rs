@@ -8,6 +8,7 @@ use alloc::vec::Vec;
 use dvp_core::contour::{Connectivity, resample, signed_area, trace_level};
 use dvp_core::geometry::Bounds;
 use dvp_core::shape::REFERENCE_VERTICES;
+use dvp_core::sort;
 use dvp_core::{ImageSize, Real};
 
 use super::assign;
@@ -94,7 +95,7 @@ impl<T: Real> Union<'_, T> {
             let start = traced(self.contour, both, &mut scratch.field);
             pairs.extend(start.and_then(|start| self.shaped(closed(&start), motion, scratch)));
         }
-        pairs.sort_by(|a, b| a.cost.partial_cmp(&b.cost).unwrap_or(core::cmp::Ordering::Equal));
+        sort::ascending(&mut pairs, |pair| pair.cost.as_f64());
         pairs.truncate(MOST_PAIRS);
         pairs
     }

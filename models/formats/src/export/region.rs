@@ -3,6 +3,7 @@
 use dvp_core::contour::{contains, perimeter, signed_area};
 use dvp_core::geometry::{Bounds, Vec2};
 use dvp_core::shape::{Boundary, FillRule, Moments, Outline, ShapeError};
+use dvp_core::sort;
 
 /// Rings that enclose less are left out, px^2: nobody sees them, and rounded to decimals they would be no rings.
 const LEAST_AREA: f64 = 1e-4;
@@ -34,7 +35,7 @@ impl Region {
         let (mut outer, holes): (Vec<_>, Vec<_>) =
             rings.filter(|(area, _)| area.abs() >= LEAST_AREA).partition(|(area, _)| *area > 0.0);
         // Small ones first, so that the first one around a hole is the one that it is a hole of.
-        outer.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+        sort::ascending(&mut outer, |&(area, _)| area);
         let mut polygons: Vec<Polygon> =
             outer.into_iter().map(|(_, ring)| Polygon { outer: ring.to_vec(), holes: Vec::new() }).collect();
         for (_, hole) in holes {

@@ -3,6 +3,7 @@
 use alloc::collections::BTreeSet;
 
 use dvp_core::geometry::{Bounds, Vec2};
+use dvp_core::sort;
 
 /// Rows that are looked at per pixel, and most rows of all: overlaps that fall between two of them may be missed.
 const ROWS_PER_PX: f64 = 2.0;
@@ -139,7 +140,7 @@ pub(super) fn shared_regions(bodies: &[&Body], width: f64, height: f64) -> Share
         }
     }
     let mut sets: Vec<Vec<usize>> = sets.into_iter().collect();
-    sets.sort_by_key(Vec::len);
+    sort::ascending(&mut sets, |set| set.len() as f64);
     Shared { sets, is_complete }
 }
 

@@ -7,6 +7,7 @@ use dvp_core::contour::{Connectivity, Crack, Heading};
 
 use super::{Ring, Step};
 use crate::partition::{OUTSIDE, Partition};
+use dvp_core::sort;
 
 /// The rings of every face: the outer one first, then those of holes.
 pub(super) fn walk_faces(partition: &Partition) -> Vec<Vec<Ring>> {
@@ -27,7 +28,7 @@ pub(super) fn walk_faces(partition: &Partition) -> Vec<Vec<Ring>> {
         }
     }
     for of_face in &mut rings {
-        of_face.sort_by(|a, b| b.area.total_cmp(&a.area));
+        sort::descending(of_face, |ring| ring.area);
     }
     rings
 }

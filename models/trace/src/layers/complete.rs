@@ -22,6 +22,7 @@ use crate::ruler::Ruler;
 use crate::sample::RingSamples;
 use crate::stroke::StrokeFit;
 use crate::tuning;
+use dvp_core::sort;
 
 /// Bits that tell of a sheet as large as the picture: that it is one, and of which kind.
 const FRAME_BITS: f64 = 8.0;
@@ -138,7 +139,7 @@ impl Completion<'_> {
     /// The faces that are painted, from back to front.
     pub(super) fn painted(&self) -> Vec<u32> {
         let mut faces: Vec<u32> = (0..self.rank.len() as u32).filter(|&face| self.rank(face) > 0).collect();
-        faces.sort_by_key(|&face| self.rank(face));
+        sort::ascending(&mut faces, |&face| self.rank(face) as f64);
         faces
     }
 

@@ -14,6 +14,7 @@ use crate::boundary::Ring;
 use crate::outline::{Outline, OutlineShape};
 use crate::partition::OUTSIDE;
 use crate::tuning;
+use dvp_core::sort;
 
 /// Cracks that are nearer to a side, pixels, are of it: those of a slanted one are up to half the diagonal of a pixel off.
 const BESIDE: f64 = 0.75;
@@ -42,7 +43,7 @@ pub(super) fn painted(completion: &mut Completion<'_>) -> Vec<Group> {
             painted.push((rank, Group { faces: again.faces, completed: apart }));
         }
     }
-    painted.sort_by_key(|&(rank, _)| rank);
+    sort::ascending(&mut painted, |&(rank, _)| rank as f64);
     painted.into_iter().map(|(_, group)| group).collect()
 }
 

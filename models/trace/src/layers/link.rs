@@ -12,6 +12,7 @@ use alloc::vec::Vec;
 use dvp_core::Vec2;
 
 use crate::sample::{RingSamples, Sample};
+use dvp_core::sort;
 
 /// Samples at the end of a stretch that tell its direction.
 const TIP: usize = 4;
@@ -50,7 +51,7 @@ pub(super) fn relinked(
     let price = |next: &[usize]| next.iter().enumerate().map(|(from, to)| prices[from * count + to]).sum::<f64>();
     let mut ways = if count <= MOST_PERMUTED { permutations(count) } else { vec![swapped(next.clone(), price)] };
     ways.retain(|way| *way != next);
-    ways.sort_by(|a, b| price(a).total_cmp(&price(b)));
+    sort::ascending(&mut ways, |way| price(way));
     ways.truncate(most);
     ways.iter().map(|way| closed.iter().map(|&ring| ring.clone()).chain(followed(way, &runs)).collect()).collect()
 }

@@ -19,6 +19,7 @@ use super::visible::Hidden;
 use crate::outline::Outline;
 use crate::sample::{RingSamples, Sample};
 use crate::tuning;
+use dvp_core::sort;
 
 /// Straight stretches of a boundary that are held against a template first: three of them make a guess.
 const STRETCHES: usize = 6;
@@ -186,7 +187,7 @@ fn stretches(runs: &[&Vec<Sample>]) -> Vec<Stretch> {
             first = last + 1;
         }
     }
-    all.sort_by_key(|stretch| core::cmp::Reverse(stretch.count));
+    sort::descending(&mut all, |stretch| stretch.count as f64);
     all.truncate(STRETCHES);
     all
 }
@@ -216,7 +217,7 @@ fn guess(stretches: &[Stretch], edges: &[LineSegment<f64>]) -> Option<Similarity
     };
     let like = |stretch: &Stretch| {
         let mut like: Vec<&LineSegment<f64>> = edges.iter().filter(|edge| is_like(stretch, edge)).collect();
-        like.sort_by(|a, b| b.along.length_squared().total_cmp(&a.along.length_squared()));
+        sort::descending(&mut like, |edge| edge.along.length_squared());
         like.truncate(LIKE);
         like
     };

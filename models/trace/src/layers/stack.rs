@@ -8,6 +8,7 @@ use alloc::vec::Vec;
 use super::join;
 use super::settle::Search;
 use crate::tuning;
+use dvp_core::sort;
 
 /// Most colors that are tried one over the other: each is exchanged with its neighbors, so that the time grows with their square.
 const MOST_STACKED: usize = 6;
@@ -59,7 +60,7 @@ impl Search<'_, '_> {
     fn best_stack(&mut self, places: &BTreeMap<usize, Vec<usize>>) -> Stack {
         let middle = |color: &usize| places[color].iter().sum::<usize>() as f64 / places[color].len() as f64;
         let mut colors: Vec<usize> = places.keys().copied().collect();
-        colors.sort_by(|a, b| middle(a).total_cmp(&middle(b)));
+        sort::ascending(&mut colors, middle);
         let mut best = self.stacked(&colors);
         loop {
             let mut is_better = false;

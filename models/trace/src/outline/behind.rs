@@ -11,6 +11,7 @@ use num_traits::Float as _;
 
 use super::figure::{Figure, MOST_NUMBERS, as_f64};
 use super::whole::Start;
+use dvp_core::sort;
 
 /// How many sides or points are tried; four sides are a rectangle.
 const COUNTS: [usize; 4] = [3, 5, 6, 8];
@@ -31,7 +32,7 @@ pub(super) fn starts(ring: &PathRing<f64>, starts: &mut Vec<Start>) {
     let is_line = |k: usize| matches!(ring.segments[k % count], Segment::Line);
     let side = |k: usize| point(k + 1) - point(k);
     let mut sides: Vec<usize> = (0..count).filter(|&k| is_line(k)).collect();
-    sides.sort_by(|&a, &b| side(b).length_squared().total_cmp(&side(a).length_squared()));
+    sort::descending(&mut sides, |&k| side(k).length_squared());
     for &k in sides.iter().take(MOST_TRIED) {
         let (from, chord) = (point(k), side(k));
         let Some(along) = chord.normalized() else { continue };
@@ -46,7 +47,7 @@ pub(super) fn starts(ring: &PathRing<f64>, starts: &mut Vec<Start>) {
     let is_tip = |k: usize| is_line(k) && is_line(k + 1) && side(k).cross(side(k + 1)) * way > 0.0;
     let mut tips: Vec<usize> = (0..count).filter(|&k| count > 2 && is_tip(k)).collect();
     let length = |k: usize| side(k).length_squared().min(side(k + 1).length_squared());
-    tips.sort_by(|&a, &b| length(b).total_cmp(&length(a)));
+    sort::descending(&mut tips, |&k| length(k));
     for &k in tips.iter().take(MOST_TRIED) {
         let (before, tip, after) = (point(k), point(k + 1), point(k + 2));
         let middle = before.lerp(after, 0.5);

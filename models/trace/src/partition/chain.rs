@@ -10,6 +10,7 @@ use dvp_core::geometry::LineSegment;
 
 use super::cross::{Along, Canvas, Cross};
 use crate::tuning;
+use dvp_core::sort;
 
 /// A window of a chain.
 #[derive(Clone, Copy, Debug)]
@@ -141,7 +142,7 @@ pub(super) fn join(canvas: &Canvas<'_>, chains: Vec<Chain>) -> Vec<Chain> {
             }
         }
     }
-    joints.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+    sort::ascending(&mut joints, |joint| joint.cost);
     let mut partner = alloc::vec![usize::MAX; tips.len()];
     let mut colors: Vec<u128> = chains.iter().map(|chain| chain.colors).collect();
     let mut root: Vec<usize> = (0..chains.len()).collect();

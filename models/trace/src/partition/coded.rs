@@ -15,6 +15,7 @@ use super::Color;
 use super::flat::{Flats, NONE};
 use super::palette::distance;
 use crate::tuning;
+use dvp_core::sort;
 
 /// Shares of red, green and blue in brightness (ITU-R BT.601, as JFIF has it).
 const LUMA: [f64; 3] = [0.299, 0.587, 0.114];
@@ -48,7 +49,7 @@ pub(super) fn dissolve(pixels: &[[f32; 3]], [width, height]: [usize; 2], flats: 
     }
     let mut small: Vec<usize> =
         (0..of_region.len()).filter(|&k| flats.means[k].1 <= tuning::CODED_MOST_STAIN).collect();
-    small.sort_by_key(|&region| core::cmp::Reverse(flats.means[region].1));
+    sort::descending(&mut small, |&region| flats.means[region].1 as f64);
     let mut is_kept: Vec<bool> = flats.means.iter().map(|&(_, count)| count > tuning::CODED_MOST_STAIN).collect();
     let mut near: Vec<u32> = Vec::new();
     for region in small {

@@ -15,6 +15,7 @@ use super::cross::{Along, Canvas, Cross, LONGEST, shares_of_three};
 use super::mix::coverage;
 use super::palette::distance;
 use crate::tuning;
+use dvp_core::sort;
 
 /// What is seen of a line that shares its window.
 struct Seen {
@@ -45,7 +46,7 @@ pub(super) fn grow(
     }
     let mut taken = BTreeSet::new();
     let mut order: Vec<usize> = (0..chains.len()).filter(|&k| chains[k].marks.len() >= tuning::PAIR_MARKS).collect();
-    order.sort_by_key(|&k| core::cmp::Reverse(chains[k].marks.len()));
+    sort::descending(&mut order, |&k| chains[k].marks.len() as f64);
     for k in order {
         let own = color_of(&chains[k]);
         for at_finish in [true, false] {

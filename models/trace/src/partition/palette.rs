@@ -6,6 +6,7 @@ use alloc::vec::Vec;
 use super::flat::{Flats, Noise};
 use super::{Color, NoPartition};
 use crate::tuning;
+use dvp_core::sort;
 
 /// The colors, and which of them each flat region has.
 #[derive(Clone, Debug)]
@@ -19,7 +20,7 @@ impl Palette {
     /// Colors by falling area; a region whose color is that of a larger one but for noise shares its entry.
     pub(super) fn of(flats: &Flats, noise: &Noise) -> Result<Self, NoPartition> {
         let mut order: Vec<usize> = (0..flats.means.len()).collect();
-        order.sort_by_key(|&region| core::cmp::Reverse(flats.means[region].1));
+        sort::descending(&mut order, |&region| flats.means[region].1 as f64);
         let mut colors: Vec<(Color, f64)> = Vec::new();
         let mut of_region = vec![0; flats.means.len()];
         for region in order {

@@ -13,6 +13,7 @@ use super::palette::distance;
 use super::{Color, ink, pair};
 use crate::stroke::{ThinChain, ThinSample};
 use crate::tuning;
+use dvp_core::sort;
 
 /// A thin line.
 #[derive(Clone, Debug)]
@@ -71,7 +72,7 @@ fn in_order(canvas: &Canvas<'_>, mut lines: Vec<(ThinLine, Chain)>) -> Vec<(Thin
     let mut place = alloc::vec![0; order.len()];
     order.into_iter().enumerate().for_each(|(k, line)| place[line] = k);
     let mut numbered: Vec<_> = place.into_iter().zip(lines.drain(..)).collect();
-    numbered.sort_by_key(|&(place, _)| place);
+    sort::ascending(&mut numbered, |&(place, _)| place as f64);
     numbered.into_iter().map(|(_, line)| line).collect()
 }
 

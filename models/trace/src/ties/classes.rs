@@ -8,6 +8,7 @@ use num_traits::Float as _;
 
 use super::numbers::Number;
 use crate::ruler::Ruler;
+use dvp_core::sort;
 
 /// Numbers that are equal.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,7 +25,7 @@ pub(super) struct Class {
 /// Chinese restaurant process of concentration 1 gives them, to which (m - 1)! rows of m numbers lead. Exact: classes are runs of
 /// sorted values.
 pub(super) fn classes(mut numbers: Vec<Number>, ruler: &Ruler) -> Vec<Class> {
-    numbers.sort_by(|a, b| a.value.total_cmp(&b.value));
+    sort::ascending(&mut numbers, |number| number.value);
     // What the fit of an outline has tied already is one number.
     numbers.dedup_by(|next, kept| {
         let is_same = (next.value - kept.value).abs() < SAME;

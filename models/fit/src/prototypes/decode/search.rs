@@ -5,6 +5,7 @@ use core::f64::consts::TAU;
 
 use dvp_core::Real;
 use dvp_core::shape::{OutlineBasis, REFERENCE_VERTICES, ShapeError};
+use dvp_core::sort;
 
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
@@ -133,10 +134,10 @@ impl Shapes {
         let mut starts: Vec<Start> = Vec::new();
         for prototype in 0..self.count() {
             let mut own = self.starts(prototype, demand, effort);
-            own.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+            sort::ascending(&mut own, |start| start.cost);
             starts.extend(own.into_iter().take(each));
         }
-        starts.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        sort::ascending(&mut starts, |start| start.cost);
         let mut best: Option<Posed> = None;
         let take = |best: &mut Option<Posed>, next: Posed| {
             if best.as_ref().is_none_or(|best| self.is_better(&next, best)) {
