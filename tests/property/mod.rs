@@ -23,6 +23,7 @@ mod scene;
 mod scene_json;
 mod scene_refine;
 mod shape;
+mod sort;
 mod split;
 mod svg;
 mod symmetry;
