@@ -1,6 +1,7 @@
 //! Sets of parts that together explain the samples.
 
 use alloc::vec::Vec;
+
 use dvp_core::sort;
 
 use super::Part;

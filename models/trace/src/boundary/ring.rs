@@ -4,10 +4,10 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use dvp_core::contour::{Connectivity, Crack, Heading};
+use dvp_core::sort;
 
 use super::{Ring, Step};
 use crate::partition::{OUTSIDE, Partition};
-use dvp_core::sort;
 
 /// The rings of every face: the outer one first, then those of holes.
 pub(super) fn walk_faces(partition: &Partition) -> Vec<Vec<Ring>> {

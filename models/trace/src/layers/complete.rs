@@ -7,6 +7,7 @@ use core::cell::RefCell;
 
 use dvp_core::Vec2;
 use dvp_core::shape::{PathRing, Segment};
+use dvp_core::sort;
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
@@ -22,7 +23,6 @@ use crate::ruler::Ruler;
 use crate::sample::RingSamples;
 use crate::stroke::StrokeFit;
 use crate::tuning;
-use dvp_core::sort;
 
 /// Bits that tell of a sheet as large as the picture: that it is one, and of which kind.
 const FRAME_BITS: f64 = 8.0;

@@ -7,6 +7,7 @@ use alloc::vec::Vec;
 use dvp_core::Vec2;
 use dvp_core::geometry::{DisjointSets, LineSegment};
 use dvp_core::shape::Segment;
+use dvp_core::sort;
 
 use super::complete::{Completed, Completion};
 use super::raster;
@@ -14,7 +15,6 @@ use crate::boundary::Ring;
 use crate::outline::{Outline, OutlineShape};
 use crate::partition::OUTSIDE;
 use crate::tuning;
-use dvp_core::sort;
 
 /// Cracks that are nearer to a side, pixels, are of it: those of a slanted one are up to half the diagonal of a pixel off.
 const BESIDE: f64 = 0.75;

@@ -10,9 +10,9 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use dvp_core::Vec2;
+use dvp_core::sort;
 
 use crate::sample::{RingSamples, Sample};
-use dvp_core::sort;
 
 /// Samples at the end of a stretch that tell its direction.
 const TIP: usize = 4;

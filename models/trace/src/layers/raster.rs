@@ -53,7 +53,7 @@ pub(super) fn check(
                 last = point;
             }
         }
-        crossings.sort_by(f64::total_cmp);
+        crossings.sort_unstable_by(f64::total_cmp);
         let mut crossed = 0;
         for x in columns.clone() {
             while crossed < crossings.len() && crossings[crossed] <= x as f64 + 0.5 {

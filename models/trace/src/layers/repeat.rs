@@ -8,6 +8,7 @@ use alloc::vec::Vec;
 
 use dvp_core::Vec2;
 use dvp_core::geometry::{LineSegment, Similarity};
+use dvp_core::sort;
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
@@ -19,13 +20,12 @@ use super::visible::Hidden;
 use crate::outline::Outline;
 use crate::sample::{RingSamples, Sample};
 use crate::tuning;
-use dvp_core::sort;
 
 /// Straight stretches of a boundary that are held against a template first: three of them make a guess.
 const STRETCHES: usize = 6;
-/// Edges of a template that each of them may be of, the longest ones; and most edges of a template: more are no straight shape.
+/// Edges of a template that each of them may be of: the longest ones.
 const LIKE: usize = 3;
-/// See [`LIKE`].
+/// Most edges of a template: more are no straight shape.
 const MOST_EDGES: usize = 96;
 /// Pixels that a straight stretch may be off its direction.
 const STRAIGHT: f64 = 0.5;
@@ -130,11 +130,10 @@ fn best(completion: &Completion<'_>, groups: &[Group], faces: &[u32], most: f64,
             .filter_map(raster::polygon)
             .flat_map(|points| LineSegment::closed(&points).collect::<Vec<_>>())
             .collect();
-        let Some(guess) =
-            Some(&edges).filter(|edges| edges.len() <= MOST_EDGES).and_then(|edges| guess(&stretches, edges))
-        else {
+        if edges.len() > MOST_EDGES {
             continue;
-        };
+        }
+        let Some(guess) = guess(&stretches, &edges) else { continue };
         let Some((map, misfit)) = refined(guess, &edges, &samples) else { continue };
         let numbers = 3.0 * completion.ruler.number(SIGMA) + (groups.len() as f64).log2() + tuning::OUTLINE_PIECE_BITS;
         let bits = numbers + completion.ruler.misfit(misfit);

@@ -5,10 +5,11 @@ use alloc::collections::BTreeMap;
 use alloc::vec;
 use alloc::vec::Vec;
 
+use dvp_core::sort;
+
 use super::join;
 use super::settle::Search;
 use crate::tuning;
-use dvp_core::sort;
 
 /// Most colors that are tried one over the other: each is exchanged with its neighbors, so that the time grows with their square.
 const MOST_STACKED: usize = 6;

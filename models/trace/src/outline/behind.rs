@@ -6,12 +6,12 @@ use core::f64::consts::PI;
 
 use dvp_core::Vec2;
 use dvp_core::shape::{PathRing, Segment};
+use dvp_core::sort;
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
 use super::figure::{Figure, MOST_NUMBERS, as_f64};
 use super::whole::Start;
-use dvp_core::sort;
 
 /// How many sides or points are tried; four sides are a rectangle.
 const COUNTS: [usize; 4] = [3, 5, 6, 8];

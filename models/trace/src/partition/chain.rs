@@ -7,10 +7,10 @@ use num_traits::Float as _;
 
 use dvp_core::Vec2;
 use dvp_core::geometry::LineSegment;
+use dvp_core::sort;
 
 use super::cross::{Along, Canvas, Cross};
 use crate::tuning;
-use dvp_core::sort;
 
 /// A window of a chain.
 #[derive(Clone, Copy, Debug)]

@@ -11,11 +11,12 @@ use alloc::vec::Vec;
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
+use dvp_core::sort;
+
 use super::Color;
 use super::flat::{Flats, NONE};
 use super::palette::distance;
 use crate::tuning;
-use dvp_core::sort;
 
 /// Shares of red, green and blue in brightness (ITU-R BT.601, as JFIF has it).
 const LUMA: [f64; 3] = [0.299, 0.587, 0.114];

@@ -9,13 +9,14 @@ use alloc::vec::Vec;
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
+use dvp_core::sort;
+
 use super::Color;
 use super::chain::{Chain, Mark};
 use super::cross::{Along, Canvas, Cross, LONGEST, shares_of_three};
 use super::mix::coverage;
 use super::palette::distance;
 use crate::tuning;
-use dvp_core::sort;
 
 /// What is seen of a line that shares its window.
 struct Seen {
@@ -123,7 +124,7 @@ impl Tip {
         let (of_end, last) = if at_finish { (&chain.marks[n - reach..], n - 1) } else { (&chain.marks[..reach], 0) };
         let [ground, other] = chain.marks[last].cross.sides;
         let mut widths: Vec<f64> = of_end.iter().map(|mark| mark.width / stretch).collect();
-        widths.sort_by(f64::total_cmp);
+        widths.sort_unstable_by(f64::total_cmp);
         (ground == other).then_some(Self { at_finish, width: widths[widths.len() / 2], ground })
     }
 

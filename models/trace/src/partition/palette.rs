@@ -3,10 +3,11 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
+use dvp_core::sort;
+
 use super::flat::{Flats, Noise};
 use super::{Color, NoPartition};
 use crate::tuning;
-use dvp_core::sort;
 
 /// The colors, and which of them each flat region has.
 #[derive(Clone, Debug)]

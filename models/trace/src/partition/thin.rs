@@ -6,6 +6,8 @@ use alloc::vec::Vec;
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
+use dvp_core::sort;
+
 use super::chain::{Chain, Mark, crossings, hidden_crossings, join, read_once};
 use super::cross::{Along, Canvas, Cross};
 use super::mix::coverage;
@@ -13,7 +15,6 @@ use super::palette::distance;
 use super::{Color, ink, pair};
 use crate::stroke::{ThinChain, ThinSample};
 use crate::tuning;
-use dvp_core::sort;
 
 /// A thin line.
 #[derive(Clone, Debug)]
@@ -173,7 +174,7 @@ fn constant(chain: &mut Chain, widest: f64) -> Option<ThinChain> {
         .collect();
     let median = |values: &[f64]| {
         let mut sorted = values.to_vec();
-        sorted.sort_by(f64::total_cmp);
+        sorted.sort_unstable_by(f64::total_cmp);
         sorted[sorted.len() / 2]
     };
     let width = median(&widths);

@@ -9,7 +9,6 @@ use num_traits::Float as _;
 
 use super::piece::{direction, nearest, pieces};
 use crate::outline::OutlineShape;
-use dvp_core::sort;
 
 /// A center line and how it ends.
 #[derive(Clone, Debug)]
@@ -126,7 +125,7 @@ impl Line {
             (!is_covered).then(|| ((point - shape.point(t)).length(), piece, t))
         });
         let mut near: Vec<_> = near.filter(|near| near.0 < limit + half).collect();
-        sort::ascending(&mut near, |near| near.0);
+        near.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
         let &(distance, piece, t) = near.first()?;
         let body = Reading { gap: distance - half, foot: Foot::Body { piece, t }, next: f64::INFINITY };
         let other = |foot: Foot, reading: Reading| reading.against(gap(&self.pieces, foot, point, half), foot);

@@ -6,9 +6,10 @@ use alloc::vec::Vec;
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
+use dvp_core::sort;
+
 use super::numbers::Number;
 use crate::ruler::Ruler;
-use dvp_core::sort;
 
 /// Numbers that are equal.
 #[derive(Clone, Copy, Debug, PartialEq)]
