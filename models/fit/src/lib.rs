@@ -187,7 +187,7 @@ pub struct Fit<T> {
     pub marginal_gain: Vec<f64>,
     /// Standard deviation of a channel that was taken for noise: at least the rounding of 8 bits; NaN if it was not estimated.
     pub noise: T,
-    /// Description length of the scene and what it leaves unexplained, in bits.
+    /// Description length of the scene and what it leaves unexplained, in bits; NaN if it was not counted.
     pub bits: f64,
 }
 

@@ -24,7 +24,7 @@ const LEAST_AREA_PX: f64 = 1e-2;
 /// The fit of a transparent picture, without objects that show nothing; its scene is transparent.
 ///
 /// `image` is the picture over `matte`, RGB, [0, 1]. Where something is cut, what the fit knows of the numbers of its objects is
-/// lost: they are others.
+/// lost: they are others. Its description length stays, openings counted as the objects that they were.
 ///
 /// # Errors
 /// [`FitError`] if what is left could not be drawn.
@@ -51,7 +51,8 @@ pub fn cut_openings(
     let (painted, drawing) = canvas.paint(&scene, size)?;
     let loss = PixelLoss::Mae.value(ImagePair::new(painted.view(), image)?, &mut ())?;
     let cut = Fit::of_painted(scene, &drawing, &image, painted.data());
-    let mut cut = Fit { loss, stop: fit.stop, steps: fit.steps, noise: fit.noise, ..cut };
+    // An opening is described by the outline that it had as an object.
+    let mut cut = Fit { loss, stop: fit.stop, steps: fit.steps, noise: fit.noise, bits: fit.bits, ..cut };
     cut.scene.transparent = true;
     Ok(cut)
 }

@@ -83,6 +83,27 @@ fn what_shows_the_matte_is_an_opening() {
 }
 
 #[test]
+fn a_picture_of_one_color_over_a_matte_is_a_sheet() {
+    let image = picture(|_, _| [0.0, 2.0 / 3.0, 0.0]);
+    for coded in [false, true] {
+        let known = Known::default().with_matte(Some([1.0; 3])).with_coded(coded);
+        let found = fit(&image, &known, FitOptions::default());
+        assert_eq!((found.scene.objects.len(), found.scene.transparent), (1, true));
+        assert!(found.loss < 1e-3 && found.bits.is_finite(), "{} {}", found.loss, found.bits);
+    }
+}
+
+#[test]
+fn openings_are_described_as_the_objects_that_they_were() {
+    let hole = in_square(18, 30);
+    let image = picture(|column, row| if hole(column, row) { [1.0; 3] } else { [0.1, 0.2, 0.6] });
+    let opaque = fit(&image, &Known::default(), FitOptions::default());
+    let cut = fit(&image, &Known::default().with_matte(Some([1.0; 3])), FitOptions::default());
+    assert!(cut.scene.transparent && cut.scene.background == [1.0; 3], "{:?}", cut.scene);
+    assert_eq!(cut.bits, opaque.bits);
+}
+
+#[test]
 fn grounds_are_far_from_what_is_seen() {
     let opaque = [[0.2, 0.3, 0.4, 1.0]; 3];
     assert_eq!(Ground::of(opaque.into_iter()), Ground::Opaque);
