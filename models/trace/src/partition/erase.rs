@@ -11,6 +11,10 @@ use dvp_core::geometry::LineSegment;
 use super::Color;
 use super::chain::{Chain, Mark};
 use super::cross::Along;
+use super::mix::coverage;
+use super::palette::distance;
+use super::thin::ThinLine;
+use crate::tuning;
 
 /// A picture of which lines are taken out.
 pub(super) struct Eraser<'a> {
@@ -21,6 +25,10 @@ pub(super) struct Eraser<'a> {
     /// Pixels that no line covers, any more or from the start.
     pub(super) known: Vec<bool>,
     pub(super) palette: &'a [Color],
+    /// Most difference of a channel from the mixture that explains a pixel.
+    pub(super) noise: f64,
+    /// Least difference of a channel between a line and what it lies on.
+    pub(super) contrast: f64,
 }
 
 impl Eraser<'_> {
@@ -31,7 +39,20 @@ impl Eraser<'_> {
         }
     }
 
-    pub(super) fn erase<'c>(&mut self, chains: impl Iterator<Item = &'c Chain> + Clone) {
+    /// Takes out lines, which end where they are seen to.
+    pub(super) fn erase(&mut self, lines: &mut [(ThinLine, Chain)]) {
+        let mut ends = Vec::new();
+        for (line, chain) in lines.iter_mut().filter(|(_, chain)| !chain.is_closed) {
+            let [first, second, .., before, last] = &chain.marks[..] else { continue };
+            for (end, [tip, inner]) in [[first, second], [last, before]].into_iter().enumerate() {
+                let longer = self.beyond(tip, inner, line.color);
+                line.chain.ends[end] += longer;
+                if longer == 0.0 {
+                    ends.push((tip.point, chain.width));
+                }
+            }
+        }
+        let chains = lines.iter().map(|(_, chain)| chain);
         for mark in chains.clone().flat_map(|chain| &chain.marks) {
             let sides = mark.cross.sides.map(|side| self.palette[side as usize]);
             self.fill(mark.along, mark.cross.line, mark.cross.run, mark.point.dot(mark.axis()), sides);
@@ -47,9 +68,9 @@ impl Eraser<'_> {
                     self.around(from.point, to.point, chain.width, &mut holes);
                 }
             }
-            for mark in [chain.marks.first(), chain.marks.last()].into_iter().flatten() {
-                self.around(mark.point, mark.point, chain.width, &mut holes);
-            }
+        }
+        for (end, width) in ends {
+            self.around(end, end, width, &mut holes);
         }
         self.fill_holes(holes);
     }
@@ -62,6 +83,47 @@ impl Eraser<'_> {
             self.pixels[i] = core::array::from_fn(|c| (share * sides[0][c] + (1.0 - share) * sides[1][c]) as f32);
             self.known[i] = true;
         }
+    }
+
+    /// Takes out what of a line lies beyond its last window, `tip`, over what is of no flat color: the edge of what the line crosses. Pixels that it is
+    /// longer.
+    fn beyond(&mut self, tip: &Mark, inner: &Mark, color: Color) -> f64 {
+        let step = tip.cross.line as f64 - inner.cross.line as f64;
+        let slope = (tip.point - inner.point).dot(tip.axis()) / step;
+        if tip.along != inner.along || tip.cross.sides[0] != tip.cross.sides[1] || step.abs() != 1.0 {
+            return 0.0;
+        }
+        let [lines, length] = match tip.along {
+            Along::Columns => self.size,
+            Along::Rows => [self.size[1], self.size[0]],
+        };
+        let mut longer = 0.0;
+        for k in 1.. {
+            let away = step * f64::from(k);
+            let line = tip.cross.line as f64 + away;
+            let run = tip.cross.run.map(|at| at as f64 + (slope * away).round());
+            if line < 0.0 || line >= lines as f64 || run[0] < 1.0 || run[1] >= length as f64 {
+                break;
+            }
+            let (line, run) = (line as usize, run.map(|at| at as usize));
+            let pixel = |at: usize| self.pixels[self.index(tip.along, line, at)].map(f64::from);
+            let sides = [pixel(run[0] - 1), pixel(run[1])];
+            // The edge is the same on both sides of the line, and not of its color.
+            if distance(sides[0], sides[1]) > self.noise || distance(sides[0], color) < self.contrast {
+                break;
+            }
+            let covered: f64 =
+                (run[0]..run[1]).map(|at| coverage(pixel(at), sides[0], color).clamp(0.0, 1.0)).sum::<f64>()
+                    / tip.width;
+            let is_whole = covered > 1.0 - tuning::THIN_TOLERANCE;
+            let center = tip.point.dot(tip.axis()) + slope * away;
+            self.fill(tip.along, line, run, center, sides);
+            longer += if is_whole { 1.0 } else { covered };
+            if !is_whole {
+                break;
+            }
+        }
+        longer
     }
 
     /// The windows that are missing between two: what borders on them goes on under the line.

@@ -183,6 +183,9 @@ struct Found {
     palette: Vec<Color>,
     /// Whether seams were mended: pixels are others than before.
     is_mended: bool,
+    /// Of a channel, as [`cross::Canvas`] has them.
+    noise: f64,
+    contrast: f64,
 }
 
 impl Found {
@@ -208,14 +211,14 @@ impl Found {
             lines = thin::crossing_lines(lines, ground);
         }
         let known = flat.iter().map(|&color| color != u16::MAX).collect();
-        Self { lines, open, known, palette: colors.colors.clone(), is_mended }
+        Self { lines, open, known, palette: colors.colors.clone(), is_mended, noise, contrast }
     }
 
     /// Takes the lines out of the picture.
     fn erase(self, pixels: &mut [[f32; 3]], size: [usize; 2]) -> impl Iterator<Item = ThinLine> {
-        let Self { lines, open, known, palette, .. } = self;
-        let mut eraser = erase::Eraser { pixels, size, open: &open, known, palette: &palette };
-        eraser.erase(lines.iter().map(|(_, chain)| chain));
+        let Self { mut lines, open, known, palette, noise, contrast, .. } = self;
+        let mut eraser = erase::Eraser { pixels, size, open: &open, known, palette: &palette, noise, contrast };
+        eraser.erase(&mut lines);
         lines.into_iter().map(|(line, _)| line)
     }
 }

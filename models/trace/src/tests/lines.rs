@@ -86,3 +86,33 @@ fn what_stands_on_a_line_does_not_run_along_it() {
     let fields = found.objects.iter().filter(|object| object.color()[2] > 0.5 && object.color()[0] < 0.5);
     assert_eq!(fields.count(), 5, "{:?}", found.objects);
 }
+
+#[test]
+fn a_line_of_the_background_s_color_cuts_nothing_in_two() {
+    // A box as in box plots: its median ends in the middle of its edge, and is as white as what it lies on.
+    let black = [0.0; 3];
+    let [left, right, top, bottom] = [14.3, 81.9, 20.6, 75.2];
+    let corners = [[left, top], [right, top], [right, bottom], [left, bottom]];
+    let edge = Stroke {
+        rings: vec![PathRing::polygon(corners.to_vec())],
+        width: 2.4,
+        cap: Cap::Butt,
+        join: Join::Miter { limit: 4.0 },
+    };
+    let objects = vec![
+        object(rectangle(right - left, bottom - top), [0.5 * (left + right), 0.5 * (top + bottom)], 0.0, BLUE),
+        object(AnyShape::Stroke(edge), [0.0; 2], 0.0, black),
+        line(&[[left, 44.7], [right, 44.7]], 3.5, WHITE),
+    ];
+    let picture = paint(&scene(WHITE, objects));
+    let found = found(&picture);
+    let colors: Vec<[f32; 3]> = found.objects.iter().map(|object| object.color()).collect();
+    assert_eq!(colors.len(), 3, "{:?}", found.objects);
+    let boxes = found.objects.iter().filter(|object| (object.color()[2] - BLUE[2]).abs() < 0.01);
+    for found in boxes {
+        let AnyShape::Rectangle(rectangle) = &found.shape else { panic!("{:?}", found.shape) };
+        let height = f64::from(rectangle.size[1] * found.pose.scale) * super::SIZE as f64;
+        assert!((height - (bottom - top)).abs() < 2.4, "{height}");
+    }
+    assert!(error(&picture, &found) < 1e-3, "{}", error(&picture, &found));
+}
