@@ -54,6 +54,8 @@ pub(super) struct Completion<'a> {
     pub(super) ruler: Ruler,
     /// Pairs of faces that were found to be one thing behind another, when the order was.
     pub(super) united: Vec<(u32, u32)>,
+    /// Whether orders are searched for: then nothing is fitted any more once that has taken too long.
+    pub(super) is_searching: bool,
     /// Outlines that were found, by the faces painted together and those in front of them.
     pub(super) known: RefCell<BTreeMap<Place, Completed>>,
     /// Outlines that were fitted.
@@ -83,6 +85,11 @@ impl Completed {
             _ => true,
         };
         self.outlines.iter().all(is_figure)
+    }
+
+    /// Not asked for any more.
+    fn unknown() -> Self {
+        Self { bits: f64::INFINITY, agrees: false, ..Self::none() }
     }
 
     /// Nothing to complete.
@@ -145,8 +152,12 @@ impl Completion<'_> {
 
     /// Whether so many outlines were fitted that no other order or group is tried any more.
     pub(super) fn is_spent(&self) -> bool {
+        self.is_spent_times(1)
+    }
+
+    fn is_spent_times(&self, times: usize) -> bool {
         let steps: usize = self.rings.iter().flatten().map(|ring| ring.steps.len()).sum();
-        self.memo.spent.get() > (tuning::MOST_TRIED * steps).min(tuning::MOST_TRIED_SAMPLES)
+        self.memo.spent.get() > times * (tuning::MOST_TRIED * steps).min(tuning::MOST_TRIED_SAMPLES)
     }
 
     /// Faces are painted in this order, and no others.
@@ -170,6 +181,10 @@ impl Completion<'_> {
         if let Some(known) = self.known.borrow().get(&key) {
             return known.clone();
         }
+        // What is being tried when that is spent may take as much again.
+        if self.is_searching && self.is_spent_times(2) {
+            return Completed::unknown();
+        }
         let completed = self.completed(group, rank);
         self.known.borrow_mut().insert(key, completed.clone());
         completed
@@ -187,7 +202,9 @@ impl Completion<'_> {
         let linked = linked.filter(|linked| self.check(&linked.outlines, wanted).is_ok());
         let mut linked = linked.min_by(|a, b| a.bits.total_cmp(&b.bits));
         let mut wrong_ways = Vec::new();
-        for round in 0.. {
+        // Long boundaries are not led around what they must not hide again and again: one layer may take as long as the usual picture.
+        let count: usize = samples.iter().flat_map(|ring| &ring.runs).map(Vec::len).sum();
+        for round in 0..=tuning::MOST_TRIED * tuning::MOST_TRIED_SAMPLES / count.max(1) {
             let walked = self.fit(&samples);
             match self.check(&walked.outlines, wanted) {
                 Ok(()) => return linked.filter(|linked| linked.bits <= walked.bits).unwrap_or(walked),

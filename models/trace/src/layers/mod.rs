@@ -112,6 +112,7 @@ pub fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<Color>) 
         is_clear: matte.is_some(),
         ruler,
         united: Vec::new(),
+        is_searching: false,
         known: RefCell::default(),
         memo,
     };

@@ -15,6 +15,7 @@ use crate::tuning;
 /// Puts faces before and behind those that they meet as long as that saves bits.
 pub(super) fn settle(completion: &mut Completion<'_>) {
     let order = completion.painted();
+    completion.is_searching = true;
     let mut search = Search { known: BTreeMap::new(), order, total: None, completion };
     let mut pairs = search.pairs();
     pairs.retain(|&(a, b)| search.completion.order.net(a, b).abs() < tuning::CLEAR_VOTE);
@@ -30,6 +31,7 @@ pub(super) fn settle(completion: &mut Completion<'_>) {
         }
     }
     search.stack();
+    completion.is_searching = false;
     completion.memo.spent.set(0);
 }
 
@@ -55,7 +57,8 @@ impl Search<'_, '_> {
         self.completion.united.extend(united);
         self.completion.paint(&moved);
         let after = join::total(self.completion);
-        let is_shorter = after + against < before - tuning::LEAST_SAVED;
+        // What was not asked for any more is no reason.
+        let is_shorter = before.is_finite() && after + against < before - tuning::LEAST_SAVED;
         if is_shorter {
             (self.order, self.total) = (moved, Some(after));
         } else {

@@ -48,7 +48,7 @@ impl Search<'_, '_> {
         }
         self.completion.known.borrow_mut().clear();
         let best = self.best_stack(&places);
-        if best.price() < before - tuning::LEAST_SAVED {
+        if before.is_finite() && best.price() < before - tuning::LEAST_SAVED {
             (self.order, self.total) = (best.faces, Some(best.bits));
         } else {
             self.completion.pens = pens;
