@@ -106,13 +106,11 @@ fn a_line_of_the_background_s_color_cuts_nothing_in_two() {
     ];
     let picture = paint(&scene(WHITE, objects));
     let found = found(&picture);
-    let colors: Vec<[f32; 3]> = found.objects.iter().map(|object| object.color()).collect();
-    assert_eq!(colors.len(), 3, "{:?}", found.objects);
-    let boxes = found.objects.iter().filter(|object| (object.color()[2] - BLUE[2]).abs() < 0.01);
-    for found in boxes {
-        let AnyShape::Rectangle(rectangle) = &found.shape else { panic!("{:?}", found.shape) };
-        let height = f64::from(rectangle.size[1] * found.pose.scale) * super::SIZE as f64;
-        assert!((height - (bottom - top)).abs() < 2.4, "{height}");
-    }
+    assert_eq!(found.objects.len(), 3, "{:?}", found.objects);
+    let whole = found.objects.iter().find(|object| (object.color()[2] - BLUE[2]).abs() < 0.01).unwrap();
+    let AnyShape::Rectangle(rectangle) = &whole.shape else { panic!("{:?}", whole.shape) };
+    let height = f64::from(rectangle.size[1] * whole.pose.scale) * super::SIZE as f64;
+    // Its sides lie anywhere under the edge.
+    assert!((height - (bottom - top)).abs() < 2.4, "{height}");
     assert!(error(&picture, &found) < 1e-3, "{}", error(&picture, &found));
 }
