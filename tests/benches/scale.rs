@@ -11,7 +11,8 @@ use core::time::Duration;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use dvp_core::{Image, Real};
-use dvp_fit::{FitOptions, FitScratch, Fitter};
+use dvp_fit::picture::{Known, PictureScratch, fit_picture};
+use dvp_fit::{FitOptions, Fitter};
 use dvp_tests::draw_svg::draw_svg;
 
 /// Ellipses, turned rectangles and triangles by a fixed sequence of numbers, on a jittered grid.
@@ -51,10 +52,11 @@ fn scale(criterion: &mut Criterion) {
     group.sample_size(10).measurement_time(Duration::from_secs(10));
     for (side, objects) in [(4096, 50), (1024, 200), (1024, 0)] {
         let image = picture(side, objects);
-        let mut scratch = FitScratch::default();
+        let (mut scratch, known) = (PictureScratch::default(), Known::default());
         group.bench_function(format!("{side}_{objects}"), |bencher| {
             bencher.iter(|| {
-                black_box(fitter.fit(black_box(image.view()), &mut scratch).expect("a fit").scene.objects.len())
+                let fit = fit_picture(&fitter, black_box(image.view()), &known, &mut scratch).expect("a fit");
+                black_box(fit.scene.objects.len())
             });
         });
     }

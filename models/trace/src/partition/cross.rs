@@ -8,8 +8,9 @@ use num_traits::Float as _;
 
 use super::Color;
 use super::flat::NONE;
-use super::mix::coverage;
+use super::mix::{coverage, narrow};
 use super::palette::distance;
+use super::runs::runs;
 
 /// The longest run, pixels: the widest line that is asked for at 45 degrees, and a mixed pixel on both sides.
 pub(super) const LONGEST: usize = 16;
@@ -83,20 +84,24 @@ impl Canvas<'_> {
         let [lines, length] = self.extent(along);
         let longest = ((self.widest * core::f64::consts::SQRT_2).ceil() as usize + 2).min(LONGEST);
         let mut found = vec![Vec::new(); lines];
-        for (line, of_line) in found.iter_mut().enumerate() {
-            let mut start = 0;
-            let mut is_open = false;
-            for at in 0..length {
-                let i = self.index(along, line, at);
-                if self.flat[i] == u16::MAX {
-                    is_open |= self.open[i];
-                    continue;
-                }
-                if is_open && start > 0 && at - start <= longest {
-                    let before = self.flat[self.index(along, line, start - 1)];
-                    of_line.push(Cross { line, run: [start, at], sides: [before, self.flat[i]], colors: 0 });
-                }
-                (start, is_open) = (at + 1, false);
+        // Pixels come as they lie in memory. A window begins behind a flat pixel.
+        let step = self.index(along, 0, 1);
+        for i in (step..self.flat.len()).filter(|&i| self.flat[i] == u16::MAX && self.flat[i - step] != u16::MAX) {
+            let [x, y] = [i % self.size[0], i / self.size[0]];
+            let (line, start) = match along {
+                Along::Columns => (x, y),
+                Along::Rows => (y, x),
+            };
+            if start == 0 {
+                continue;
+            }
+            let mut rest = (start..length.min(start + longest + 1)).map(|at| self.index(along, line, at));
+            let count = rest.clone().take_while(|&i| self.flat[i] == u16::MAX).count();
+            if let Some(end) = rest.nth(count)
+                && (start..start + count).any(|at| self.open[self.index(along, line, at)])
+            {
+                let sides = [self.flat[i - step], self.flat[end]];
+                found[line].push(Cross { line, run: [start, start + count], sides, colors: 0 });
             }
         }
         found
@@ -223,21 +228,30 @@ pub(super) fn shares_of_three(pixel: Color, [a, b, c]: [Color; 3]) -> Option<[f6
 /// Flat pixels for windows: those of regions that hold no block of `block` pixels' side are what a line covers, too.
 pub(super) fn thick(regions: &[u32], width: usize, of_region: &[usize], block: u16) -> Vec<u16> {
     let mut is_thick = vec![false; of_region.len()];
-    // Side of the largest block of one region whose lower right pixel is this one, of the row above and of this row.
-    let mut sides = vec![0_u16; width];
-    let mut upper_left = 0;
-    for (i, &region) in regions.iter().enumerate() {
-        let (x, y) = (i % width, i / width);
-        let upper = sides[x];
-        sides[x] = 0;
-        if region != NONE {
-            let inside = x > 0 && y > 0 && [i - 1, i - width, i - width - 1].iter().all(|&j| regions[j] == region);
-            sides[x] = if inside { 1 + upper.min(upper_left).min(sides[x - 1]) } else { 1 };
-            is_thick[region as usize] |= sides[x] >= block;
+    // Side of the largest block of one region whose lower right pixel is this one, of the row above and of this row; what holds a block is
+    // not asked again.
+    let [mut above, mut sides] = [vec![0_u16; width], vec![0_u16; width]];
+    let rows = || regions.chunks_exact(width);
+    for (row, upper) in rows().zip(core::iter::once(None).chain(rows().map(Some))) {
+        core::mem::swap(&mut above, &mut sides);
+        for (region, columns) in runs(row) {
+            if region == NONE || is_thick[region as usize] {
+                continue;
+            }
+            let mut left = 0;
+            for x in columns.clone() {
+                let inside = x > columns.start && upper.is_some_and(|upper| upper[x - 1..=x] == [region; 2]);
+                left = if inside { 1 + above[x].min(above[x - 1]).min(left) } else { 1 };
+                sides[x] = left;
+                is_thick[region as usize] |= left >= block;
+            }
         }
-        upper_left = upper;
     }
-    let is_thin = |region: u32| !is_thick[region as usize];
-    let color = |region: u32| u16::try_from(of_region[region as usize]).unwrap_or(u16::MAX);
-    regions.iter().map(|&region| if region == NONE || is_thin(region) { u16::MAX } else { color(region) }).collect()
+    let mut colors = vec![u16::MAX; regions.len()];
+    for (row, colors) in rows().zip(colors.chunks_exact_mut(width)) {
+        for (region, columns) in runs(row).filter(|&(region, _)| region != NONE && is_thick[region as usize]) {
+            colors[columns].fill(narrow(of_region[region as usize]));
+        }
+    }
+    colors
 }

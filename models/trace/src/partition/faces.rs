@@ -11,6 +11,7 @@ use dvp_core::geometry::DisjointSets;
 use super::Partition;
 use super::flat::{NONE, index};
 use super::mix::{Mixed, best_mixture};
+use super::runs::renumber;
 use crate::tuning;
 
 /// A connected part of the picture of one color.
@@ -52,14 +53,20 @@ pub(super) fn cut(size: [usize; 2], pixels: Vec<[f32; 3]>, mut mixed: Mixed) -> 
 fn partition(size: [usize; 2], pixels: Vec<[f32; 3]>, mixed: Mixed, labels: Vec<u32>, faces: Vec<Face>) -> Partition {
     let Mixed { shares, palette, unexplained, noise, .. } = mixed;
     let [width, _] = size;
-    let is_edge =
-        |&i: &usize| i % width > 0 && labels[i - 1] != labels[i] || i >= width && labels[i - width] != labels[i];
-    let is_mixed = |&i: &usize| {
+    let is_mixed = |i: usize| {
         let before = [Some(i), i.checked_sub(1), i.checked_sub(width)];
         before.into_iter().flatten().any(|j| shares[j] < tuning::PURE_SHARE)
     };
-    let edges = (0..labels.len()).filter(is_edge).count();
-    let mixed = (0..labels.len()).filter(is_edge).filter(is_mixed).count();
+    // Pixels of another face than the one before or above.
+    let [mut edges, mut mixed] = [0_usize; 2];
+    for first in (0..labels.len()).step_by(width) {
+        for i in first..first + width {
+            if i > first && labels[i - 1] != labels[i] || first > 0 && labels[i - width] != labels[i] {
+                edges += 1;
+                mixed += usize::from(is_mixed(i));
+            }
+        }
+    }
     let is_hard = (mixed as f64) < tuning::MOST_HARD * edges as f64
         && steps(&labels, size) as f64 > tuning::LEAST_STAIRS * edges as f64;
     Partition {
@@ -101,51 +108,68 @@ fn falling_joins(shares: &[f32], [nw, ne, sw, se]: [usize; 4]) -> bool {
     shares[nw] + shares[se] >= shares[ne] + shares[sw]
 }
 
-/// Numbers the faces.
+/// Numbers the faces: runs of pixels side by side, joined with those of the row above.
 fn label([width, height]: [usize; 2], mixed: &Mixed) -> (Vec<u32>, Vec<Face>) {
     let colors = &mixed.colors;
     let sides = super::checker::sides(colors, &mixed.is_flat, [width, height]);
     let same = |i: usize, j: usize| colors[i] == colors[j] && (sides[i] == sides[j] || sides[i] == 0 || sides[j] == 0);
-    // What a way of single steps joins needs no union of its own: in flat parts all but those down the columns.
-    let is_way = |way: [usize; 3]| same(way[0], way[1]) && same(way[1], way[2]);
     let mut sets = DisjointSets::default();
-    sets.reset(index(colors.len()));
-    for y in 0..height {
-        for x in 0..width {
-            let i = y * width + x;
-            let is_joined_above = || y > 0 && is_way([i, i - width, i + 1 - width]) && same(i + 1 - width, i + 1);
-            if x + 1 < width && same(i, i + 1) && !is_joined_above() {
-                sets.unite(index(i), index(i + 1));
+    let mut labels = vec![NONE; colors.len()];
+    // Whether a run begins in a column, of the row above and of this one.
+    let [mut above, mut begins] = [vec![true; width], vec![true; width]];
+    for first in (0..height).map(|y| y * width) {
+        core::mem::swap(&mut above, &mut begins);
+        // What does not join the pixel before it begins a run.
+        let row = first..first + width;
+        let [before, after] = [first..first + width - 1, first + 1..first + width];
+        let pairs =
+            colors[before.clone()].iter().zip(&colors[after.clone()]).zip(sides[before].iter().zip(&sides[after]));
+        for (begins, ((color, other), (side, its))) in begins[1..].iter_mut().zip(pairs) {
+            *begins = color != other || side != its && *side != 0 && *its != 0;
+        }
+        let mut run = NONE;
+        for (label, &begins) in labels[row].iter_mut().zip(&begins) {
+            if begins {
+                run = sets.push();
             }
-            if y + 1 < height && same(i, i + width) {
-                sets.unite(index(i), index(i + width));
+            *label = run;
+        }
+        let Some(upper) = first.checked_sub(width) else { continue };
+        // Where no run begins four pixels are of two runs, and what joins these was seen before; but sides begin and end inside of runs.
+        let is_plain = sides[upper..first + width].iter().fold(0, |all, side| all | side) == 0;
+        for x in (0..width).filter(|&x| above[x] || begins[x] || !is_plain) {
+            let (ne, se) = (upper + x, first + x);
+            if same(ne, se) {
+                sets.unite(labels[ne], labels[se]);
             }
-            if x + 1 < width && y + 1 < height {
-                let four = [i, i + 1, i + width, i + width + 1];
-                let [nw, ne, sw, se] = four;
-                let (falls, rises) = (same(nw, se), same(ne, sw));
-                if falls && (!rises || falling_joins(&mixed.shares, four)) {
-                    if !(is_way([nw, ne, se]) || is_way([nw, sw, se])) {
-                        sets.unite(index(nw), index(se));
-                    }
-                } else if rises && !(is_way([ne, nw, sw]) || is_way([ne, se, sw])) {
-                    sets.unite(index(ne), index(sw));
-                }
+            if x == 0 {
+                continue;
+            }
+            let four = [ne - 1, ne, se - 1, se];
+            let [nw, ne, sw, se] = four;
+            let (falls, rises) = (same(nw, se), same(ne, sw));
+            if falls && (!rises || falling_joins(&mixed.shares, four)) {
+                sets.unite(labels[nw], labels[se]);
+            } else if rises {
+                sets.unite(labels[ne], labels[sw]);
             }
         }
     }
-    let mut number = vec![NONE; colors.len()];
+    let mut number = vec![NONE; sets.len()];
     let mut faces: Vec<Face> = Vec::new();
-    let mut labels = vec![NONE; colors.len()];
-    for i in 0..colors.len() {
-        let (x, y) = (i % width, i / width);
-        let root = sets.root(index(i)) as usize;
-        if number[root] == NONE {
-            number[root] = index(faces.len());
-            faces.push(Face { color: usize::from(colors[i]), area: 0, flat: 0, bounds: [x, y, x + 1, y + 1] });
-        }
-        labels[i] = number[root];
-        faces[number[root] as usize].take(1, usize::from(mixed.is_flat[i]), [[x, x + 1], [y, y + 1]]);
+    for (y, labels) in labels.chunks_exact_mut(width).enumerate() {
+        renumber(labels, |run, columns| {
+            let root = sets.root(run) as usize;
+            let (x, pixels) = (columns.start, y * width + columns.start..y * width + columns.end);
+            if number[root] == NONE {
+                number[root] = index(faces.len());
+                let color = usize::from(colors[pixels.start]);
+                faces.push(Face { color, area: 0, flat: 0, bounds: [x, y, x + 1, y + 1] });
+            }
+            let flat = mixed.is_flat[pixels].iter().filter(|&&is_flat| is_flat).count();
+            faces[number[root] as usize].take(columns.len(), flat, [[x, columns.end], [y, y + 1]]);
+            number[root]
+        });
     }
     (labels, faces)
 }

@@ -2,10 +2,12 @@
 
 use alloc::vec;
 use alloc::vec::Vec;
+use core::ops::Range;
 
 use dvp_core::geometry::DisjointSets;
 
 use super::NoPartition;
+use super::runs::{renumber, runs};
 use crate::tuning;
 
 /// How far pixels of one color differ.
@@ -48,13 +50,12 @@ impl Noise {
             });
         }
         let [mut little, mut much] = [0usize; 2];
-        for range in ranges(pixels, size, [1.0; 3]).map(|(_, range)| range) {
-            if range > tuning::CLEAN_STEP && range <= tuning::CODED_STEP {
-                little += 1;
-            } else if range > tuning::CODED_STEP {
-                much += 1;
-            }
-        }
+        ranges(pixels, size, [1.0; 3], |ranges| {
+            let more_than = |step: f32| ranges.iter().filter(|&&range| range > step).count();
+            let [some, most] = [tuning::CLEAN_STEP, tuning::CODED_STEP].map(more_than);
+            little += some - most;
+            much += most;
+        });
         if little > tuning::NOISY_BLOCKS * much {
             return Err(NoPartition::Noisy);
         }
@@ -106,59 +107,78 @@ impl Flats {
     }
 }
 
-/// Upper left corner (pixel index) of every block of two by two pixels, and the most that a channel, times its weight, differs inside.
-fn ranges(pixels: &[[f32; 3]], [width, height]: [usize; 2], weights: [f32; 3]) -> impl Iterator<Item = (usize, f32)> {
-    let blocks = (0..height.saturating_sub(1)).flat_map(move |y| (0..width - 1).map(move |x| y * width + x));
-    blocks.map(move |i| {
-        let four = [pixels[i], pixels[i + 1], pixels[i + width], pixels[i + width + 1]];
-        let range = |c: usize| {
-            let [low, high] =
-                four.iter().fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], p| [low.min(p[c]), high.max(p[c])]);
-            weights[c] * (high - low)
-        };
-        (i, range(0).max(range(1)).max(range(2)))
-    })
+/// Calls `row` for every row of blocks of two by two pixels with what differs most in each: a channel, times its weight.
+fn ranges(pixels: &[[f32; 3]], size: [usize; 2], weights: [f32; 3], mut row: impl FnMut(&[f32])) {
+    let [width, _] = size;
+    let weights: Vec<f32> = (0..3 * width.saturating_sub(1)).map(|k| weights[k % 3]).collect();
+    let [mut low, mut high] = [vec![0.0; 3 * width], vec![0.0; 3 * width]];
+    let (mut of_channels, mut most) = (vec![0.0; weights.len()], vec![0.0; weights.len() / 3]);
+    // What is not finite never comes here, and `f32::max` would ask for it.
+    let [min, max] = [|a: f32, b: f32| if a < b { a } else { b }, |a: f32, b: f32| if a > b { a } else { b }];
+    let rows = || pixels.chunks_exact(width).map(<[_]>::as_flattened);
+    for (upper, lower) in rows().zip(rows().skip(1)) {
+        for (((low, high), &a), &b) in low.iter_mut().zip(&mut high).zip(upper).zip(lower) {
+            (*low, *high) = (min(a, b), max(a, b));
+        }
+        let [lows, highs] = [&low, &high].map(|values| values.iter().zip(&values[3..]));
+        for (((of, weight), (&a, &b)), (&c, &d)) in of_channels.iter_mut().zip(&weights).zip(lows).zip(highs) {
+            *of = weight * (max(c, d) - min(a, b));
+        }
+        for (most, of) in most.iter_mut().zip(of_channels.as_chunks::<3>().0) {
+            *most = max(max(of[0], of[1]), of[2]);
+        }
+        row(&most);
+    }
 }
 
+/// Finds the flat blocks of a picture. Blocks that share a pixel are of one region: runs of blocks are joined with those above that they touch.
 pub(super) fn find(pixels: &[[f32; 3]], size: [usize; 2], noise: &Noise) -> Flats {
-    let width = size[0];
-    let mut sets = DisjointSets::default();
-    sets.reset(u32::try_from(pixels.len()).unwrap_or(NONE));
-    let mut is_flat = vec![false; pixels.len()];
-    // The last block that was flat, and those of the row above.
-    let (mut last, mut above) = (None, vec![false; width]);
-    for (i, range) in ranges(pixels, size, noise.weights()) {
-        let is_block = range <= noise.flat;
-        let is_above_flat = core::mem::replace(&mut above[i % width], is_block);
-        if !is_block {
-            continue;
-        }
-        // What two blocks share is of one region already.
-        let is_left_flat = last.is_some_and(|last: usize| last + 1 == i);
-        last = Some(i);
-        for (j, is_united) in [(i + 1, is_above_flat), (i + width, is_left_flat), (i + width + 1, false)] {
-            is_flat[j] = true;
-            if !is_united {
-                sets.unite(index(i), index(j));
-            }
-        }
-        is_flat[i] = true;
-    }
-    let mut number = vec![NONE; pixels.len()];
-    let mut means: Vec<([f64; 3], usize)> = Vec::new();
+    let [width, _] = size;
+    // Runs of flat blocks are numbered row by row; where pixels are of several they hold the last one.
     let mut regions = vec![NONE; pixels.len()];
-    for (i, pixel) in pixels.iter().enumerate().filter(|&(i, _)| is_flat[i]) {
-        let root = sets.root(index(i)) as usize;
-        if number[root] == NONE {
-            number[root] = index(means.len());
-            means.push(([0.0; 3], 0));
+    let mut sets = DisjointSets::default();
+    let [mut above, mut row]: [Vec<(Range<usize>, u32)>; 2] = [Vec::new(), Vec::new()];
+    let mut is_flat = vec![false; width.saturating_sub(1)];
+    let mut first = 0;
+    ranges(pixels, size, noise.weights(), |ranges| {
+        is_flat.iter_mut().zip(ranges).for_each(|(is_flat, &range)| *is_flat = range <= noise.flat);
+        core::mem::swap(&mut above, &mut row);
+        row.clear();
+        let mut next = 0;
+        for (_, blocks) in runs(&is_flat).filter(|&(is_flat, _)| is_flat) {
+            let number = sets.push();
+            while above.get(next).is_some_and(|(other, _)| other.end < blocks.start) {
+                next += 1;
+            }
+            let touching = above[next..].iter().take_while(|(other, _)| other.start <= blocks.end);
+            touching.for_each(|&(_, other)| _ = sets.unite(other, number));
+            for y in [first, first + width] {
+                regions[y + blocks.start..=y + blocks.end].fill(number);
+            }
+            row.push((blocks, number));
         }
-        let (sum, count) = &mut means[number[root] as usize];
-        for (total, &value) in sum.iter_mut().zip(pixel) {
-            *total += f64::from(value);
-        }
-        *count += 1;
-        regions[i] = number[root];
+        first += width;
+    });
+    // A region is known by its first run: they are numbered in the order of their first pixels.
+    let mut number = vec![NONE; sets.len()];
+    let mut means: Vec<([f64; 3], usize)> = Vec::new();
+    for (pixels, regions) in pixels.chunks_exact(width).zip(regions.chunks_exact_mut(width)) {
+        renumber(regions, |run, columns| {
+            if run == NONE {
+                return NONE;
+            }
+            let root = sets.root(run) as usize;
+            if number[root] == NONE {
+                number[root] = index(means.len());
+                means.push(([0.0; 3], 0));
+            }
+            let (sum, count) = &mut means[number[root] as usize];
+            *count += columns.len();
+            for pixel in &pixels[columns] {
+                sum.iter_mut().zip(pixel).for_each(|(total, &value)| *total += f64::from(value));
+            }
+            number[root]
+        });
     }
     for (sum, count) in &mut means {
         *sum = sum.map(|total| total / *count as f64);

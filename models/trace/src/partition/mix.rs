@@ -264,14 +264,15 @@ pub(super) fn open(
     noise: &Noise,
 ) -> Vec<bool> {
     let mut near = Near::default();
-    let is_open = |(i, pixel): (usize, &[f32; 3])| {
+    let mut is_open = vec![false; pixels.len()];
+    for i in (0..pixels.len()).filter(|&i| flat_colors[i] == u16::MAX) {
         let mut is_left = |&reach: &usize| {
-            best_mixture(pixel.map(f64::from), near.within(reach, flat_colors, size, i), palette)
+            best_mixture(pixels[i].map(f64::from), near.within(reach, flat_colors, size, i), palette)
                 .is_none_or(|best| best.misfit > f64::from(noise.mixed))
         };
-        flat_colors[i] == u16::MAX && REACH[..noise.reaches()].iter().all(&mut is_left)
-    };
-    pixels.iter().enumerate().map(is_open).collect()
+        is_open[i] = REACH[..noise.reaches()].iter().all(&mut is_left);
+    }
+    is_open
 }
 
 fn colors_near(flat_colors: &[u16], [width, height]: [usize; 2], (i, reach): (usize, usize), near: &mut Vec<u16>) {

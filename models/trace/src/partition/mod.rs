@@ -3,7 +3,7 @@
 //! Every pixel is pure (of one face) or mixed (of two, rarely three, with shares). `flat` finds what is of one color beyond doubt,
 //! `palette` the colors, `seam` mends what renderers let through between things side by side, `thin` (windows of `cross`, colors of `ink`, joined
 //! by `chain`, and by `pair` where two lines fill a window) finds and `erase` takes out lines without a pixel of their own (`sliver` puts some back), `mix` explains every other pixel as a mixture of colors nearby, `faces`
-//! joins pixels to faces, but not across the corners of `checker`.
+//! joins pixels to faces, but not across the corners of `checker`. `runs` are what all read instead of single pixels.
 
 mod chain;
 mod checker;
@@ -16,6 +16,7 @@ mod ink;
 mod mix;
 mod pair;
 mod palette;
+mod runs;
 mod seam;
 mod sliver;
 #[cfg(test)]
@@ -99,7 +100,9 @@ impl Partition {
     /// As [`Self::of`].
     pub fn readings(image: &ImageView<'_, f32>, coded: bool) -> Result<(Self, Option<Self>), NoPartition> {
         let size = [image.size().width(), image.size().height()];
-        let mut pixels: Vec<[f32; 3]> = (0..image.size().pixels()).map(|i| image.pixel(i)).collect();
+        let [red, green, blue] = [0, 1, 2].map(|c| image.channel(c));
+        let mut pixels: Vec<[f32; 3]> =
+            red.iter().zip(green).zip(blue).map(|((&red, &green), &blue)| [red, green, blue]).collect();
         let noise = flat::Noise::of(&pixels, size, coded)?;
         let weighted = |pixels: &mut [[f32; 3]]| pixels.iter_mut().for_each(|pixel| *pixel = coded::weighted(*pixel));
         if noise.is_coded() {
