@@ -189,6 +189,12 @@ pub const PAIR_SLOPE: f64 = 1.1;
 /// How far apart (pixels) the parts of a thin line may be that something crosses.
 pub const THIN_GAP: f64 = 32.0;
 
+/// Seams along fewer steps than this are mixtures of the three colors that meet in a corner.
+pub const LEAST_SEAM: usize = 16;
+/// Share of a boundary's steps that tell the same of it, at least, for it to be that: more than half, and some that are wrong.
+pub const SEAM_SHARE: f64 = 0.6;
+/// Share of a boundary's steps that show a mixture, at least, for seams to be looked for: fewer and it runs along the pixel grid.
+pub const SEAM_LEAST_MIXED: f64 = 0.25;
 /// Most of a pixel that shows through between two things side by side: a quarter, and rounding.
 pub const SEAM_MOST: f64 = 0.27;
 

@@ -45,6 +45,8 @@ pub(super) struct Completion<'a> {
     pub(super) pens: Vec<Option<StrokeFit>>,
     /// The faces that each face touches.
     pub(super) neighbors: Vec<Vec<u32>>,
+    /// Pairs of faces of which neither goes on behind the other.
+    pub(super) seamed: BTreeSet<(u32, u32)>,
     /// What speaks for the order.
     pub(super) order: &'a Order,
     /// The face that everything lies on.
@@ -124,6 +126,18 @@ impl Completion<'_> {
     pub(super) fn pen(&self, group: &[u32]) -> Option<&StrokeFit> {
         let [face] = group else { return None };
         self.pens[*face as usize].as_ref()
+    }
+
+    /// Whether a face lies edge to edge with all around it, but for lines and what lies behind everything: then nothing of it is hidden.
+    pub(super) fn is_apart(&self, face: u32) -> bool {
+        let around = &self.neighbors[face as usize];
+        let is_beside = |other: &u32| self.seamed.contains(&(face, *other));
+        // What has its color touches it across a corner.
+        let color = |face: u32| self.partition.faces[face as usize].color;
+        let may_hide = |other: &&u32| {
+            self.rank(**other) > 0 && self.pens[**other as usize].is_none() && color(**other) != color(face)
+        };
+        around.iter().any(is_beside) && around.iter().filter(may_hide).all(is_beside)
     }
 
     /// The faces beside some faces that come to lie in front of them if they go where the hindmost of them is.
@@ -321,7 +335,9 @@ impl Completion<'_> {
 
     /// How a step of a layer's boundary is hidden, if it is.
     fn hidden(&self, step: &Step, rank: usize, is_speck: bool, is_part: bool) -> Option<Hidden> {
-        if step.other != OUTSIDE && self.rank(step.other) <= rank {
+        // What is seen in parts goes on behind something in any case.
+        let is_beside = !is_part && self.seamed.contains(&(step.inner, step.other));
+        if step.other != OUTSIDE && (self.rank(step.other) <= rank || is_beside) {
             return None;
         }
         let pen = self.pens.get(step.other as usize).and_then(Option::as_ref).and_then(|pen| pen.strokes.first());

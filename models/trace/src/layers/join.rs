@@ -217,6 +217,9 @@ pub(super) fn candidates(completion: &Completion<'_>) -> Vec<Vec<u32>> {
     let painted = completion.painted();
     for &face in &painted {
         for other in reached(completion, face, |_, _| true) {
+            if completion.is_apart(face) || completion.is_apart(other) {
+                continue;
+            }
             sets.unite(face, other);
         }
     }
@@ -252,7 +255,9 @@ fn reached(completion: &Completion<'_>, face: u32, hides: impl Fn(u32, u32) -> b
         for &next in &completion.neighbors[way as usize] {
             let is_same = partition.faces[next as usize].color == color;
             let is_hidden = if is_same { hides(way, next) } else { way != face || hides(next, face) };
-            if completion.rank(next) > rank && is_hidden && seen.insert(next) {
+            // What is hidden at either end of the way has no seam there.
+            let is_beside = (is_same || way == face) && completion.seamed.contains(&(way, next));
+            if completion.rank(next) > rank && is_hidden && !is_beside && seen.insert(next) {
                 if is_same { found.push(next) } else { ways.push(next) }
             }
         }

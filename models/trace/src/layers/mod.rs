@@ -3,6 +3,7 @@
 //! | file | holds |
 //! |---|---|
 //! | `junction` | who lies in front where three faces meet |
+//! | `edge_to_edge` | who lies beside whom |
 //! | `order` | one order of all faces |
 //! | `settle` | another order where that is shorter |
 //! | `stack` | one depth for each color where that is shorter |
@@ -18,6 +19,7 @@
 //! | `raster` | the check that an outline hides nothing |
 
 mod complete;
+mod edge_to_edge;
 mod join;
 mod junction;
 mod link;
@@ -44,6 +46,7 @@ use crate::ruler::Ruler;
 use crate::stroke::fit_thin;
 use crate::tuning;
 use complete::Completion;
+use edge_to_edge::EdgeToEdge;
 use memo::Memo;
 use order::Order;
 
@@ -99,7 +102,8 @@ pub fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<Color>) 
     let background = background(partition, rings, matte.map(|matte| partition.as_palette(matte)));
     let memo = Memo::default();
     let mut pens = pen::find(partition, rings, background, &ruler, &memo);
-    let order = Order::of(partition, rings, background, matte.is_some(), &mut pens);
+    let edge_to_edge = EdgeToEdge::of(partition, rings);
+    let order = Order::of(partition, rings, background, matte.is_some(), &mut pens, &edge_to_edge.votes);
     let rank = order.rank.clone();
     let mut completion = Completion {
         partition,
@@ -107,6 +111,7 @@ pub fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<Color>) 
         rank,
         pens,
         neighbors: complete::neighbors(rings),
+        seamed: edge_to_edge.pairs,
         order: &order,
         background,
         is_clear: matte.is_some(),

@@ -29,6 +29,7 @@ impl Order {
         background: u32,
         clear: bool,
         pens: &mut [Option<StrokeFit>],
+        of_seams: &Votes,
     ) -> Self {
         let (mut votes, mut shown) = votes(rings);
         add_colors(partition, rings, &mut votes);
@@ -41,6 +42,9 @@ impl Order {
         add_pens(rings, pens, &mut votes);
         let neighbors: Vec<Vec<u32>> = rings.iter().map(|rings| neighbors_along(rings.iter())).collect();
         add_enclosures(partition, (rings, &neighbors), background, clear, &mut votes);
+        // The background lies behind everything, whatever was painted last.
+        let of_seams = of_seams.iter().filter(|(pair, _)| pair.0 != background);
+        of_seams.for_each(|(&pair, bits)| *votes.entry(pair).or_default() += bits);
         let n = partition.faces.len();
         // What lies in front of each face, and behind how much each face must lie that is not placed yet.
         let mut in_front: Vec<Vec<(u32, f64)>> = vec![Vec::new(); n];

@@ -77,7 +77,9 @@ fn unite(completion: &mut Completion<'_>, groups: &mut Vec<Group>) {
     colors.sort_unstable();
     colors.dedup();
     for wanted in colors {
-        let of_color: Vec<usize> = (0..groups.len()).filter(|&at| color(&groups[at], completion) == wanted).collect();
+        let is_part = |at: &usize| groups[*at].faces.iter().all(|&face| !completion.is_apart(face));
+        let is_wanted = |at: &usize| color(&groups[*at], completion) == wanted;
+        let of_color: Vec<usize> = (0..groups.len()).filter(is_wanted).filter(is_part).collect();
         let [first, .., _] = of_color[..] else { continue };
         if of_color.len() > tuning::MOST_PAIRED {
             continue;

@@ -269,6 +269,9 @@ impl Search<'_, '_> {
         let mut found = Vec::new();
         for between in (0..completion.rank.len() as u32).filter(|&face| is_open(face)) {
             let around = &completion.neighbors[between as usize];
+            let is_open = |face: u32| {
+                is_open(face) && !completion.seamed.contains(&(between, face)) && !completion.is_apart(face)
+            };
             for (k, &a) in around.iter().enumerate().filter(|&(_, &a)| is_open(a)) {
                 let same = around[..k].iter().copied().filter(|&b| is_open(b) && color(b) == color(a));
                 found.extend(
@@ -320,7 +323,8 @@ impl Search<'_, '_> {
                 }
             }
         }
-        pairs.retain(|&(a, b)| self.completion.neighbors[a as usize].contains(&b));
+        let can_hide = |&(a, b): &(u32, u32)| !self.completion.seamed.contains(&(a, b));
+        pairs.retain(|pair| self.completion.neighbors[pair.0 as usize].contains(&pair.1) && can_hide(pair));
         pairs
     }
 }

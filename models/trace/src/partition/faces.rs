@@ -76,6 +76,7 @@ fn partition(size: [usize; 2], pixels: Vec<[f32; 3]>, mixed: Mixed, labels: Vec<
         shares,
         faces,
         lines: Vec::new(),
+        seams: Vec::new(),
         slivers: Vec::new(),
         palette,
         coded: false,

@@ -31,6 +31,8 @@ use crate::tuning;
 
 pub use faces::Face;
 pub(crate) use mix::coverage;
+pub(crate) use palette::distance;
+pub(crate) use seam::{BEHIND, Seam};
 pub use thin::ThinLine;
 
 /// Colors as the picture stores them, RGB.
@@ -54,6 +56,8 @@ pub struct Partition {
     pub faces: Vec<Face>,
     /// Lines that were taken out before the cut.
     pub lines: Vec<ThinLine>,
+    /// Pixels (ascending) where two things that lie edge to edge let through what is behind both; none of pictures that went through a coder.
+    pub(crate) seams: Vec<Seam>,
     /// Lines that are faces.
     pub(crate) slivers: Vec<sliver::Sliver>,
     /// The colors; faces name one of them. [`Self::rgb`] makes colors of them.
@@ -121,11 +125,13 @@ impl Partition {
             return Err(NoPartition::NotFlat { flat: share });
         }
         let mut colors = palette::Palette::of(&flats, &noise)?;
-        let finish = |pixels: Vec<[f32; 3]>, flats: &flat::Flats, colors, lines| {
+        let finish = |pixels: Vec<[f32; 3]>, flats: &flat::Flats, colors, lines, mut seams: Vec<Seam>| {
+            seams.sort_unstable_by_key(|seam| seam.pixel);
             let mixed = mix::explain(&pixels, size, flats, colors, &noise);
-            Self { coded: noise.is_coded(), sigma: noise.sigma, lines, ..faces::cut(size, pixels, mixed) }
+            Self { coded: noise.is_coded(), sigma: noise.sigma, lines, seams, ..faces::cut(size, pixels, mixed) }
         };
         let mut lines = Vec::new();
+        let mut seams = Vec::new();
         let mut as_faces = None;
         for widest in [tuning::THIN_WIDTH, tuning::CROSSING_WIDTH] {
             // Lines that cross have two colors, and lie on a third.
@@ -133,12 +139,16 @@ impl Partition {
                 continue;
             }
             let found = Found::of(&mut pixels, size, &flats, &colors, &noise, widest);
-            if found.is_mended {
+            if !found.mended.is_empty() {
+                // What a coder leaves along edges is as much as what shows through.
+                if !noise.is_coded() {
+                    seams.extend(&found.mended);
+                }
                 flats = find(&pixels);
                 colors = palette::Palette::of(&flats, &noise)?;
             }
             if widest > tuning::THIN_WIDTH && !found.lines.is_empty() {
-                as_faces = Some(finish(pixels.clone(), &flats, colors.clone(), lines.clone()));
+                as_faces = Some(finish(pixels.clone(), &flats, colors.clone(), lines.clone(), seams.clone()));
             }
             if !found.lines.is_empty() {
                 // Wide lines may pass under thin ones.
@@ -147,13 +157,19 @@ impl Partition {
                 colors = palette::Palette::of(&flats, &noise)?;
             }
         }
-        Ok((finish(pixels, &flats, colors, lines), as_faces))
+        Ok((finish(pixels, &flats, colors, lines, seams), as_faces))
     }
 
     /// Color of a face.
     #[must_use]
     pub fn color(&self, face: u32) -> Color {
         self.palette[self.faces[face as usize].color]
+    }
+
+    /// What a pixel (its index) shows of what is behind two things that lie edge to edge, if it does.
+    pub(crate) fn seam(&self, pixel: usize) -> Option<Seam> {
+        let at = self.seams.binary_search_by_key(&pixel, |seam| seam.pixel as usize).ok()?;
+        Some(self.seams[at])
     }
 
     /// A color of the palette, or of a line, as the picture stores it.
@@ -184,8 +200,8 @@ struct Found {
     known: Vec<bool>,
     /// Colors of flat pixels when the lines were found.
     palette: Vec<Color>,
-    /// Whether seams were mended: pixels are others than before.
-    is_mended: bool,
+    /// Pixels that were seams, which are others than before.
+    mended: Vec<Seam>,
     /// Of a channel, as [`cross::Canvas`] has them.
     noise: f64,
     contrast: f64,
@@ -205,7 +221,7 @@ impl Found {
         let (contrast, white) = (noise.contrast, if noise.is_coded() { coded::weighted([1.0; 3]) } else { [1.0; 3] });
         let mut open = mix::open(pixels, size, &flat, &colors.colors, noise);
         let noise = f64::from(noise.mixed);
-        let is_mended = seam::mend(pixels, size, &flat, &mut open, &colors.colors, noise);
+        let mended = seam::mend(pixels, size, &flat, &mut open, &colors.colors, noise);
         let white = white.map(f64::from);
         let canvas = cross::Canvas { pixels, size, flat: &flat, open: &open, noise, contrast, white, widest };
         let mut lines = thin::find(&canvas, &colors.colors);
@@ -214,7 +230,7 @@ impl Found {
             lines = thin::crossing_lines(lines, ground);
         }
         let known = flat.iter().map(|&color| color != u16::MAX).collect();
-        Self { lines, open, known, palette: colors.colors.clone(), is_mended, noise, contrast }
+        Self { lines, open, known, palette: colors.colors.clone(), mended, noise, contrast }
     }
 
     /// Takes the lines out of the picture.

@@ -49,6 +49,6 @@ impl Palette {
 }
 
 /// The most that a channel differs.
-pub(super) fn distance(a: Color, b: Color) -> f64 {
+pub(crate) fn distance(a: Color, b: Color) -> f64 {
     (0..3).map(|c| (a[c] - b[c]).abs()).fold(0.0, f64::max)
 }

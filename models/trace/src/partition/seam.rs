@@ -3,15 +3,29 @@
 //! A pixel that the front thing covers by b and the other one by 1 - b is `b front + (1 - b) ((1 - b) other + b behind)`: up to a
 //! quarter of it is neither's. The seam says nothing of the drawing; the pixel becomes the mixture of the two that it stands for.
 
+use alloc::vec::Vec;
+
 use super::Color;
 use super::cross::shares_of_three;
+use super::flat::index;
 use super::mix::Near;
 use crate::tuning;
 
 /// Colors that may show through, by falling area: what lies behind much is large.
-const BEHIND: usize = 3;
+pub(crate) const BEHIND: usize = 3;
 
-/// Mends the pixels of `open` that are seams; they are open no more. Whether there were any.
+/// A pixel that was a seam.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Seam {
+    /// Its index in the picture.
+    pub(crate) pixel: u32,
+    /// Color of what was painted last there.
+    pub(crate) front: Color,
+    /// What shows through, one of [`BEHIND`].
+    pub(crate) behind: u16,
+}
+
+/// Mends the pixels of `open` that are seams; they are open no more. Which those were.
 pub(super) fn mend(
     pixels: &mut [[f32; 3]],
     size: [usize; 2],
@@ -19,8 +33,8 @@ pub(super) fn mend(
     open: &mut [bool],
     palette: &[Color],
     noise: f64,
-) -> bool {
-    let mut is_mended = false;
+) -> Vec<Seam> {
+    let mut mended = Vec::new();
     let mut near = Near::default();
     for i in 0..pixels.len() {
         if !open[i] {
@@ -37,19 +51,19 @@ pub(super) fn mend(
                             continue;
                         };
                         if misfit < best.0 {
-                            best = (misfit, Some((front, other, share)));
+                            best = (misfit, Some((front, other, behind, share)));
                         }
                     }
                 }
             }
         }
-        if let (_, Some((front, other, share))) = best {
+        if let (_, Some((front, other, behind, share))) = best {
             pixels[i] = core::array::from_fn(|c| (share * front[c] + (1.0 - share) * other[c]) as f32);
             open[i] = false;
-            is_mended = true;
+            mended.push(Seam { pixel: index(i), front, behind });
         }
     }
-    is_mended
+    mended
 }
 
 /// Coverage by the front thing, and what is left, the most that a channel differs.

@@ -6,6 +6,7 @@ mod known;
 mod lines;
 mod nested;
 mod repeated;
+mod seams;
 
 use alloc::string::ToString as _;
 use alloc::vec;

@@ -1,0 +1,40 @@
+//! Things painted edge to edge: what is behind both shows through along their seam, so neither goes on behind the other.
+
+use alloc::vec::Vec;
+
+use super::{RED, WHITE, error, found, object, paint, rectangle, scene};
+
+const TEAL: [f32; 3] = [0.13, 0.66, 0.52];
+const BLUE: [f32; 3] = [0.1, 0.2, 0.7];
+
+#[test]
+fn fields_of_one_color_across_corners_are_no_sheet_behind_the_others() {
+    // A square of teal behind four fields of other colors would be shorter.
+    let rows = [
+        [[0.27, 0.75, 0.44], [0.28, 0.14, 0.46], TEAL],
+        [[0.25, 0.27, 0.53], TEAL, [0.16, 0.47, 0.56]],
+        [TEAL, [0.74, 0.87, 0.15], TEAL],
+    ];
+    let field = |k: usize| {
+        let [x, y] = [k % 3, k / 3].map(|k| 18.3 + 25.4 * k as f64 + 4.2);
+        object(rectangle(25.4, 25.4), [x, y], 0.0, rows[k / 3][k % 3])
+    };
+    let picture = paint(&scene(WHITE, (0..9).map(field).collect()));
+    let found = found(&picture);
+    assert_eq!(found.objects.len(), 9);
+    let error = error(&picture, &found);
+    assert!(error < 2e-4, "{error}");
+}
+
+#[test]
+fn seams_are_painted_as_they_were() {
+    let half = |side: f64, color| {
+        let (sine, cosine) = 0.3_f64.sin_cos();
+        object(rectangle(30.0, 50.0), [48.2 + side * 15.0 * cosine, 47.7 + side * 15.0 * sine], 0.3, color)
+    };
+    let picture = paint(&scene(WHITE, [half(-1.0, RED), half(1.0, BLUE)].into_iter().collect::<Vec<_>>()));
+    let found = found(&picture);
+    assert_eq!(found.objects.len(), 2);
+    let error = error(&picture, &found);
+    assert!(error < 2e-4, "{error}");
+}
