@@ -161,6 +161,9 @@ pub(crate) const SEARCH_SAMPLES: usize = 32;
 pub(crate) const FINISH_SAMPLES: usize = 80;
 /// Start angles over a full turn.
 pub(crate) const FULL_TURN_STARTS: usize = 12;
+/// Outlines of starts are off by about this share of the object's radius: half the angle between two of them (0.13 radians), and as much
+/// in size.
+pub(crate) const START_ERROR: f64 = 0.15;
 /// An object with more visibly missed pixels around is searched for again.
 pub(crate) const MISSED_PIXELS: usize = 4;
 /// Mean squared distance error (px^2) below which an outline is where it should be, whatever is missed around it.

@@ -117,36 +117,57 @@ fn a_sharp_dot_among_wide_edges_is_found() {
     assert!(found.iter().any(is_dot), "{found:?}");
 }
 
-/// A square along the pixel grid shows few coverages, and a small ellipse only some more: those of area coverage as well
-/// as the reference's. Its outlines tell, when they fit.
-#[test]
-fn edges_along_the_grid_do_not_hide_the_reference() {
+/// A prototype of MDS-HR's bank: which, position, scale, rotation, color.
+type Placed = (usize, [f64; 2], f64, f64, [f64; 3]);
+
+/// A picture of objects of MDS-HR's shapes, square, the scene it shows, and the shapes.
+fn known(background: [f64; 3], objects: &[Placed], side: usize) -> (Image<f64>, Scene<f64>, Bank<f64>) {
     let bank = mdshr_bank::<f64>(64);
-    let object = |prototype: usize, translation, scale, rotation, color| {
+    let object = |&(prototype, translation, scale, rotation, color): &Placed| {
         let pose = Pose { translation, scale, rotation };
         Object::of_efd(pose, color, 1.0, bank.prototypes()[prototype].clone(), Some(prototype))
     };
-    let truth = Scene {
-        objects: vec![
-            object(1, [0.66716456, 0.18682371], 0.23570311, -0.7826108, [0.7940591, 0.6805793, 0.23702353]),
-            object(2, [0.6768109, 0.8212052], 0.11510161, -3.0916421, [0.21781874, 0.033245564, 0.24641508]),
-        ],
-        ..Scene::empty([0.7798844, 0.11206132, 0.06749672])
-    };
-    let size = ImageSize::new(128, 128).unwrap();
+    let truth = Scene { objects: objects.iter().map(object).collect(), ..Scene::empty(background) };
+    let size = ImageSize::new(side, side).unwrap();
     let (mut drawing, mut image) = (Drawing::default(), Image::zeros(size));
     truth.draw(&OutlineBasis::new(64, 64).unwrap(), &mut drawing).unwrap();
     TriangleRenderer::default().render(&drawing, size, &mut Default::default(), image.data_mut()).unwrap();
     let prototypes = bank.prototypes().iter().map(|efd| (String::new(), efd.clone())).collect();
-    let bank = Some(Bank { prototypes });
+    (image, truth, Bank { prototypes })
+}
+
+/// A square along the pixel grid shows few coverages, and a small ellipse only some more: those of area coverage as well
+/// as the reference's. Its outlines tell, when they fit.
+#[test]
+fn edges_along_the_grid_do_not_hide_the_reference() {
+    let objects = [
+        (1, [0.66716456, 0.18682371], 0.23570311, -0.7826108, [0.7940591, 0.6805793, 0.23702353]),
+        (2, [0.6768109, 0.8212052], 0.11510161, -3.0916421, [0.21781874, 0.033245564, 0.24641508]),
+    ];
+    let (image, truth, bank) = known([0.7798844, 0.11206132, 0.06749672], &objects, 128);
     for max_steps in [0, 10, 20] {
-        let options = FitOptions::default().with_bank(bank.clone()).with_max_steps(max_steps);
+        let options = FitOptions::default().with_bank(Some(bank.clone())).with_max_steps(max_steps);
         let fit = Fitter::new(options).unwrap().fit(image.view(), &mut FitScratch::default()).unwrap();
         assert_eq!((fit.scene.edge.law, fit.scene.objects.len()), (EdgeLaw::SquaredDistance, 2), "{max_steps} steps");
         for (found, truth) in fit.scene.objects.iter().zip(&truth.objects) {
             let (found, truth) = (found.pose.scale, truth.pose.scale);
             assert!((found - truth).abs() < 1e-3, "{max_steps} steps: {found} for {truth}");
         }
+    }
+}
+
+/// Starts are off by a share of the size: in large pictures by many pixels.
+#[test]
+fn objects_that_the_border_cuts_are_found_at_every_size() {
+    let heart = (0, [0.541046, 0.074293144], 0.2896785, 1.6675643, [0.29009002, 0.6645625, 0.3359089]);
+    for side in [128, 256, 384, 768, 1024] {
+        let (image, truth, bank) = known([0.67183375, 0.16439027, 0.82695675], &[heart], side);
+        let options = FitOptions::default().with_bank(Some(bank));
+        let fit = Fitter::new(options).unwrap().fit(image.view(), &mut FitScratch::default()).unwrap();
+        let [object] = &fit.scene.objects[..] else { panic!("{} objects at {side} px", fit.scene.objects.len()) };
+        let (found, truth) = (object.pose, truth.objects[0].pose);
+        assert_eq!(object.prototype(), Some(0), "{side} px");
+        assert!((found.scale - truth.scale).abs() < 2e-4, "{side} px: {} for {}", found.scale, truth.scale);
     }
 }
 

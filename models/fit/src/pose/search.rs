@@ -9,7 +9,7 @@ use super::equations::{Robustness, SampleLanes};
 use super::field::OutlineField;
 use super::gauss_newton::{Frame, PosePx};
 use crate::segment::{Segment, Segmentation};
-use crate::tuning::{FINISH_SAMPLES, FULL_TURN_STARTS, SEARCH_SAMPLES};
+use crate::tuning::{FINISH_SAMPLES, FULL_TURN_STARTS, SEARCH_SAMPLES, START_ERROR};
 
 /// Sizes tried for an object that leaves the image, relative to its visible part.
 const CROPPED_SIZES: [f64; 4] = [1.0, 1.3, 1.7, 2.4];
@@ -162,7 +162,10 @@ fn rough<T: Real>(
     plan: Plan,
     out: &mut Vec<Candidate<T>>,
 ) {
-    let wide = Robustness { width_px: T::of(3.0), rough: plan.rough };
+    // Starts are off by a share of the object's size, and by the width of its edge.
+    let off = T::of(START_ERROR) * visible_radius(segment);
+    let [wide, narrow] =
+        [3.0, 1.5].map(|edge| Robustness { width_px: T::of(edge).max(T::of(0.5 * edge) * off), rough: plan.rough });
     let turns = prototype.symmetry.max(1);
     let starts = if prototype.symmetry == 0 { 1 } else { plan.starts.div_ceil(turns).max(3) };
     let range = T::of(2.0 * core::f64::consts::PI) / T::of_usize(turns);
@@ -176,7 +179,6 @@ fn rough<T: Real>(
         }
     }
     for (_, pose) in best.into_iter().flatten() {
-        let narrow = Robustness { width_px: T::of(1.5), rough: plan.rough };
         let (pose, _, first) = pose.refine(field, samples, wide, plan.steps[0]);
         let (pose, cost, second) = pose.refine(field, samples, narrow, plan.steps[1]);
         out.push(Candidate { prototype: index, pose, cost, steps: first + second });
@@ -198,6 +200,11 @@ pub(crate) fn insert<T: Real>(best: &mut [Option<(T, PosePx<T>)>], cost: T, pose
     }
 }
 
+/// Radius (px) of the disk with the area of what is seen of an object. Flat pixels end about 0.7 px inside the outline.
+fn visible_radius<T: Real>(segment: &Segment<T>) -> T {
+    (T::of_usize(segment.pixels) / T::of(core::f64::consts::PI)).sqrt() + T::of(0.7)
+}
+
 /// A start whose area is that of the segment and whose centroid is its centroid; for an enlarged object the centroid
 /// moves out of the image, away from the image's center line, so that the inner rim stays where it is.
 fn start<T: Real>(
@@ -208,11 +215,9 @@ fn start<T: Real>(
     rotation: T,
 ) -> PosePx<T> {
     let count = T::of_usize(segment.pixels);
-    let pi = T::of(core::f64::consts::PI);
     let visible = [segment.sums[0] / count, segment.sums[1] / count];
-    // Flat pixels end about 0.7 px inside the outline.
-    let radius = (count / pi).sqrt() + T::of(0.7);
-    let scale = enlarged * radius / (field.area / pi).sqrt();
+    let radius = visible_radius(segment);
+    let scale = enlarged * radius / (field.area / T::of(core::f64::consts::PI)).sqrt();
     let mut center = visible;
     let growth = radius * (enlarged - T::one());
     let (width, height) = (T::of_usize(size.width()), T::of_usize(size.height()));

@@ -14,6 +14,9 @@ const MOST_MIXED: usize = 2;
 /// How far a mixture may be off: by the rounding of three colors to 8 bits.
 const ROUNDING: f64 = 1.5 / 255.0;
 
+/// Bands of one color in soft edges are at most this wide, px.
+const WIDEST_BAND_PX: usize = 7;
+
 /// A picture whose pixels each show one of few colors.
 #[derive(Clone, Debug)]
 pub(super) struct FlatPicture {
@@ -54,10 +57,57 @@ impl FlatPicture {
         }
         let ground = (0..colors.len()).max_by_key(|&color| counts[color])?;
         let mut picture = Self { size, colors, color_of, ground };
+        if picture.is_soft() {
+            return None;
+        }
         let edges = picture.edge_count();
         let rare = (0..counts.len()).filter(|&color| counts[color] <= MOST_MIXED);
         let mixed: usize = rare.map(|color| picture.unmix(color)).sum();
         (f64::of_usize(mixed) <= MOST_HARD * f64::of_usize(edges)).then_some(picture)
+    }
+
+    /// Whether most steps from color to color are those of soft edges: from and to colors that are nowhere wide and mix two that are. Where an
+    /// object hardly differs from what is around it, its edge has few colors however soft it is.
+    fn is_soft(&self) -> bool {
+        let count = self.colors.len();
+        let widths = self.widths();
+        let wide: Vec<usize> = (0..count).filter(|&color| widths[color] > WIDEST_BAND_PX).collect();
+        let pairs = || wide.iter().flat_map(|&a| wide.iter().map(move |&b| (a, b)));
+        let is_band =
+            |color: usize| widths[color] <= WIDEST_BAND_PX && pairs().any(|(a, b)| self.share(color, a, b).is_some());
+        let bands: Vec<bool> = (0..count).map(is_band).collect();
+        let (mut of_bands, mut steps) = (0_usize, 0_usize);
+        let width = self.size.width();
+        for (pixel, &color) in self.color_of.iter().enumerate() {
+            let [left, above] = [(pixel % width > 0).then(|| pixel - 1), pixel.checked_sub(width)];
+            for other in [left, above].into_iter().flatten().map(|other| self.color_of[other]) {
+                steps += usize::from(other != color);
+                of_bands += usize::from(other != color && (bands[color] || bands[other]));
+            }
+        }
+        2 * of_bands > steps
+    }
+
+    /// The side of the largest square of each color, px.
+    fn widths(&self) -> Vec<usize> {
+        let width = self.size.width();
+        let mut widths = vec![0; self.colors.len()];
+        // Of the squares that end at the pixels of one row, each in the column behind its own.
+        let (mut above, mut row) = (vec![0; width + 1], vec![0; width + 1]);
+        for (pixel, &color) in self.color_of.iter().enumerate() {
+            let x = pixel % width;
+            let of_color = |other: Option<usize>| other.is_some_and(|other| self.color_of[other] == color);
+            let is_inside = x > 0
+                && of_color(Some(pixel - 1))
+                && of_color(pixel.checked_sub(width))
+                && of_color(pixel.checked_sub(width + 1));
+            row[x + 1] = if is_inside { 1 + above[x].min(above[x + 1]).min(row[x]) } else { 1 };
+            widths[color] = widths[color].max(row[x + 1]);
+            if x + 1 == width {
+                core::mem::swap(&mut above, &mut row);
+            }
+        }
+        widths
     }
 
     /// Pixels beside or above one of another color.

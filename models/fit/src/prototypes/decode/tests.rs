@@ -210,3 +210,22 @@ fn small_objects_with_soft_edges_have_few_colors_too() {
     assert!((5..=24).contains(&colors.len()), "{}", colors.len());
     assert_eq!(Decoder::new(&bank()).unwrap().decode(&image.view()).map(|_| ()), Err(Undecoded::NotFlat));
 }
+
+#[test]
+fn soft_edges_of_few_colors_are_soft() {
+    // Eleven steps of 8 bits from one color to the other: taken for eleven things, each would be looked for in vain.
+    for side in [128, 192, 384] {
+        let pose = Pose { translation: [0.45, 0.6], scale: 0.2, rotation: 0.4 };
+        let color = [0.464, 0.154, 0.542];
+        let scene = Scene {
+            background: [0.508, 0.179, 0.541],
+            transparent: false,
+            objects: vec![Object::of_efd(pose, color, 1.0, bank().prototypes[2].1.clone(), Some(2))],
+            edge: EdgeProfile::reference(),
+            compositing: Compositing::Over,
+        };
+        let mut image = Canvas::default().paint(&scene, ImageSize::new(side, side).unwrap()).unwrap().0.clone();
+        image.data_mut().iter_mut().for_each(|v| *v = num_traits::Float::round(*v * 255.0) / 255.0);
+        assert_eq!(Decoder::new(&bank()).unwrap().decode(&image.view()).unwrap_err(), Undecoded::NotFlat, "{side} px");
+    }
+}
