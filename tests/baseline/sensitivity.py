@@ -7,13 +7,15 @@
 The numbers are the constants of `models/fit/src/tuning.rs` and `models/trace/src/tuning.rs`. A copy of the workspace is made in WORK in which
 they are read from the environment when the program runs; it is built once. Numbers that size arrays are left as they are, which is said.
 
-Pictures: scenes that `dvp generate` draws from a seed of its own (nobody reports it), clean, noisy and as JPEG, with the shapes known and
-without, and the suite tests/pictures (drawn by `cargo run --release -p dvp-tests --example any_picture -- --keep WORK/pictures`; without it only the
-generated ones, which is said). Numbers of `trace` are tried on those with hard edges and without noise, numbers of `fit` on those that are
-soft, noisy or coded and on those whose shapes are known.
+Pictures, in groups. *drawings* (numbers of `trace`): what of the suite tests/pictures has hard edges and no noise, clean and as JPEG. *soft*
+(numbers of `fit`): scenes that `dvp generate` draws from a seed of its own (nobody reports it), clean, noisy and as JPEG, with the shapes known and
+without, and what of the suite is soft, noisy or coded. *spoiled* (numbers of `fit`): our own drawings of
+the suite with noise of 0.02 and as JPEG. The suite is drawn by `cargo run --release -p dvp-tests --example any_picture -- --keep WORK/pictures`; without it
+there are only the generated scenes, which is said.
 
 A row: what the number is, by what it was multiplied, of how many pictures another scene was found, how many more have the right number of objects,
-by how much the adjusted Rand index rose in the mean, and by what the error and the length of the description grew (geometric mean).
+by how much the adjusted Rand index rose in the mean, and by what the error and the length of the description grew (geometric mean). **Numbers without an
+effect here are not numbers without an effect**: halved and doubled thresholds may both lie where no picture of these is.
 """
 
 import argparse
@@ -35,6 +37,8 @@ CONSTANT = re.compile(r"^pub(\(crate\))? const ([A-Z0-9_]+): (\w+) =\s*([^;]+);"
 FACTORS = (0.5, 2.0)
 SEED = 77_001
 COUNT = 12
+# Whose numbers are tried on which pictures.
+GROUPS = [("trace", "drawings"), ("fit", "soft"), ("fit", "spoiled")]
 # Errors below a tenth of a step of 8 bits are rounding.
 LEAST_MAE = 4e-5
 READ = """
@@ -120,23 +124,39 @@ def build(work):
 
 
 def draw(work, every):
-    """The pictures: (crates whose numbers are tried on them, name, files, truth, options)."""
+    """The pictures: (group, name, files, truth, options)."""
     sys.path.insert(0, str(ROOT / "tests/baseline"))
     import sets
     place = sets.Place(str(work / "dvp"), work, pathlib.Path("/nowhere"), False, SEED, COUNT)
     found = []
 
     def evaluated(name, paths, data, options=()):
-        is_spoiled = any(word in name.lower() for word in ("mds-hr", "noise", "jpeg", "blur", "scaled"))
+        paths = sorted(paths)[::every]
         is_drawing = not options and not any(word in name.lower() for word in ("mds-hr", "noise"))
-        crates = ["fit"] * (is_spoiled or bool(options)) + ["trace"] * is_drawing
-        found.append((crates, name, sorted(paths)[::every], data, options))
+        if is_drawing:
+            found.append(("drawings", name, paths, data, options))
+        if not is_drawing or any(word in name.lower() for word in ("jpeg", "blur", "scaled")):
+            found.append(("soft", name, paths, data, options))
+        elif name.startswith("pictures"):
+            for finish in ("noise 0.02", "jpeg 80"):
+                found.append(("spoiled", f"{name}, {finish}", spoiled(sets, work, paths, name, finish), data, options))
         return {}
 
     place.evaluated = evaluated
     for make in (sets.fresh, sets.pictures):
         list(make(place))
     return found
+
+
+def spoiled(sets, work, paths, name, finish):
+    """Copies of pictures with noise or as JPEG, made once."""
+    target = work / "spoiled" / f"{name} {finish}".replace(" ", "_")
+    if not target.is_dir():
+        with tempfile.TemporaryDirectory(dir=work) as folder:
+            for path in paths:
+                shutil.copy(path, folder)
+            sets.spoil(pathlib.Path(folder), target, finish, SEED)
+    return sorted(target.iterdir())
 
 
 def fit(work, pictures, number=None, factor=1.0):
@@ -199,17 +219,19 @@ def main():
     numbers = build(a.work)
     pictures = draw(a.work, a.every)
     with open(a.table, "w", newline="", encoding="utf8") as out:
-        table = csv.DictWriter(out, ["crate", "number", "value", "factor", "pictures", "changed", "right", "ari", "mae", "bits"])
+        table = csv.DictWriter(out, ["crate", "number", "value", "factor", "group", "pictures", "changed", "right", "ari", "mae", "bits"])
         table.writeheader()
-        for crate in [a.crate] if a.crate else ["trace", "fit"]:
-            of_crate = [p for p in pictures if crate in p[0]]
-            before = fit(a.work, of_crate)
-            print(f"{crate}: {len(before)} pictures, {sum(b['right'] for b in before.values())} right", file=sys.stderr, flush=True)
+        for crate, group in GROUPS:
+            if a.crate not in (None, crate):
+                continue
+            of_group = [p for p in pictures if p[0] == group]
+            before = fit(a.work, of_group)
+            print(f"{group}: {len(before)} pictures, {sum(b['right'] for b in before.values())} right", file=sys.stderr, flush=True)
             tried = [(n, v, f) for n, v in numbers[crate].items() if not a.only or n in a.only.split(",") for f in FACTORS]
             with concurrent.futures.ThreadPoolExecutor(a.jobs) as pool:
-                results = pool.map(lambda of: against(before, fit(a.work, of_crate, of[0], of[2])), tried)
+                results = pool.map(lambda of: against(before, fit(a.work, of_group, of[0], of[2])), tried)
                 for (name, value, factor), result in zip(tried, results):
-                    table.writerow(dict(crate=crate, number=name, value=value, factor=factor, **result))
+                    table.writerow(dict(crate=crate, number=name, value=value, factor=factor, group=group, **result))
                     out.flush()
 
 

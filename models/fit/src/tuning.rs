@@ -11,8 +11,6 @@ pub(crate) const QUIET_NOISE: f64 = 0.0015;
 pub(crate) const COMPRESSED_NOISE: f64 = 0.06;
 /// In a picture whose coder is known, this much is averaged away in a second reading, for faint objects.
 pub(crate) const CODED_NOISE: f64 = 0.03;
-/// A picture with more regions than this is not fitted as clean if most of its soft pixels lie between no two regions.
-pub(crate) const MOST_CLEAN_REGIONS: usize = 64;
 /// Compression it was if less than this share of the soft pixels is still soft when it is averaged away.
 pub(crate) const STILL_SOFT_SHARE: f64 = 0.8;
 /// Compression blurs edges by up to about this much (scale of a logistic curve, px).
@@ -269,8 +267,6 @@ pub(crate) const SURE_CONTRAST: f64 = 0.03;
 /// Standard deviation of what the outlines of such objects miss: those of a few pixels are not fitted as exactly as those of
 /// many.
 pub(crate) const ROUGH_NOISE: f64 = 0.015;
-/// A color closer than this to the mean of two others, in every channel, may be their mixture.
-pub(crate) const MEAN_OF_TWO_COLOR: f64 = 0.02;
 /// Harmonics of a plain shape.
 pub(crate) const PLAIN_HARMONICS: usize = 3;
 /// Noise of a soft pixel beyond its own rounding: what the outline misses.
