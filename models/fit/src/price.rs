@@ -25,11 +25,13 @@ pub struct Prices {
     pub harmonic: f64,
     /// Of the boundary between two regions of a picture that is not clean.
     pub boundary: f64,
+    /// Whether an object with the mean color of two others must show that it pays for itself.
+    pub mixed: bool,
 }
 
 impl Default for Prices {
     fn default() -> Self {
-        Self { object: 1.0, harmonic: 1.0, boundary: 1.0 }
+        Self { object: 1.0, harmonic: 1.0, boundary: 1.0, mixed: true }
     }
 }
 

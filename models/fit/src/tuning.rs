@@ -159,8 +159,7 @@ pub(crate) const SEARCH_SAMPLES: usize = 32;
 pub(crate) const FINISH_SAMPLES: usize = 80;
 /// Start angles over a full turn.
 pub(crate) const FULL_TURN_STARTS: usize = 12;
-/// Outlines of starts are off by about this share of the object's radius: half the angle between two of them (0.13 radians), and as much
-/// in size.
+/// Where the usual search fails, outlines of starts may be off by about this share of the object's radius.
 pub(crate) const START_ERROR: f64 = 0.15;
 /// An object with more visibly missed pixels around is searched for again.
 pub(crate) const MISSED_PIXELS: usize = 4;
@@ -267,6 +266,8 @@ pub(crate) const SURE_CONTRAST: f64 = 0.03;
 /// Standard deviation of what the outlines of such objects miss: those of a few pixels are not fitted as exactly as those of
 /// many.
 pub(crate) const ROUGH_NOISE: f64 = 0.015;
+/// A color closer than this to the mean of two others, in every channel, may be their mixture.
+pub(crate) const MEAN_OF_TWO_COLOR: f64 = 0.02;
 /// Harmonics of a plain shape.
 pub(crate) const PLAIN_HARMONICS: usize = 3;
 /// Noise of a soft pixel beyond its own rounding: what the outline misses.

@@ -14,7 +14,9 @@ use crate::marginal_gain::{marginal_gains, ranking, squared_errors};
 use crate::residual::Residual;
 use crate::segment::EdgeKind;
 use crate::segment::color::distance;
-use crate::tuning::{PLAIN_HARMONICS, ROUGH_NOISE, SURE_CONTRAST, SURE_PIXELS, VISIBLE_ERROR, VISIBLE_NOISE};
+use crate::tuning::{
+    MEAN_OF_TWO_COLOR, PLAIN_HARMONICS, ROUGH_NOISE, SURE_CONTRAST, SURE_PIXELS, VISIBLE_ERROR, VISIBLE_NOISE,
+};
 use crate::{Completion, Fit, FitError, StopReason};
 
 /// One image being fitted.
@@ -113,7 +115,9 @@ impl<T: Real> Run<'_, T> {
         let mut bits = None;
         let mut drawn = true;
         for at in (0..scene.objects.len()).rev() {
-            if self.is_doubtful(&scene, &found.objects[at]) {
+            if self.is_doubtful(&scene, &found.objects[at])
+                || self.fitter.options.prices.mixed && self.is_mixed(&scene, at)
+            {
                 let before = match bits {
                     Some(bits) => bits,
                     None => self.bits(&scene, rough),
@@ -254,6 +258,19 @@ impl<T: Real> Run<'_, T> {
         let pixels = self.scratch.segmentation.segments()[part.segment].pixels;
         let contrast = distance(part.object.color(), scene.background);
         pixels < SURE_PIXELS || contrast < T::of(SURE_CONTRAST)
+    }
+
+    /// Whether the object has the mean color of two others: where they overlap, objects that blend show it.
+    fn is_mixed(&self, scene: &Scene<T>, at: usize) -> bool {
+        let own = scene.objects[at].color();
+        let others =
+            || scene.objects.iter().enumerate().filter(move |(k, _)| *k != at).map(|(_, object)| object.color());
+        let mean = |a: [T; 3], b: [T; 3]| core::array::from_fn(|c| T::of(0.5) * (a[c] + b[c]));
+        self.compositing == Compositing::Blend
+            && self.care == Care::Full
+            && others()
+                .enumerate()
+                .any(|(k, a)| others().skip(k + 1).any(|b| distance(own, mean(a, b)) < T::of(MEAN_OF_TWO_COLOR)))
     }
 
     fn covariances(&mut self, scene: &Scene<T>, found: &Found<T>) -> Result<Vec<[T; 25]>, FitError> {

@@ -35,6 +35,8 @@ struct Plan {
     keep: usize,
     /// Steps with wide and with narrow residuals.
     steps: [usize; 2],
+    /// By which shares of the object's radius starts may be off, one after the other; by some pixels in any case.
+    errors: &'static [f64],
     /// Whether distances to first order, which starts are compared by, will do for refining until the last steps: for objects
     /// that show their whole outline. Of others, what is seen tells poses apart by too little.
     rough: bool,
@@ -105,16 +107,21 @@ pub(crate) fn search<T: Real>(
     let shown = effort == Effort::Usual && !cropped && !segmentation.may_go_on(object);
     let (starts, steps) = (FULL_TURN_STARTS, [4, 5]);
     let plan = match (effort, cropped) {
-        (Effort::Usual, false) => Plan { sizes: &CROPPED_SIZES[..1], starts, keep: 2, steps, rough: shown },
-        (Effort::Usual, true) => Plan { sizes: &CROPPED_SIZES, starts, keep: 3, steps, rough: shown },
+        (Effort::Usual, false) => {
+            Plan { sizes: &CROPPED_SIZES[..1], starts, keep: 2, steps, errors: &[0.0], rough: shown }
+        }
+        (Effort::Usual, true) => Plan { sizes: &CROPPED_SIZES, starts, keep: 3, steps, errors: &[0.0], rough: shown },
         (Effort::Wide, _) => {
-            Plan { sizes: &WIDE_SIZES, starts: 3 * starts, keep: MOST_KEPT, steps: [12, 8], rough: shown }
+            let errors = &[0.0, START_ERROR];
+            Plan { sizes: &WIDE_SIZES, starts: 3 * starts, keep: MOST_KEPT, steps: [12, 8], errors, rough: shown }
         }
     };
     let samples = &segment.samples;
     let few = SampleLanes::new(samples, 1 + samples.len() / SEARCH_SAMPLES, false);
     for (index, prototype) in prototypes.iter().enumerate() {
-        rough(segment, &few, prototype, index, size, plan, out);
+        for &error in plan.errors {
+            rough(segment, &few, (index, prototype), size, plan, error, out);
+        }
     }
     // The best of the rough ones are worth all samples.
     sort(out);
@@ -156,16 +163,15 @@ fn same<T: Real>(a: &Candidate<T>, b: &Candidate<T>) -> bool {
 fn rough<T: Real>(
     segment: &Segment<T>,
     samples: &SampleLanes<T>,
-    prototype: &Prototype<T>,
-    index: usize,
+    (index, prototype): (usize, &Prototype<T>),
     size: ImageSize,
     plan: Plan,
+    error: f64,
     out: &mut Vec<Candidate<T>>,
 ) {
-    // Starts are off by a share of the object's size, and by the width of its edge.
-    let off = T::of(START_ERROR) * visible_radius(segment);
+    let off = T::of(error) * visible_radius(segment);
     let [wide, narrow] =
-        [3.0, 1.5].map(|edge| Robustness { width_px: T::of(edge).max(T::of(0.5 * edge) * off), rough: plan.rough });
+        [3.0, 1.5].map(|least| Robustness { width_px: T::of(least).max(T::of(0.5 * least) * off), rough: plan.rough });
     let turns = prototype.symmetry.max(1);
     let starts = if prototype.symmetry == 0 { 1 } else { plan.starts.div_ceil(turns).max(3) };
     let range = T::of(2.0 * core::f64::consts::PI) / T::of_usize(turns);

@@ -40,9 +40,10 @@ const SAME: f64 = 0.5;
 type Off = (&'static str, fn(&mut Prices));
 
 /// Prices that are taken off one at a time.
-const WITHOUT: [Off; 4] = [
+const WITHOUT: [Off; 5] = [
     ("nothing", |_| ()),
     ("object", |prices| prices.object = 0.0),
+    ("mixed", |prices| prices.mixed = false),
     ("harmonic", |prices| prices.harmonic = 0.0),
     ("boundary", |prices| prices.boundary = 0.0),
 ];
