@@ -2,7 +2,7 @@
 """What every chosen number of the fit decides: each is halved and doubled, and the pictures are fitted again.
 
     sensitivity.py WORK [--crate fit|trace] [--only NAME,NAME] [--every N] [--jobs 2] [--table OUT.csv]
-    sensitivity.py show OUT.csv                      # the table as markdown
+    sensitivity.py show OUT.csv        # as markdown, the halved number before the doubled one; the report tests/report/sensitivity.md has it
 
 The numbers are the constants of `models/fit/src/tuning.rs` and `models/trace/src/tuning.rs`. A copy of the workspace is made in WORK in which
 they are read from the environment when the program runs; it is built once. Numbers that size arrays are left as they are, which is said.
@@ -71,8 +71,7 @@ def instrument(source, crate):
     text = tuning.read_text()
     found = {name: (kind, value) for _, name, kind, value in CONSTANT.findall(text)}
     readers = "".join(reader(name, kind, value) for name, (kind, value) in found.items())
-    tuning.write_text("#![allow(warnings, missing_docs, clippy::all)]\n" + text + READ + readers if text.startswith("//!") is False
-                      else text + READ + readers)
+    tuning.write_text(text + READ + readers)
     used = set()
     name = re.compile(r"(\btuning::)?(?<![\w:])(" + "|".join(found) + r")\b(?!\()|\btuning::(" + "|".join(found) + r")\b")
     for path in [p for c in ("fit", "trace") for p in (source / "models" / c / "src").rglob("*.rs")]:
@@ -131,7 +130,8 @@ def draw(work, every):
     found = []
 
     def evaluated(name, paths, data, options=()):
-        paths = sorted(paths)[::every]
+        everything = sorted(paths)
+        paths = everything[::every]
         is_drawing = not options and not any(word in name.lower() for word in ("mds-hr", "noise"))
         if is_drawing:
             found.append(("drawings", name, paths, data, options))
@@ -139,7 +139,7 @@ def draw(work, every):
             found.append(("soft", name, paths, data, options))
         elif name.startswith("pictures"):
             for finish in ("noise 0.02", "jpeg 80"):
-                found.append(("spoiled", f"{name}, {finish}", spoiled(sets, work, paths, name, finish), data, options))
+                found.append(("spoiled", f"{name}, {finish}", spoiled(sets, work, everything, name, finish)[::every], data, options))
         return {}
 
     place.evaluated = evaluated
@@ -196,11 +196,21 @@ def against(before, after):
 
 
 def show(table):
-    rows = list(csv.DictReader(open(table, encoding="utf8")))
-    print("| crate | number | value | times | changed | right | ARI | error | length |\n|---|---|---|---|---|---|---|---|---|")
-    for r in rows:
-        print(f"| {r['crate']} | {r['number']} | {r['value']} | {r['factor']} | {r['changed']} of {r['pictures']} | {int(r['right']):+d} | "
-              f"{float(r['ari']):+.4f} | {float(r['mae']):.3f} | {float(r['bits']):.3f} |")
+    """A row per number and group of pictures, halved and doubled side by side."""
+    print("| crate | number | value | pictures | changed | right | ARI | error | length |\n|---|---|---|---|---|---|---|---|---|")
+    rows = {}
+    for r in csv.DictReader(open(table, encoding="utf8")):
+        rows.setdefault((r["crate"], r["number"], r["value"], f"{r['pictures']} {r['group']}"), []).append(r)
+    for key, both in sorted(rows.items(), key=lambda row: row[0][0]):
+        if any(int(r["changed"]) for r in both):
+            forms = [("changed", "{}"), ("right", "{:+d}"), ("ari", "{:+.4f}"), ("mae", "{:.3f}"), ("bits", "{:.3f}")]
+            of = lambda name, form: ", ".join(form.format(int(r[name]) if name in ("changed", "right") else float(r[name])) for r in both)
+            print("| " + " | ".join([*key, *(of(*f) for f in forms)]) + " |")
+    for crate in sorted({key[0] for key in rows}):
+        names = list(dict.fromkeys(key[1] for key in rows if key[0] == crate))
+        changed = {key[1] for key, both in rows.items() if key[0] == crate and any(int(r["changed"]) for r in both)}
+        print(f"\nWithout an effect on these pictures, of {len(names)} numbers of `{crate}`: "
+              + ", ".join(f"`{n}`" for n in names if n not in changed) + ".")
 
 
 def main():

@@ -1,4 +1,5 @@
-//! Every number of segment-and-fit that was chosen: what it decides, its unit, and the reason where one is known.
+//! Every number of segment-and-fit that was chosen: what it decides, its unit, and the reason where one is known. What halving and doubling
+//! each of them changes is measured: `tests/report/sensitivity.md`.
 //!
 //! Numbers that follow from others, sizes of memory and of lanes, and the law of [`crate::Prices`] stand where they are used; lists of
 //! starts and steps too.

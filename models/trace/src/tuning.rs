@@ -1,4 +1,5 @@
-//! Every number that was chosen: its unit, why it is what it is.
+//! Every number that was chosen: its unit, why it is what it is. What halving and doubling each of them changes is measured:
+//! `tests/report/sensitivity.md`.
 
 /// Positions that renderers with a lattice of sub-pixels (4 x 4: resvg and tiny-skia) give are off by about this, pixels, the same along an
 /// edge: samples are not trusted further. Counted once, by what fits lines to samples; less makes corners of the lattice's steps.
