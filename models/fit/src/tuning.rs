@@ -160,8 +160,10 @@ pub(crate) const SEARCH_SAMPLES: usize = 32;
 pub(crate) const FINISH_SAMPLES: usize = 80;
 /// Start angles over a full turn.
 pub(crate) const FULL_TURN_STARTS: usize = 12;
-/// Where the usual search fails, outlines of starts may be off by about this share of the object's radius.
-pub(crate) const START_ERROR: f64 = 0.15;
+/// Residuals of starts count up to this (px).
+pub(crate) const START_WIDTH_PX: f64 = 3.0;
+/// Where the usual search fails, they count up to this share of the object's radius as well: shares from 0.22 to 0.6 find the same.
+pub(crate) const START_WIDTH_SHARE: f64 = 0.225;
 /// An object with more visibly missed pixels around is searched for again.
 pub(crate) const MISSED_PIXELS: usize = 4;
 /// Mean squared distance error (px^2) below which an outline is where it should be, whatever is missed around it.

@@ -9,7 +9,7 @@ use super::equations::{Robustness, SampleLanes};
 use super::field::OutlineField;
 use super::gauss_newton::{Frame, PosePx};
 use crate::segment::{Segment, Segmentation};
-use crate::tuning::{FINISH_SAMPLES, FULL_TURN_STARTS, SEARCH_SAMPLES, START_ERROR};
+use crate::tuning::{FINISH_SAMPLES, FULL_TURN_STARTS, SEARCH_SAMPLES, START_WIDTH_PX, START_WIDTH_SHARE};
 
 /// Sizes tried for an object that leaves the image, relative to its visible part.
 const CROPPED_SIZES: [f64; 4] = [1.0, 1.3, 1.7, 2.4];
@@ -35,8 +35,6 @@ struct Plan {
     keep: usize,
     /// Steps with wide and with narrow residuals.
     steps: [usize; 2],
-    /// By which shares of the object's radius starts may be off, one after the other; by some pixels in any case.
-    errors: &'static [f64],
     /// Whether distances to first order, which starts are compared by, will do for refining until the last steps: for objects
     /// that show their whole outline. Of others, what is seen tells poses apart by too little.
     rough: bool,
@@ -107,20 +105,21 @@ pub(crate) fn search<T: Real>(
     let shown = effort == Effort::Usual && !cropped && !segmentation.may_go_on(object);
     let (starts, steps) = (FULL_TURN_STARTS, [4, 5]);
     let plan = match (effort, cropped) {
-        (Effort::Usual, false) => {
-            Plan { sizes: &CROPPED_SIZES[..1], starts, keep: 2, steps, errors: &[0.0], rough: shown }
-        }
-        (Effort::Usual, true) => Plan { sizes: &CROPPED_SIZES, starts, keep: 3, steps, errors: &[0.0], rough: shown },
+        (Effort::Usual, false) => Plan { sizes: &CROPPED_SIZES[..1], starts, keep: 2, steps, rough: shown },
+        (Effort::Usual, true) => Plan { sizes: &CROPPED_SIZES, starts, keep: 3, steps, rough: shown },
         (Effort::Wide, _) => {
-            let errors = &[0.0, START_ERROR];
-            Plan { sizes: &WIDE_SIZES, starts: 3 * starts, keep: MOST_KEPT, steps: [12, 8], errors, rough: shown }
+            Plan { sizes: &WIDE_SIZES, starts: 3 * starts, keep: MOST_KEPT, steps: [12, 8], rough: shown }
         }
     };
     let samples = &segment.samples;
     let few = SampleLanes::new(samples, 1 + samples.len() / SEARCH_SAMPLES, false);
-    for (index, prototype) in prototypes.iter().enumerate() {
-        for &error in plan.errors {
-            rough(segment, &few, (index, prototype), size, plan, error, out);
+    // Starts are off by a share of the size: in large pictures by more than the pixels that usually do.
+    let least = T::of(START_WIDTH_PX);
+    let share = T::of(START_WIDTH_SHARE) * visible_radius(segment);
+    let wider = (effort == Effort::Wide && share > least).then_some(share);
+    for prototype in prototypes.iter().enumerate() {
+        for width_px in [Some(least), wider].into_iter().flatten() {
+            rough(segment, &few, prototype, size, plan, width_px, out);
         }
     }
     // The best of the rough ones are worth all samples.
@@ -159,19 +158,17 @@ fn same<T: Real>(a: &Candidate<T>, b: &Candidate<T>) -> bool {
         && near(a.pose.rotation, b.pose.rotation, 0.02)
 }
 
-/// Adds up to `keep` refined starts of one prototype.
+/// Adds up to `keep` refined starts of one prototype; residuals count up to `width_px`, in the last steps to half of it.
 fn rough<T: Real>(
     segment: &Segment<T>,
     samples: &SampleLanes<T>,
     (index, prototype): (usize, &Prototype<T>),
     size: ImageSize,
     plan: Plan,
-    error: f64,
+    width_px: T,
     out: &mut Vec<Candidate<T>>,
 ) {
-    let off = T::of(error) * visible_radius(segment);
-    let [wide, narrow] =
-        [3.0, 1.5].map(|least| Robustness { width_px: T::of(least).max(T::of(0.5 * least) * off), rough: plan.rough });
+    let [wide, narrow] = [1.0, 0.5].map(|share| Robustness { width_px: T::of(share) * width_px, rough: plan.rough });
     let turns = prototype.symmetry.max(1);
     let starts = if prototype.symmetry == 0 { 1 } else { plan.starts.div_ceil(turns).max(3) };
     let range = T::of(2.0 * core::f64::consts::PI) / T::of_usize(turns);

@@ -128,8 +128,15 @@ impl Completion<'_> {
         self.pens[*face as usize].as_ref()
     }
 
-    /// Whether a face lies edge to edge with all around it, but for lines and what lies behind everything: then nothing of it is hidden.
-    pub(super) fn is_apart(&self, face: u32) -> bool {
+    /// Faces that are no part of anything larger.
+    pub(super) fn apart(&self) -> BTreeSet<u32> {
+        let beside: BTreeSet<u32> = self.seamed.iter().map(|&(face, _)| face).collect();
+        beside.into_iter().filter(|&face| self.is_apart(face)).collect()
+    }
+
+    /// Whether a face, which has seams, lies edge to edge with all around it, but for lines and what lies behind everything: then nothing of it
+    /// is hidden.
+    fn is_apart(&self, face: u32) -> bool {
         let around = &self.neighbors[face as usize];
         let is_beside = |other: &u32| self.seamed.contains(&(face, *other));
         // What has its color touches it across a corner.
@@ -137,7 +144,7 @@ impl Completion<'_> {
         let may_hide = |other: &&u32| {
             self.rank(**other) > 0 && self.pens[**other as usize].is_none() && color(**other) != color(face)
         };
-        around.iter().any(is_beside) && around.iter().filter(may_hide).all(is_beside)
+        around.iter().filter(may_hide).all(is_beside)
     }
 
     /// The faces beside some faces that come to lie in front of them if they go where the hindmost of them is.

@@ -215,12 +215,12 @@ pub(super) fn candidates(completion: &Completion<'_>) -> Vec<Vec<u32>> {
     let mut sets = DisjointSets::default();
     sets.reset(completion.partition.faces.len() as u32);
     let painted = completion.painted();
-    for &face in &painted {
+    let apart = completion.apart();
+    for &face in painted.iter().filter(|face| !apart.contains(face)) {
         for other in reached(completion, face, |_, _| true) {
-            if completion.is_apart(face) || completion.is_apart(other) {
-                continue;
+            if !apart.contains(&other) {
+                sets.unite(face, other);
             }
-            sets.unite(face, other);
         }
     }
     for &(a, b) in &completion.united {

@@ -77,9 +77,10 @@ fn unite(completion: &mut Completion<'_>, groups: &mut Vec<Group>) {
     colors.sort_unstable();
     colors.dedup();
     for wanted in colors {
-        let is_part = |at: &usize| groups[*at].faces.iter().all(|&face| !completion.is_apart(face));
+        let apart = completion.apart();
         let is_wanted = |at: &usize| color(&groups[*at], completion) == wanted;
-        let of_color: Vec<usize> = (0..groups.len()).filter(is_wanted).filter(is_part).collect();
+        let is_apart = |at: &usize| groups[*at].faces.iter().any(|face| apart.contains(face));
+        let of_color: Vec<usize> = (0..groups.len()).filter(is_wanted).filter(|at| !is_apart(at)).collect();
         let [first, .., _] = of_color[..] else { continue };
         if of_color.len() > tuning::MOST_PAIRED {
             continue;

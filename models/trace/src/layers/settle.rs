@@ -264,16 +264,16 @@ impl Search<'_, '_> {
     /// Faces of one color that another one, painted before one of them, lies between: (face, face, between).
     fn parted(&self) -> Vec<(u32, u32, u32)> {
         let completion = &*self.completion;
+        let apart = completion.apart();
         let is_open = |face: u32| completion.rank(face) > 0;
         let color = |face: u32| completion.partition.faces[face as usize].color;
         let mut found = Vec::new();
         for between in (0..completion.rank.len() as u32).filter(|&face| is_open(face)) {
             let around = &completion.neighbors[between as usize];
-            let is_open = |face: u32| {
-                is_open(face) && !completion.seamed.contains(&(between, face)) && !completion.is_apart(face)
-            };
-            for (k, &a) in around.iter().enumerate().filter(|&(_, &a)| is_open(a)) {
-                let same = around[..k].iter().copied().filter(|&b| is_open(b) && color(b) == color(a));
+            let goes_on =
+                |face: u32| is_open(face) && !apart.contains(&face) && !completion.seamed.contains(&(between, face));
+            for (k, &a) in around.iter().enumerate().filter(|&(_, &a)| goes_on(a)) {
+                let same = around[..k].iter().copied().filter(|&b| goes_on(b) && color(b) == color(a));
                 found.extend(
                     same.filter(|&b| completion.rank(a).max(completion.rank(b)) > completion.rank(between))
                         .map(|b| (a, b, between)),

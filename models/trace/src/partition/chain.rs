@@ -70,11 +70,6 @@ impl Chain {
         self.marks.push(mark);
     }
 
-    /// Whether it is longer than wide: windows across the end of a line tell nothing of where it runs.
-    pub(super) fn is_long(&self) -> bool {
-        self.marks.iter().all(|mark| mark.width <= self.marks.len() as f64)
-    }
-
     pub(super) fn last_line(&self) -> usize {
         self.marks.last().map_or(usize::MAX - 1, |mark| mark.cross.line)
     }

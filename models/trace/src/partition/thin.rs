@@ -36,7 +36,7 @@ pub(super) fn find(canvas: &Canvas<'_>, palette: &[Color]) -> Vec<(ThinLine, Cha
     for (along, crosses) in [Along::Columns, Along::Rows].into_iter().zip(&crosses) {
         let mut linked = link(canvas, along, crosses, &colors, palette);
         pair::grow(canvas, along, &mut linked, crosses, [palette, &colors]);
-        chains.extend(linked.into_iter().flat_map(level_parts).filter(Chain::is_long));
+        chains.extend(linked.into_iter().flat_map(level_parts));
     }
     let chains = read_once(join(canvas, chains));
     let mut lines = Vec::new();
