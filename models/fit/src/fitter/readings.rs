@@ -16,8 +16,8 @@ use crate::block_code::BlockCode;
 use crate::colors::{is_rounded, round_color};
 use crate::segment::{EdgeKind, NoisyOptions, SegmentOptions, noise_level};
 use crate::tuning::{
-    CODED_NOISE, COMPRESSED_BLUR_PX, COMPRESSED_NOISE, FINE_ZONE, MANY_REGIONS, MISSED_SHARE, NOT_FLAT_SHARE,
-    QUIET_NOISE, STILL_SOFT_SHARE, TEXTURE_NOISE,
+    CODED_NOISE, COMPRESSED_BLUR_PX, COMPRESSED_NOISE, FINE_ZONE, MANY_REGIONS, MISSED_SHARE, MOST_CLEAN_REGIONS,
+    NOT_FLAT_SHARE, QUIET_NOISE, STILL_SOFT_SHARE, TEXTURE_NOISE,
 };
 use crate::{Fit, FitError, StopReason};
 
@@ -84,7 +84,7 @@ impl<T: Real> Fitter<T> {
         scratch: &mut FitScratch<T>,
     ) -> Result<Fit<T>, FitError> {
         scratch.code = BlockCode::of(&image);
-        let soft = scratch.segmentation.soft_count();
+        let (soft, regions) = (scratch.segmentation.soft_count(), scratch.segmentation.region_count());
         let options = NoisyOptions {
             noise: T::of(COMPRESSED_NOISE),
             compressed: true,
@@ -105,7 +105,7 @@ impl<T: Real> Fitter<T> {
                 freed = finer;
             }
         }
-        if surely || scratch.code.is_some() || sharpened {
+        if surely || scratch.code.is_some() || sharpened || regions > MOST_CLEAN_REGIONS {
             return Ok(freed);
         }
         let readable = scratch.segmentation.read(&image, &SegmentOptions::default());

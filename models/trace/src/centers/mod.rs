@@ -5,13 +5,15 @@
 //! measurement with a deviation but a fact: to deny it costs the color of that pixel. Numbers move as little as the facts ask for; an outline that
 //! cannot meet them gets another piece where a piece is cheaper than what is wrong.
 //!
-//! `numbers` takes outlines apart and puts them together, `slopes` finds the change that they ask for.
+//! `numbers` takes outlines apart and puts them together, `rows` tells how far they are from pixels, `slopes` finds the change that they ask for.
 
 mod numbers;
+mod rows;
 mod slopes;
 
 use alloc::vec;
 use alloc::vec::Vec;
+use core::ops::Range;
 
 use dvp_core::Vec2;
 #[cfg(not(feature = "std"))]
@@ -22,8 +24,9 @@ use crate::outline::{Outline, OutlineShape};
 use crate::partition::{OUTSIDE, Partition};
 use crate::ruler::Ruler;
 use crate::tuning;
-use numbers::{FAR, curves, cut, distance, numbers, polygon, square, with_numbers};
-use slopes::Slopes;
+use numbers::{Curves, curves, cut, distance, numbers, polygon, with_numbers};
+use rows::Rows;
+use slopes::{Depth, Slopes};
 
 /// How far outlines are held from the middles of pixels, pixels; and, where that cannot be, once more.
 const MARGINS: [f64; 2] = [0.04, 0.01];
@@ -71,7 +74,7 @@ struct Fact {
     is_inside: bool,
 }
 
-/// What is known of the pixels along the boundary of a layer.
+/// What is known of the pixels along the boundary of a layer, row by row.
 struct Facts(Vec<Fact>);
 
 impl Facts {
@@ -146,9 +149,17 @@ impl Facts {
 
     /// How outlines stand to the facts.
     fn state(&self, shapes: &[OutlineShape]) -> State {
-        let polygons: Vec<Vec<Vec2<f64>>> = shapes.iter().map(polygon).collect();
-        let depths: Vec<f64> = self.0.iter().map(|fact| fact.depth(&polygons)).collect();
+        let curves: Vec<Curves> = shapes.iter().map(curves).collect();
+        let rows = Rows::of(&curves, self.rows());
+        let depth = |fact: &Fact| if fact.is_inside { -rows.depth(fact.at) } else { rows.depth(fact.at) };
+        let depths: Vec<f64> = self.0.iter().map(depth).collect();
         State { wrong: depths.iter().filter(|&&depth| depth < SURE).count(), depths }
+    }
+
+    /// The rows of pixels that they are about.
+    fn rows(&self) -> Range<usize> {
+        let [first, last] = [self.0.first(), self.0.last()].map(|fact| fact.map_or(0, |fact| fact.at.y as usize));
+        first..last + 1
     }
 
     /// Moves the numbers of outlines toward where all facts are met, as little as that takes.
@@ -203,13 +214,19 @@ impl Facts {
 
     /// How the depths of what is near change with the numbers of outlines.
     fn slopes(&self, shapes: &[OutlineShape], state: &State) -> Slopes {
-        let near: Vec<(&Fact, f64)> =
-            self.0.iter().zip(state.depths.iter().copied()).filter(|&(_, depth)| depth < NEAR).collect();
-        let curves: Vec<Vec<Vec<Vec2<f64>>>> = shapes.iter().map(curves).collect();
-        // The outline and the curve of it that each middle is nearest to: only what moves that curve moves it nearer or farther.
-        let places: Vec<(usize, usize)> = near.iter().map(|(fact, _)| fact.nearest(&curves)).collect();
-        let mut columns: Vec<(Vec<f64>, f64)> = Vec::new();
-        for (k, shape) in shapes.iter().enumerate() {
+        let curves: Vec<Curves> = shapes.iter().map(curves).collect();
+        let rows = Rows::of(&curves, self.rows());
+        let mut depths = Vec::new();
+        // Of each curve, the middles that it is the nearest to: only what moves that curve moves it nearer or farther.
+        let none = |curves: &Curves| vec![Vec::<(usize, Vec2<f64>)>::new(); curves.len()];
+        let mut nearest: Vec<_> = curves.iter().map(none).collect();
+        for (fact, &value) in self.0.iter().zip(&state.depths).filter(|&(_, &depth)| depth < NEAR) {
+            let (ring, curve) = rows.nearest(fact.at);
+            nearest[ring][curve].push((depths.len(), fact.at));
+            depths.push(Depth { value, slopes: Vec::new() });
+        }
+        let mut levers = Vec::new();
+        for (shape, nearest) in shapes.iter().zip(&nearest) {
             let with_levers = numbers(shape);
             let mut moved: Vec<f64> = with_levers.iter().map(|number| number.value).collect();
             for (j, number) in with_levers.iter().enumerate() {
@@ -217,26 +234,27 @@ impl Facts {
                 moved[j] = number.value + step;
                 let with_step = with_numbers(shape, &moved);
                 moved[j] = number.value;
-                let moved_curves = number.curves.map(|curve| numbers::curve(&with_step, curve));
-                let slope = |(i, (fact, depth)): (usize, &(&Fact, f64))| {
-                    let (ring, curve) = places[i];
-                    let at = number.curves.iter().position(|&other| ring == k && other == curve)?;
-                    Some((depth.signum() * distance(&moved_curves[at], fact.at) - depth) / step)
-                };
-                let slopes = near.iter().enumerate().map(|entry| slope(entry).unwrap_or(0.0)).collect();
-                columns.push((slopes, number.lever));
+                let [one, other] = number.curves;
+                for &curve in if one == other { &number.curves[..1] } else { &number.curves } {
+                    let moved = numbers::curve(&with_step, curve);
+                    for &(k, at) in &nearest[curve] {
+                        let Depth { value, slopes } = &mut depths[k];
+                        slopes.push((levers.len(), (value.signum() * distance(&moved, at) - *value) / step));
+                    }
+                }
+                levers.push(number.lever);
             }
         }
-        Slopes { depths: near.into_iter().map(|(_, depth)| depth).collect(), columns }
+        Slopes { levers, depths }
     }
 
     /// The outline, and the curve of it, that most of what is wrong lies beside.
     fn worst(&self, shapes: &[OutlineShape], state: &State) -> Option<(usize, usize)> {
-        let curves: Vec<Vec<Vec<Vec2<f64>>>> =
-            shapes.iter().map(|shape| curves(&OutlineShape::Path(shape.ring()))).collect();
+        let curves: Vec<Curves> = shapes.iter().map(|shape| curves(&OutlineShape::Path(shape.ring()))).collect();
+        let rows = Rows::of(&curves, self.rows());
         let mut strains: Vec<(f64, (usize, usize))> = Vec::new();
         for (fact, depth) in self.0.iter().zip(&state.depths).filter(|&(_, &depth)| depth < SURE) {
-            let nearest = fact.nearest(&curves);
+            let nearest = rows.nearest(fact.at);
             match strains.iter_mut().find(|(_, place)| *place == nearest) {
                 Some((strain, _)) => *strain += MARGINS[0] - depth,
                 None => strains.push((MARGINS[0] - depth, nearest)),
@@ -259,31 +277,5 @@ impl State {
     /// Sum of the squares of what outlines are too near to the middles of pixels by, or beyond.
     fn strain(&self, margin: f64) -> f64 {
         self.depths.iter().map(|depth| (margin - depth).max(0.0).powi(2)).sum()
-    }
-}
-
-impl Fact {
-    /// The outline, and the curve of it, that is nearest.
-    fn nearest(&self, curves: &[Vec<Vec<Vec2<f64>>>]) -> (usize, usize) {
-        let places = curves.iter().enumerate().flat_map(|(ring, curves)| (0..curves.len()).map(move |k| (ring, k)));
-        let far = |&(ring, k): &(usize, usize)| distance(&curves[ring][k], self.at);
-        places.min_by(|a, b| far(a).total_cmp(&far(b))).unwrap_or_default()
-    }
-
-    /// How far the nearest of some polygons (even-odd) is, negative if they have the point on the wrong side.
-    fn depth(&self, polygons: &[Vec<Vec2<f64>>]) -> f64 {
-        let Vec2 { x, y } = self.at;
-        let (mut nearest, mut is_inside) = (FAR * FAR, false);
-        for polygon in polygons {
-            let Some(mut from) = polygon.last().copied() else { continue };
-            for &to in polygon {
-                if (from.y <= y) != (to.y <= y) && from.x + (y - from.y) / (to.y - from.y) * (to.x - from.x) <= x {
-                    is_inside = !is_inside;
-                }
-                nearest = nearest.min(square(from, to, self.at));
-                from = to;
-            }
-        }
-        if is_inside == self.is_inside { nearest.sqrt() } else { -nearest.sqrt() }
     }
 }

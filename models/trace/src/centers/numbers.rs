@@ -145,8 +145,11 @@ fn polygon_of(ring: &PathRing<f64>) -> Vec<Vec2<f64>> {
     points
 }
 
-/// The curves of a path, each as points from its start to its end; a figure is one.
-pub(super) fn curves(shape: &OutlineShape) -> Vec<Vec<Vec2<f64>>> {
+/// The curves of an outline, each as points from its start to its end.
+pub(super) type Curves = Vec<Vec<Vec2<f64>>>;
+
+/// The curves of a path; a figure is one.
+pub(super) fn curves(shape: &OutlineShape) -> Curves {
     let count = if let OutlineShape::Path(ring) = shape { ring.segments.len() } else { 1 };
     (0..count).map(|k| curve(shape, k)).collect()
 }

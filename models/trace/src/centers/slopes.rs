@@ -14,28 +14,44 @@ const ROUNDS: usize = 6;
 
 /// How depths change with numbers.
 pub(super) struct Slopes {
-    pub(super) depths: Vec<f64>,
-    /// Of each number: by how much it changes each of the depths, and its lever.
-    pub(super) columns: Vec<(Vec<f64>, f64)>,
+    /// Of each number: how far, pixels, it moves an outline for a change of 1.
+    pub(super) levers: Vec<f64>,
+    pub(super) depths: Vec<Depth>,
+}
+
+/// How far an outline is from the middle of a pixel, and by how much the few numbers of the curve that is nearest change that, in their order.
+pub(super) struct Depth {
+    pub(super) value: f64,
+    pub(super) slopes: Vec<(usize, f64)>,
+}
+
+impl Depth {
+    /// After a change of all numbers, to first order.
+    fn after(&self, change: &[f64]) -> f64 {
+        self.value + self.slopes.iter().map(|&(number, slope)| slope * change[number]).sum::<f64>()
+    }
 }
 
 impl Slopes {
     /// How numbers change so that outlines meet what they miss and miss nothing else, to first order.
     pub(super) fn change(&self, damping: f64, margin: f64) -> Option<Vec<f64>> {
-        let Self { depths, columns } = self;
-        let count = columns.len();
-        // Every number may meet every other one.
-        let mut normal = Skyline::new(vec![0; count]);
-        let mut change = vec![0.0; count];
+        let Self { levers, depths } = self;
+        // Numbers meet those of the same curve and of the next one.
+        let mut first: Vec<usize> = (0..levers.len()).collect();
+        for Depth { slopes, .. } in depths {
+            let least = slopes.first().map_or(0, |&(number, _)| number);
+            slopes.iter().for_each(|&(number, _)| first[number] = first[number].min(least));
+        }
+        let mut normal = Skyline::new(first);
+        let mut change = vec![0.0; levers.len()];
         let mut active = vec![false; depths.len()];
         for _ in 0..ROUNDS {
             // What is missed after the change so far, with what was missed before: it holds the outline where it gets to.
             let mut is_new = false;
-            for (i, is_active) in active.iter_mut().enumerate() {
-                let depth = depths[i]
-                    + columns.iter().zip(&change).map(|((slopes, _), change)| slopes[i] * change).sum::<f64>();
-                is_new |= depth < margin && !*is_active;
-                *is_active |= depth < margin;
+            for (depth, is_active) in depths.iter().zip(&mut active) {
+                let is_missed = depth.after(&change) < margin;
+                is_new |= is_missed && !*is_active;
+                *is_active |= is_missed;
             }
             if !is_new {
                 break;
@@ -43,14 +59,14 @@ impl Slopes {
             let weight = 1.0 / (SOFT * SOFT);
             normal.clear();
             change.fill(0.0);
-            for (number, (_, lever)) in columns.iter().enumerate() {
+            for (number, lever) in levers.iter().enumerate() {
                 normal.add_outer(&[(number, lever / LOOSE)], damping);
             }
-            for i in (0..depths.len()).filter(|&i| active[i]) {
-                let all = columns.iter().map(|(slopes, _)| slopes[i]).enumerate();
-                let slopes: Vec<(usize, f64)> = all.filter(|&(_, slope)| slope != 0.0).collect();
-                normal.add_outer(&slopes, weight);
-                slopes.iter().for_each(|&(number, slope)| change[number] += weight * slope * (margin - depths[i]));
+            for Depth { value, slopes } in
+                depths.iter().zip(&active).filter_map(|(depth, active)| active.then_some(depth))
+            {
+                normal.add_outer(slopes, weight);
+                slopes.iter().for_each(|&(number, slope)| change[number] += weight * slope * (margin - value));
             }
             normal.factorize(0.0, 0.0)?;
             normal.solve(&mut change);
