@@ -38,8 +38,9 @@ import platform
 import subprocess
 import sys
 
+from packages import run_with_packages
+
 HERE = pathlib.Path(__file__).resolve().parent
-PACKAGES = ["numpy", "pillow", "scikit-image", "matplotlib"]
 
 
 def arguments():
@@ -63,12 +64,10 @@ def arguments():
 
 
 def record(a):
-    work, python = a.work.resolve(), a.work.resolve() / "venv/bin/python"
-    if not python.exists():
-        subprocess.run([sys.executable, "-m", "venv", work / "venv"], check=True)
-        subprocess.run([python, "-m", "pip", "install", "-q", *PACKAGES], check=True)
-    if pathlib.Path(sys.prefix).resolve() != (work / "venv").resolve():
-        return subprocess.run([python, __file__, *sys.argv[1:]]).returncode
+    work = a.work.resolve()
+    code = run_with_packages(work)
+    if code is not None:
+        return code
     import sets
     wanted = a.sets.split(",") if a.sets else list(sets.ALL)
     unknown = [name for name in wanted if name not in sets.ALL]

@@ -32,6 +32,8 @@ import subprocess
 import sys
 import tempfile
 
+from packages import run_with_packages
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 CONSTANT = re.compile(r"^pub(\(crate\))? const ([A-Z0-9_]+): (\w+) =\s*([^;]+);", re.M)
 FACTORS = (0.5, 2.0)
@@ -124,7 +126,6 @@ def build(work):
 
 def draw(work, every):
     """The pictures: (group, name, files, truth, options)."""
-    sys.path.insert(0, str(ROOT / "tests/baseline"))
     import sets
     place = sets.Place(str(work / "dvp"), work, pathlib.Path("/nowhere"), False, SEED, COUNT)
     found = []
@@ -161,27 +162,17 @@ def spoiled(sets, work, paths, name, finish):
 
 def fit(work, pictures, number=None, factor=1.0):
     """Scores of every picture: (set, stem) -> scene, right, ari, mae, bits."""
+    import sets
     env = dict(os.environ, **({"DVP_TUNE": f"{number}={factor}"} if number else {}))
     scores = {}
     with tempfile.TemporaryDirectory(dir=work) as folder:
+        place = sets.Place(str(work / "dvp"), pathlib.Path(folder), pathlib.Path("/nowhere"), False, env=env)
         for _, name, paths, data, options in pictures:
-            out = pathlib.Path(folder) / name.replace(" ", "_").replace(",", "")
-            out.mkdir()
-            call = [work / "dvp", "fit", *paths, "--out", out, "--threads", "1", "--no-png", "--no-svg", "--json", *options]
-            done = subprocess.run(call, capture_output=True, text=True, env=env)
-            try:
-                images = {i["stem"]: i for i in json.loads(done.stdout)["images"]}
-            except (json.JSONDecodeError, KeyError):
-                images = {}
-            subprocess.run([work / "dvp", "evaluate", out, data, "--threads", "1", "--csv", out / "scores.csv"], capture_output=True)
-            table = out / "scores.csv"
-            rows = {row["stem"]: row for row in csv.DictReader(open(table, encoding="utf8"))} if table.exists() else {}
-            for path in paths:
-                stem = path.stem
-                scene, row, image = out / f"{stem}.json", rows.get(stem, {}), images.get(stem, {})
+            for stem, score in place.evaluated(name, paths, data, options).items():
+                scene = place.out(name) / f"{stem}.json"
                 scores[name, stem] = dict(
-                    scene=scene.read_text() if scene.exists() else "", right=bool(row) and row["true_objects"] == row["found_objects"],
-                    ari=float(row.get("ari") or 0), mae=float(row.get("mae") or 1), bits=float(image.get("bits") or 0))
+                    scene=scene.read_text() if scene.exists() else "", right=score["right"],
+                    **{key: score.get(key, missing) for key, missing in (("ari", 0.0), ("mae", 1.0), ("bits", 0.0))})
     return scores
 
 
@@ -222,10 +213,14 @@ def main():
     parser.add_argument("--only", help="numbers, separated by commas")
     parser.add_argument("--every", type=int, default=1, help="of the pictures of a set, one of so many")
     parser.add_argument("--jobs", type=int, default=2)
-    parser.add_argument("--table", type=pathlib.Path, default=ROOT / "tests/report/sensitivity.csv")
+    parser.add_argument("--table", type=pathlib.Path, help="WORK/sensitivity.csv unless told; the committed one holds all numbers")
     a = parser.parse_args()
     a.work = a.work.resolve()
     a.work.mkdir(parents=True, exist_ok=True)
+    code = run_with_packages(a.work)
+    if code is not None:
+        return code
+    a.table = a.table or a.work / "sensitivity.csv"
     numbers = build(a.work)
     pictures = draw(a.work, a.every)
     with open(a.table, "w", newline="", encoding="utf8") as out:
@@ -246,4 +241,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

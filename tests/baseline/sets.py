@@ -32,7 +32,9 @@ QUICK = 6
 class Place:
     """Where things are, and what was left out."""
 
-    def __init__(self, dvp, work, shared, is_quick, seed=FRESH_SEED, count=FRESH_COUNT):
+    def __init__(self, dvp, work, shared, is_quick, seed=FRESH_SEED, count=FRESH_COUNT, env=None):
+        # The environment that `dvp fit` runs in; none is ours.
+        self.env = env
         self.dvp, self.work, self.shared, self.is_quick, self.seed, self.count = dvp, work, shared, is_quick, seed, count
         self.skipped, self.hashes = [], {}
 
@@ -45,12 +47,16 @@ class Place:
         paths = sorted(paths)
         return paths[:: -(-len(paths) // QUICK) or 1] if self.is_quick else paths
 
+    def out(self, name):
+        """Where the scenes of a set go."""
+        return self.work / "out" / name.replace(" ", "_").replace(",", "")
+
     def fit(self, name, paths, options=()):
         """Fits pictures to a folder, one thread: the folder, and figures by picture.
 
         A hash of the pictures tells whether two records are about the same ones.
         """
-        out = self.work / "out" / name.replace(" ", "_").replace(",", "")
+        out = self.out(name)
         shutil.rmtree(out, ignore_errors=True)
         out.mkdir(parents=True)
         digest = hashlib.sha256()
@@ -60,7 +66,7 @@ class Place:
         print(f"{name}: {len(paths)} files", file=sys.stderr, flush=True)
         command = [self.dvp, "fit", *map(str, paths), "--out", out, "--threads", "1", "--no-png", "--no-svg", "--json",
                    "--table", out / "table.csv", *options]
-        done = subprocess.run(command, capture_output=True, text=True)
+        done = subprocess.run(command, capture_output=True, text=True, env=self.env)
         try:
             images = json.loads(done.stdout)["images"]
         except (json.JSONDecodeError, KeyError):
