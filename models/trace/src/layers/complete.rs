@@ -1,7 +1,6 @@
-//! Outlines through what is seen of a layer, completed where others hide it.
+//! The outlines of what is painted together, in an order of painting.
 
 use alloc::collections::{BTreeMap, BTreeSet};
-use alloc::vec;
 use alloc::vec::Vec;
 use core::cell::RefCell;
 
@@ -13,25 +12,18 @@ use num_traits::Float as _;
 
 use super::memo::Memo;
 use super::order::Order;
-use super::visible::{self, Hidden};
-use super::walk::{self, Walk};
-use super::{link, raster, sheet};
+use super::raster;
+use super::visible::Hidden;
+use super::walk::Walk;
 use crate::boundary::{Ring, Step};
 use crate::outline::{Outline, OutlineShape};
 use crate::partition::{OUTSIDE, Partition};
 use crate::ruler::Ruler;
-use crate::sample::RingSamples;
 use crate::stroke::StrokeFit;
 use crate::tuning;
 
-/// Bits that tell of a sheet as large as the picture: that it is one, and of which kind.
-const FRAME_BITS: f64 = 8.0;
-
 /// By how much opposite sides of a parallelogram may differ, per length.
 const ALMOST: f64 = 0.02;
-
-/// Most ways to link the parts of one thing that are tried.
-const MOST_LINKED: usize = 4;
 
 /// The faces painted together, and those in front of them.
 type Place = (Vec<u32>, Vec<u32>);
@@ -177,8 +169,17 @@ impl Completion<'_> {
     }
 
     fn is_spent_times(&self, times: usize) -> bool {
-        let steps: usize = self.rings.iter().flatten().map(|ring| ring.steps.len()).sum();
-        self.memo.spent.get() > times * (tuning::MOST_TRIED * steps).min(tuning::MOST_TRIED_SAMPLES)
+        self.memo.spent.get() > times * self.wanted_samples().min(tuning::MOST_TRIED_SAMPLES)
+    }
+
+    /// Whether the search for an order has all the time that it can use.
+    pub(super) fn has_time(&self) -> bool {
+        self.wanted_samples() <= tuning::MOST_TRIED_SAMPLES
+    }
+
+    /// Samples that outlines may be fitted to in such a search, were there no bound.
+    fn wanted_samples(&self) -> usize {
+        tuning::MOST_TRIED * self.rings.iter().flatten().map(|ring| ring.steps.len()).sum::<usize>()
     }
 
     /// Faces are painted in this order, and no others.
@@ -211,56 +212,6 @@ impl Completion<'_> {
         completed
     }
 
-    /// [`Completion::outlines`] of a group at place `rank` that was not asked for before.
-    fn completed(&self, group: &[u32], rank: usize) -> Completed {
-        let wanted = |label: u32| self.wanted(label, group, rank);
-        let mut walks = self.walks(group, rank);
-        // What is not hidden has no boundary but its own.
-        let is_seen = |at: Vec2<f64>| self.pure_face(at).is_some_and(|face| wanted(face).is_some());
-        let mut samples = walk::samples(&walks);
-        let most = if group.len() > 1 { MOST_LINKED } else { 1 };
-        let linked = link::relinked(&samples, is_seen, most).into_iter().map(|samples| self.framed(&samples));
-        let linked = linked.filter(|linked| self.check(&linked.outlines, wanted).is_ok());
-        let mut linked = linked.min_by(|a, b| a.bits.total_cmp(&b.bits));
-        let mut wrong_ways = Vec::new();
-        // Long boundaries are not led around what they must not hide without end. With a quarter of that the description of two flags of 160
-        // doubled; without a bound layers took up to 39 rounds.
-        let count: usize = samples.iter().flat_map(|ring| &ring.runs).map(Vec::len).sum();
-        for round in 0..=tuning::MOST_TRIED * tuning::MOST_TRIED_SAMPLES / count.max(1) {
-            let walked = self.fit(&samples);
-            match self.check(&walked.outlines, wanted) {
-                Ok(()) => return linked.filter(|linked| linked.bits <= walked.bits).unwrap_or(walked),
-                Err(wrong) => {
-                    if round == 0 {
-                        let led = sheet::bordered(&samples, self.partition.size, is_seen).map(|led| self.fit(&led));
-                        let led = led.filter(|led| self.check(&led.outlines, wanted).is_ok());
-                        linked = [linked, led].into_iter().flatten().min_by(|a, b| a.bits.total_cmp(&b.bits));
-                    }
-                    let is_pinned = walk::pin(&mut walks, &wrong);
-                    wrong_ways.push((walked, wrong));
-                    if !is_pinned {
-                        break;
-                    }
-                    samples = walk::samples(&walks);
-                }
-            }
-        }
-        linked.unwrap_or_else(|| {
-            walks.retain(|walk| !walk.is_filled);
-            let traced = Completed::new(walks.iter().map(|walk| self.traced(walk.ring)).collect(), false);
-            // Of many boundaries most are right as they are.
-            let blamed = wrong_ways.last().map(|(_, wrong)| walk::blamed(&walks, wrong)).unwrap_or_default();
-            let parts = walks.iter().zip(blamed).filter_map(|(walk, is_blamed)| match is_blamed {
-                true => Some(self.traced(walk.ring)),
-                false => self.memo.fit_closed(&walk.samples(), &self.ruler),
-            });
-            let parts = Completed::new(parts.collect(), false);
-            let parts = self.check(&parts.outlines, wanted).is_ok().then_some(parts);
-            let priced = wrong_ways.into_iter().map(|(walked, wrong)| self.priced(walked, &wrong, wanted)).chain(parts);
-            priced.fold(traced, |best, other| if other.bits < best.bits { other } else { best })
-        })
-    }
-
     /// The boundaries of a group at place `rank`.
     pub(super) fn walks(&self, group: &[u32], rank: usize) -> Vec<Walk<'_>> {
         // Too small to tell how it goes on.
@@ -268,25 +219,6 @@ impl Completion<'_> {
         let hidden = |step| self.hidden(step, rank, are_specks, group.len() > 1);
         let rings = group.iter().flat_map(|&face| &self.rings[face as usize]);
         rings.map(|ring| Walk::new(ring, ring.steps.iter().map(hidden).collect())).collect()
-    }
-
-    /// Outlines that get pixels wrong, with what these cost: where colors are alike, or a coder has changed them, less than the corners of a
-    /// polygon that gets them right.
-    fn priced(&self, completed: Completed, wrong: &[[usize; 2]], wanted: impl Fn(u32) -> Option<bool>) -> Completed {
-        let mut pixels: BTreeMap<u32, usize> = BTreeMap::new();
-        wrong.iter().for_each(|&at| *pixels.entry(self.partition.face_at(at)).or_default() += 1);
-        let own: Vec<u32> = (0..self.rank.len() as u32).filter(|&face| wanted(face) == Some(true)).collect();
-        let chi2 = |(&face, &count): (&u32, &usize)| {
-            // What else may be shown where its own face is missed is not known: the worst of what is beside.
-            let shown = if own.contains(&face) { &self.neighbors[face as usize] } else { &own };
-            let color = self.partition.color(face);
-            let contrast2 = |other: &u32| (0..3).map(|c| (self.partition.color(*other)[c] - color[c]).powi(2)).sum();
-            count as f64 * shown.iter().map(contrast2).fold(0.0, f64::max) / self.partition.sigma.powi(2)
-        };
-        let bits = completed.bits + self.ruler.misfit(pixels.iter().map(chi2).sum());
-        // Without outlines nothing is explained.
-        let bits = if completed.outlines.is_empty() { f64::INFINITY } else { bits };
-        Completed { bits, agrees: false, ..completed }
     }
 
     /// Whether a layer of the faces `group` at place `rank` must show a face, must not hide it, or may (none).
@@ -313,33 +245,6 @@ impl Completion<'_> {
         faces.iter().map(|&face| self.rank(face)).min().unwrap_or(0)
     }
 
-    /// The outlines through samples.
-    fn fit(&self, samples: &[RingSamples]) -> Completed {
-        let outlines = samples.iter().filter_map(|samples| self.memo.fit_closed(samples, &self.ruler));
-        Completed::new(outlines.filter(|outline| !raster::is_nothing(outline)).collect(), true)
-    }
-
-    /// The outlines through samples, within that of the picture where they go around what they leave free: corners around a disk are a
-    /// sheet with an opening.
-    fn framed(&self, samples: &[RingSamples]) -> Completed {
-        let mut completed = self.fit(samples);
-        if samples.iter().map(link::area).sum::<f64>() < 0.0 {
-            let [width, height] = self.partition.size.map(|side| side as f64);
-            let points = vec![[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]];
-            let shape = OutlineShape::Path(PathRing::polygon(points));
-            completed.bits += FRAME_BITS;
-            completed.outlines.push(Outline { shape, bits: FRAME_BITS, misfit: 0.0, covariance: Vec::new() });
-        }
-        completed
-    }
-
-    /// The face at a place if nothing else has a share there.
-    fn pure_face(&self, at: Vec2<f64>) -> Option<u32> {
-        let [x, y] = [at.x as usize, at.y as usize];
-        let face = self.partition.face_at([x, y]);
-        (face != OUTSIDE && self.partition.shares[y * self.partition.size[0] + x] >= tuning::PURE_SHARE).then_some(face)
-    }
-
     /// How a step of a layer's boundary is hidden, if it is.
     fn hidden(&self, step: &Step, rank: usize, is_speck: bool, is_part: bool) -> Option<Hidden> {
         // What is seen in parts goes on behind something in any case.
@@ -362,17 +267,6 @@ impl Completion<'_> {
     ) -> Result<(), Vec<[usize; 2]>> {
         let polygons: Vec<Vec<[f64; 2]>> = outlines.iter().filter_map(raster::polygon).collect();
         if polygons.is_empty() { Err(Vec::new()) } else { raster::check(self.partition, &polygons, wanted) }
-    }
-
-    /// The last resort: the polygon through the samples themselves.
-    fn traced(&self, ring: &Ring) -> Outline {
-        let RingSamples { runs, .. } = visible::samples(ring, &vec![None; ring.steps.len()], &[]);
-        let mut points: Vec<[f64; 2]> = runs.iter().flatten().map(|sample| sample.point.to_array()).collect();
-        if points.len() < 3 {
-            points = ring.steps.iter().map(|step| step.crack.start.map(|value| value as f64)).collect();
-        }
-        let bits = 2.0 * points.len() as f64 * self.ruler.number(0.1);
-        Outline { shape: OutlineShape::Path(PathRing::polygon(points)), bits, misfit: 0.0, covariance: Vec::new() }
     }
 }
 

@@ -67,9 +67,9 @@ pub(super) fn votes(rings: &[Vec<Ring>]) -> (Votes, Passes) {
             if turn.misfits.iter().flatten().all(|&misfit| is_smooth(Some(misfit))) {
                 passes.extend(ending().map(|face| (turn.face, face)));
             }
-            // One that could not be measured is no rival.
+            // One that could not be measured is no rival. What is no curve at all misses as much as may speak.
             let rivals = here.iter().filter(|other| other.face != turn.face).filter_map(|rival| rival.misfits[scale]);
-            let gain = rivals.min_by(f64::total_cmp).map_or(0.0, |rival| (rival - misfit).min(tuning::MOST_VOTE));
+            let gain = rivals.min_by(f64::total_cmp).map_or(0.0, |rival| rival.min(tuning::MOST_VOTE) - misfit);
             if gain > 0.0 {
                 for behind in ending() {
                     *votes.entry((turn.face, behind)).or_default() += gain;

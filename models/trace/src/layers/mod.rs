@@ -13,7 +13,8 @@
 //! | `walk` | what of a boundary follows what hides it |
 //! | `link` | which visible stretch goes on as which behind others |
 //! | `sheet` | what reaches as far as the picture does |
-//! | `complete` | outlines through what is seen |
+//! | `complete` | outlines of what is painted together, in an order |
+//! | `lead` | outlines through what is seen, led around what they must not hide |
 //! | `repeat` | what is another thing again, elsewhere and in another size |
 //! | `memo` | outlines that were fitted before |
 //! | `raster` | the check that an outline hides nothing |
@@ -22,6 +23,7 @@ mod complete;
 mod edge_to_edge;
 mod join;
 mod junction;
+mod lead;
 mod link;
 mod memo;
 mod order;

@@ -20,6 +20,8 @@ pub(super) struct Order {
     pub(super) in_front: Passes,
     /// What speaks for it.
     votes: Votes,
+    /// What of that can be seen; the rest is custom: how things of these colors, lines, and what others enclose mostly lie.
+    seen: Votes,
 }
 
 impl Order {
@@ -31,26 +33,30 @@ impl Order {
         pens: &mut [Option<StrokeFit>],
         of_seams: &Votes,
     ) -> Self {
-        let (mut votes, mut shown) = votes(rings);
+        let (mut seen, mut shown) = votes(rings);
+        let mut votes = seen.clone();
         add_colors(partition, rings, &mut votes);
         // Lines end at what lies in front of them as if a pen had ended there: they are things that go on behind it.
-        for (&(_, behind), _) in votes.iter().filter(|&(&(front, behind), &bits)| {
-            bits - votes.get(&(behind, front)).copied().unwrap_or(0.0) >= 0.5 * tuning::MOST_VOTE
-        }) {
-            pens[behind as usize] = None;
+        for &(front, behind) in votes.keys() {
+            if net(&votes, front, behind) >= 0.5 * tuning::MOST_VOTE {
+                pens[behind as usize] = None;
+            }
         }
         add_pens(rings, pens, &mut votes);
         let neighbors: Vec<Vec<u32>> = rings.iter().map(|rings| neighbors_along(rings.iter())).collect();
         add_enclosures(partition, (rings, &neighbors), background, clear, &mut votes);
         // The background lies behind everything, whatever was painted last.
         let of_seams = of_seams.iter().filter(|(pair, _)| pair.0 != background);
-        of_seams.for_each(|(&pair, bits)| *votes.entry(pair).or_default() += bits);
+        for (&pair, bits) in of_seams {
+            *votes.entry(pair).or_default() += bits;
+            *seen.entry(pair).or_default() += bits;
+        }
         let n = partition.faces.len();
         // What lies in front of each face, and behind how much each face must lie that is not placed yet.
         let mut in_front: Vec<Vec<(u32, f64)>> = vec![Vec::new(); n];
         let mut held = vec![0.0; n];
-        for (&(front, behind), &bits) in &votes {
-            let net = bits - votes.get(&(behind, front)).copied().unwrap_or(0.0);
+        for &(front, behind) in votes.keys() {
+            let net = net(&votes, front, behind);
             if net > 0.0 {
                 in_front[behind as usize].push((front, net));
                 held[front as usize] += net;
@@ -64,7 +70,7 @@ impl Order {
                 held[inner as usize] += tuning::ENCLOSED_VOTE;
             }
         }
-        let mut order = Self { faces: Vec::with_capacity(n), rank: vec![usize::MAX; n], in_front: shown, votes };
+        let mut order = Self { faces: Vec::with_capacity(n), rank: vec![usize::MAX; n], in_front: shown, votes, seen };
         let mut next = Some(background);
         while let Some(face) = next {
             order.rank[face as usize] = order.faces.len();
@@ -84,8 +90,12 @@ impl Order {
 
     /// How much speaks for a face lying in front of another one, bits; negative for the other way.
     pub(super) fn net(&self, front: u32, behind: u32) -> f64 {
-        let vote = |front, behind| self.votes.get(&(front, behind)).copied().unwrap_or(0.0);
-        vote(front, behind) - vote(behind, front)
+        net(&self.votes, front, behind)
+    }
+
+    /// How much of that can be seen.
+    pub(super) fn net_seen(&self, front: u32, behind: u32) -> f64 {
+        net(&self.seen, front, behind)
     }
 
     /// What shows the background through holes lies as far back as the background itself: what lies between must not cover it either.
@@ -101,6 +111,12 @@ impl Order {
             self.rank[hole as usize] = 0;
         }
     }
+}
+
+/// How much more speaks for the first of two faces lying in front of the second than for the other way.
+fn net(votes: &Votes, front: u32, behind: u32) -> f64 {
+    let vote = |front, behind| votes.get(&(front, behind)).copied().unwrap_or(0.0);
+    vote(front, behind) - vote(behind, front)
 }
 
 /// The faces in the holes of a face, but those that touch it.

@@ -1,8 +1,9 @@
-//! Things that are others again, elsewhere and in another size: what is seen of one tells what is hidden of the other.
+//! Things that are others again, elsewhere, in another size, or reflected: what is seen of one tells what is hidden of the other.
 //!
 //! A thing that others hide in part is held against the outlines of every other thing of the picture. Three straight stretches of
 //! its boundary tell of a shift and a scale; what agrees best with all that is seen is refined, and taken if it
-//! covers what it should and three numbers in place of an outline are the shorter description. Things are not turned.
+//! covers what it should and three numbers in place of an outline are the shorter description. Things may be upside down or mirrored, but are
+//! not turned.
 
 use alloc::vec::Vec;
 
@@ -41,6 +42,9 @@ const FAR2: f64 = 0.25;
 const STEPS: usize = 6;
 /// Pixels that shift and scale of a thing are known to.
 const SIGMA: f64 = 0.01;
+
+/// How many templates are held against samples in the time that an outline through these takes, about.
+const QUICKER: usize = 64;
 
 /// Takes another thing's outlines for what is hidden in part, where that is the shorter description; then leaves out what was painted in the
 /// color of the background only because others were thought to lie there.
@@ -118,12 +122,10 @@ fn best(completion: &Completion<'_>, groups: &[Group], faces: &[u32], most: f64,
     let stretches = stretches(&runs);
     let samples: Vec<Sample> = runs.into_iter().flatten().copied().collect();
     let mut best: Option<Completed> = None;
-    for template in (0..groups.len()).filter(|at| !own.contains(at)).map(|at| &groups[at].completed) {
-        if template.outlines.is_empty() || !template.agrees {
-            continue;
-        }
-        // Each takes about as long as an outline through as many samples.
-        completion.memo.spent.set(completion.memo.spent.get() + samples.len());
+    let others = (0..groups.len()).filter(|at| !own.contains(at)).map(|at| &groups[at].completed);
+    let agreeing = others.filter(|template| !template.outlines.is_empty() && template.agrees);
+    for (template, flip) in agreeing.flat_map(|template| flips().map(move |flip| (template, flip))) {
+        completion.memo.spent.set(completion.memo.spent.get() + samples.len().div_ceil(QUICKER));
         if completion.is_spent() {
             break;
         }
@@ -131,6 +133,7 @@ fn best(completion: &Completion<'_>, groups: &[Group], faces: &[u32], most: f64,
             .outlines
             .iter()
             .filter_map(raster::polygon)
+            .map(|points| points.into_iter().map(|point| flip.point(point.into()).to_array()).collect::<Vec<_>>())
             .flat_map(|points| LineSegment::closed(&points).collect::<Vec<_>>())
             .collect();
         if edges.len() > MOST_EDGES {
@@ -138,12 +141,14 @@ fn best(completion: &Completion<'_>, groups: &[Group], faces: &[u32], most: f64,
         }
         let Some(guess) = guess(&stretches, &edges) else { continue };
         let Some((map, misfit)) = refined(guess, &edges, &samples) else { continue };
-        let numbers = 3.0 * completion.ruler.number(SIGMA) + (groups.len() as f64).log2() + tuning::OUTLINE_PIECE_BITS;
+        let choices = groups.len() * flips().len();
+        let numbers = 3.0 * completion.ruler.number(SIGMA) + (choices as f64).log2() + tuning::OUTLINE_PIECE_BITS;
         let bits = numbers + completion.ruler.misfit(misfit);
         if bits >= best.as_ref().map_or(most - tuning::LEAST_SAVED, |best| best.bits) {
             continue;
         }
         let count = template.outlines.len() as f64;
+        let map = flip.then(&map);
         let moved = |outline: &Outline| Outline {
             shape: outline.shape.moved(&map),
             bits: numbers / count,
@@ -156,6 +161,12 @@ fn best(completion: &Completion<'_>, groups: &[Group], faces: &[u32], most: f64,
         }
     }
     best
+}
+
+/// A template as it is, upside down, and mirrored.
+fn flips() -> [Similarity<f64>; 3] {
+    let flip = |x: f64, reflected: bool| Similarity { turn: Vec2::new(x, 0.0), reflected, ..Similarity::identity() };
+    [flip(1.0, false), flip(1.0, true), flip(-1.0, true)]
 }
 
 /// A straight stretch of a boundary: its direction, and its first, middle and last place.

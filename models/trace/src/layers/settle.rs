@@ -217,12 +217,8 @@ impl Search<'_, '_> {
             moved.insert(at_a.max(at_b), between);
             let crossed = &self.order[at..=at_a.max(at_b)];
             let touched = self.completion.neighbors[between as usize].iter().filter(|other| crossed.contains(other));
-            // That lines lie on what they touch is no evidence but a custom.
-            let votes = |&other: &u32| {
-                let custom = if self.completion.pen(&[other]).is_some() { tuning::PEN_VOTE } else { 0.0 };
-                (self.completion.order.net(other, between) - custom).max(0.0)
-            };
-            let against = touched.map(votes).sum();
+            // Custom tells nothing where both are one thing.
+            let against = touched.map(|&other| self.completion.order.net_seen(other, between).max(0.0)).sum();
             is_changed |= self.is_shorter(moved, &[(a, b)], against);
         }
         is_changed

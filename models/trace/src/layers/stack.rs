@@ -19,7 +19,7 @@ struct Stack {
     faces: Vec<u32>,
     /// Bits of all that is painted.
     bits: f64,
-    /// What junctions say against it, bits.
+    /// What can be seen against it, bits.
     against: f64,
 }
 
@@ -89,7 +89,7 @@ impl Search<'_, '_> {
         Stack { bits, against: self.against(&faces), faces }
     }
 
-    /// What junctions say against a new order, bits: of what touches and lies the other way round.
+    /// What can be seen against a new order, bits: of what touches and lies the other way round. What is custom moves with its colors.
     fn against(&self, new: &[u32]) -> f64 {
         let ranks = |order: &[u32]| {
             let mut rank = vec![0; self.completion.rank.len()];
@@ -102,7 +102,7 @@ impl Search<'_, '_> {
             for &behind in &self.completion.neighbors[front as usize] {
                 let [a, b] = [front, behind].map(|face| face as usize);
                 if rank[b] > 0 && rank[a] > rank[b] && old[a] < old[b] {
-                    bits += self.completion.order.net(behind, front);
+                    bits += self.completion.order.net_seen(behind, front);
                 }
             }
         }

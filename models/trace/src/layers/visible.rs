@@ -24,16 +24,26 @@ pub(super) enum Hidden {
     Tucked,
 }
 
-/// The samples of a ring; where `hidden` says so of a step, the boundary is not the layer's own, and where `doubted` does, what was read
-/// there is not believed.
+/// What is known of a step of a boundary.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Known {
+    /// What a window reads; nothing where none does.
+    Read,
+    /// That, or the crack itself.
+    Filled,
+    /// The crack: what was read is not believed.
+    Crack,
+}
+
+/// The samples of a ring; where `hidden` says so of a step, the boundary is not the layer's own.
 ///
 /// Stretches that no window could read (thin things, crowded junctions) are known from the cracks themselves, to a third of a pixel.
-pub(super) fn samples(ring: &Ring, hidden: &[Option<Hidden>], doubted: &[bool]) -> RingSamples {
+pub(super) fn samples(ring: &Ring, hidden: &[Option<Hidden>], known: &[Known]) -> RingSamples {
     let is_free = |k: usize| hidden[k] == Some(Hidden::Free);
     let n = ring.steps.len();
     // Begin behind a hidden step, so that no run is cut in two.
     let Some(start) = (0..n).find(|&k| is_free(k)) else {
-        let run = read(ring, 0, n, true, hidden, doubted);
+        let run = read(ring, 0, n, true, hidden, known);
         return RingSamples { runs: alloc::vec![run], closed: true };
     };
     let mut runs = Vec::new();
@@ -45,7 +55,7 @@ pub(super) fn samples(ring: &Ring, hidden: &[Option<Hidden>], doubted: &[bool]) 
             continue;
         }
         let length = (k..n).take_while(|&j| !is_free(at(j))).count();
-        let run = read(ring, at(k), length, false, hidden, doubted);
+        let run = read(ring, at(k), length, false, hidden, known);
         if !run.is_empty() {
             runs.push(run);
         }
@@ -61,18 +71,20 @@ fn read(
     length: usize,
     closed: bool,
     hidden: &[Option<Hidden>],
-    doubted: &[bool],
+    known: &[Known],
 ) -> Vec<Sample> {
     let n = ring.steps.len();
     let mut run: Vec<Sample> = Vec::new();
     let mut unread = 0;
     for k in 0..length {
-        let step = &ring.steps[(start + k) % n];
+        let at = (start + k) % n;
+        let step = &ring.steps[at];
         // Where a boundary is flat half of the steps have samples, at 45 degrees; else more. A longer stretch without is unread.
         unread = if step.sample.is_some() { 0 } else { unread + 1 };
         match step.sample {
-            _ if doubted.get((start + k) % n) == Some(&true) => push(&mut run, of_crack(step, tuning::CRACK_SIGMA)),
-            Some(sample) => push(&mut run, moved(sample, step, hidden[(start + k) % n])),
+            _ if known.get(at) == Some(&Known::Crack) => push(&mut run, of_crack(step, tuning::CRACK_SIGMA)),
+            Some(sample) => push(&mut run, moved(sample, step, hidden[at])),
+            None if known.get(at) == Some(&Known::Filled) => push(&mut run, of_crack(step, tuning::CRACK_SIGMA)),
             None if step.other == OUTSIDE => push(&mut run, of_crack(step, tuning::BORDER_SIGMA)),
             None if unread > tuning::MOST_UNREAD => push(&mut run, of_crack(step, tuning::CRACK_SIGMA)),
             None => (),

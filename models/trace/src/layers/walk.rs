@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use dvp_core::Vec2;
 
-use super::visible::{self, Hidden};
+use super::visible::{self, Hidden, Known};
 use crate::boundary::Ring;
 use crate::partition::OUTSIDE;
 use crate::sample::RingSamples;
@@ -28,33 +28,40 @@ pub(super) struct Walk<'a> {
     pub(super) hidden: Vec<Option<Hidden>>,
     /// Whether it is the boundary of a hole that is taken for none.
     pub(super) is_filled: bool,
-    /// Of which steps nothing but the crack is believed.
-    doubted: Vec<bool>,
+    /// What is known of its steps.
+    known: Vec<Known>,
 }
 
 impl<'a> Walk<'a> {
     /// A hole that is filled by what lies in front of it is none, as long as nothing else is seen in it.
     pub(super) fn new(ring: &'a Ring, hidden: Vec<Option<Hidden>>) -> Self {
         let is_filled = ring.area <= 0.0 && !hidden.contains(&None);
-        let doubted = vec![false; hidden.len()];
-        Self { ring, hidden, is_filled, doubted }
+        let known = vec![Known::Read; hidden.len()];
+        Self { ring, hidden, is_filled, known }
     }
 
     /// What is seen of it, and what lies along others.
     pub(super) fn samples(&self) -> RingSamples {
-        visible::samples(self.ring, &self.hidden, &self.doubted)
+        visible::samples(self.ring, &self.hidden, &self.known)
     }
 
-    /// Doubts what was read near some pixels; whether that is new anywhere.
-    fn doubt(&mut self, wrong: &[[usize; 2]]) -> bool {
+    /// Believes no more than `known` of what was read near some pixels; whether that is new anywhere.
+    fn doubt(&mut self, wrong: &[[usize; 2]], known: Known) -> bool {
         let mut is_new = false;
-        for (step, doubted) in self.ring.steps.iter().zip(&mut self.doubted).filter(|(_, doubted)| !**doubted) {
+        for (k, step) in self.ring.steps.iter().enumerate() {
+            // Cracks fill what is this layer's own boundary.
+            let may_help = match known {
+                Known::Filled => self.known[k] == Known::Read && step.sample.is_none() && self.hidden[k].is_none(),
+                _ => self.known[k] != known,
+            };
             let middle = Ring::middle(step.crack);
             let is_near = |&[x, y]: &[usize; 2]| {
                 (Vec2::new(x as f64 + 0.5, y as f64 + 0.5) - middle).length_squared() < DOUBTED * DOUBTED
             };
-            *doubted = wrong.iter().any(is_near);
-            is_new |= *doubted;
+            if may_help && wrong.iter().any(is_near) {
+                self.known[k] = known;
+                is_new = true;
+            }
         }
         is_new
     }
@@ -136,10 +143,16 @@ pub(super) fn pin(walks: &mut [Walk<'_>], wrong: &[[usize; 2]]) -> bool {
         }
     }
     // What no window reads well, corners of three colors and hairs, the pixels themselves tell.
-    !places.is_empty()
-        || walks
-            .iter_mut()
-            .filter(|walk| !walk.is_filled)
-            .map(|walk| walk.doubt(wrong))
-            .fold(false, |any, new| any | new)
+    !places.is_empty() || doubt(walks, wrong, Known::Crack)
+}
+
+/// Takes the cracks where no window reads anything near pixels that are wrong, as of short sides; whether that is new anywhere.
+pub(super) fn fill(walks: &mut [Walk<'_>], wrong: &[[usize; 2]]) -> bool {
+    doubt(walks, wrong, Known::Filled)
+}
+
+/// Doubts what was read near pixels; whether that is new anywhere.
+fn doubt(walks: &mut [Walk<'_>], wrong: &[[usize; 2]], known: Known) -> bool {
+    let outer = walks.iter_mut().filter(|walk| !walk.is_filled);
+    outer.map(|walk| walk.doubt(wrong, known)).fold(false, |any, new| any | new)
 }

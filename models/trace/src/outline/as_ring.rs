@@ -42,10 +42,11 @@ impl OutlineShape {
 }
 
 impl OutlineShape {
-    /// The same elsewhere, turned and in another size; `map` reflects nothing.
+    /// The same elsewhere, turned or reflected, and in another size.
     #[must_use]
     pub(crate) fn moved(&self, map: &Similarity<f64>) -> Self {
         let (scale, turn) = (map.scale(), map.angle());
+        let turned = |angle: f64| if map.reflected { turn - angle } else { turn + angle };
         match *self {
             Self::Path(ref ring) => {
                 let place = |point: [f64; 2]| map.point(Vec2::from(point)).to_array();
@@ -54,6 +55,7 @@ impl OutlineShape {
                     Segment::SmoothCubic { handle, control } => {
                         Segment::SmoothCubic { handle: handle * scale, control: place(control) }
                     }
+                    Segment::Arc { bulge } if map.reflected => Segment::Arc { bulge: -bulge },
                     other => other,
                 };
                 let points = ring.points.iter().map(|&point| place(point)).collect();
@@ -63,22 +65,22 @@ impl OutlineShape {
             Self::Ellipse { center, radii, angle } => Self::Ellipse {
                 center: map.point(center),
                 radii: radii.map(|radius| radius * scale),
-                angle: angle + turn,
+                angle: turned(angle),
             },
             Self::Rectangle { center, size, corner_radius, angle } => Self::Rectangle {
                 center: map.point(center),
                 size: size.map(|side| side * scale),
                 corner_radius: corner_radius * scale,
-                angle: angle + turn,
+                angle: turned(angle),
             },
             Self::RegularPolygon { center, sides, radius, angle } => {
-                Self::RegularPolygon { center: map.point(center), sides, radius: radius * scale, angle: angle + turn }
+                Self::RegularPolygon { center: map.point(center), sides, radius: radius * scale, angle: turned(angle) }
             }
             Self::Star { center, points, radii, angle } => Self::Star {
                 center: map.point(center),
                 points,
                 radii: radii.map(|radius| radius * scale),
-                angle: angle + turn,
+                angle: turned(angle),
             },
         }
     }

@@ -53,6 +53,27 @@ fn what_is_hidden_of_a_thing_is_as_it_is_of_another() {
 }
 
 #[test]
+fn what_is_hidden_of_a_thing_is_as_it_is_of_another_upside_down_or_mirrored() {
+    for flip in [[1.0, -1.0], [-1.0, 1.0]] {
+        let mut flipped = hook(1.0);
+        let AnyShape::Path(path) = &mut flipped else { unreachable!() };
+        path.rings.iter_mut().flat_map(|ring| &mut ring.points).for_each(|point| {
+            *point = [point[0] * flip[0], point[1] * flip[1]];
+        });
+        let bar = object(rectangle(12.0, 50.0), [71.3, 61.4], 0.0, GRAY);
+        let hidden = object(hook(1.2), [70.4, 62.6], 0.0, BLUE);
+        let made = scene(WHITE, vec![object(flipped, [24.3, 25.2], 0.0, SAND), hidden, bar]);
+        let picture = paint(&made);
+        let found = found(&picture);
+        let blue = of_color(&found.objects, BLUE);
+        assert!(found.objects.len() == 3 && blue.len() == 1, "{found:?}");
+        let truth = area(&made.objects[1]);
+        assert!((area(blue[0]) / truth - 1.0).abs() < 0.01, "{} of {truth}", area(blue[0]));
+        assert!(error(&picture, &found) < 1e-3);
+    }
+}
+
+#[test]
 fn another_thing_is_no_reason_for_what_is_seen_otherwise() {
     let other = PathRing::polygon(vec![[-14.0, -15.0], [15.0, -15.0], [10.0, 12.0], [-4.0, 6.0]]);
     let other = AnyShape::Path(Path { rings: vec![other], fill: FillRule::EvenOdd });
@@ -106,10 +127,10 @@ proptest! {
 
     #[test]
     fn a_moved_outline_is_the_outline_of_moved_points(
-        shape in shapes(), scale in 0.3..3.0, angle in -3.0..3.0, x in -40.0..40.0, y in -40.0..40.0,
+        shape in shapes(), scale in 0.3..3.0, angle in -3.0..3.0, x in -40.0..40.0, y in -40.0..40.0, reflected in any::<bool>(),
     ) {
         let turn = Vec2::from_angle(angle) * scale;
-        let map = Similarity { turn, translation: Vec2::new(x, y), reflected: false };
+        let map = Similarity { turn, translation: Vec2::new(x, y), reflected };
         let (moved, ring) = (shape.moved(&map).ring(), shape.ring());
         // A path is moved point by point.
         let as_path = OutlineShape::Path(ring.clone()).moved(&map).ring();
@@ -117,11 +138,15 @@ proptest! {
             let expected = map.point(Vec2::from(*point));
             // The two points that make a circle are where they are, however it is turned.
             let is_round = matches!(shape, OutlineShape::Circle { .. });
-            prop_assert!(is_round || (Vec2::from(moved.points[k]) - expected).length() < 1e-9);
+            // A figure that is reflected may begin elsewhere.
+            let is_there = |at: &[f64; 2]| (Vec2::from(*at) - expected).length() < 1e-9;
+            prop_assert!(is_round || moved.points.iter().any(is_there));
             prop_assert!((Vec2::from(as_path.points[k]) - expected).length() < 1e-9);
         }
         let area = |ring: PathRing<f64>| Path { rings: vec![ring], fill: FillRule::EvenOdd }.area().unwrap();
-        let (before, after) = (area(ring), area(as_path));
-        prop_assert!((after - scale * scale * before).abs() < 1e-6 * after.abs());
+        let before = area(ring);
+        for after in [area(moved), area(as_path)] {
+            prop_assert!((after - scale * scale * before).abs() < 1e-6 * after.abs());
+        }
     }
 }
