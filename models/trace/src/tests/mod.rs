@@ -7,6 +7,7 @@ mod lines;
 mod nested;
 mod repeated;
 mod seams;
+mod strips;
 
 use alloc::string::ToString as _;
 use alloc::vec;
