@@ -49,14 +49,15 @@ impl Completion<'_> {
         let is_seen = |at: Vec2<f64>| self.pure_face(at).is_some_and(|face| wanted(face).is_some());
         let most = if group.len() > 1 { MOST_LINKED } else { 1 };
         let linked = link::relinked(&samples, is_seen, most).into_iter().map(|samples| self.framed(&samples));
-        let mut found = self.shortest(linked, wanted);
+        let agrees = |completed: &Completed| self.check(&completed.outlines, wanted).is_ok();
+        let mut found = shortest(linked.filter(agrees));
         let walked = self.fit(&samples);
         let pixels = match self.check(&walked.outlines, wanted) {
             Ok(()) => return found.filter(|linked| linked.bits <= walked.bits).unwrap_or(walked),
             Err(pixels) => pixels,
         };
         let bordered = sheet::bordered(&samples, self.partition.size, is_seen).map(|bordered| self.fit(&bordered));
-        found = self.shortest(found.into_iter().chain(bordered), wanted);
+        found = shortest(found.into_iter().chain(bordered.filter(agrees)));
         let mut walks = Vec::new();
         let mut wrong = vec![Wrong { completed: walked, pixels: pixels.clone() }];
         // What is hidden goes along what hides it. Where that leads nowhere, cracks tell the boundary first, and what is hidden may go anywhere still;
@@ -64,7 +65,7 @@ impl Completion<'_> {
         let ways: &[bool] = if self.has_time() { &[false, true] } else { &[false] };
         for &fills in ways {
             if let Some(led) = self.led(self.walks(group, rank), pixels.clone(), fills, wanted) {
-                found = self.shortest(found.into_iter().chain(led.found), wanted);
+                found = shortest(found.into_iter().chain(led.found));
                 wrong.extend(led.wrong);
                 walks = led.walks;
             }
@@ -73,16 +74,6 @@ impl Completion<'_> {
             }
         }
         found.unwrap_or_else(|| self.cheapest(walks, wrong, wanted))
-    }
-
-    /// The shortest of outlines that agree with what is `wanted`.
-    fn shortest(
-        &self,
-        outlines: impl Iterator<Item = Completed>,
-        wanted: impl Fn(u32) -> Option<bool> + Copy,
-    ) -> Option<Completed> {
-        let agreeing = outlines.filter(|completed| self.check(&completed.outlines, wanted).is_ok());
-        agreeing.min_by(|a, b| a.bits.total_cmp(&b.bits))
     }
 
     /// Outlines that are led around what they must not hide, from those on that get `pixels` wrong; none where nothing is to be filled though it
@@ -194,4 +185,9 @@ impl Completion<'_> {
         let bits = 2.0 * points.len() as f64 * self.ruler.number(0.1);
         Outline { shape: OutlineShape::Path(PathRing::polygon(points)), bits, misfit: 0.0, covariance: Vec::new() }
     }
+}
+
+/// The first of those with the fewest bits.
+fn shortest(outlines: impl Iterator<Item = Completed>) -> Option<Completed> {
+    outlines.min_by(|a, b| a.bits.total_cmp(&b.bits))
 }

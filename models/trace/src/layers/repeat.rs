@@ -124,21 +124,23 @@ fn best(completion: &Completion<'_>, groups: &[Group], faces: &[u32], most: f64,
     let mut best: Option<Completed> = None;
     let others = (0..groups.len()).filter(|at| !own.contains(at)).map(|at| &groups[at].completed);
     let agreeing = others.filter(|template| !template.outlines.is_empty() && template.agrees);
-    for (template, flip) in agreeing.flat_map(|template| flips().map(move |flip| (template, flip))) {
+    let with_edges = agreeing.map(|template| {
+        let polygons = template.outlines.iter().filter_map(raster::polygon);
+        (template, polygons.flat_map(|points| LineSegment::closed(&points).collect::<Vec<_>>()).collect())
+    });
+    let straight: Vec<(&Completed, Vec<LineSegment<f64>>)> =
+        with_edges.filter(|(_, edges): &(_, Vec<_>)| edges.len() <= MOST_EDGES).collect();
+    for ((template, edges), flip) in straight.iter().flat_map(|straight| flips().map(move |flip| (straight, flip))) {
         completion.memo.spent.set(completion.memo.spent.get() + samples.len().div_ceil(QUICKER));
         if completion.is_spent() {
             break;
         }
-        let edges: Vec<LineSegment<f64>> = template
-            .outlines
-            .iter()
-            .filter_map(raster::polygon)
-            .map(|points| points.into_iter().map(|point| flip.point(point.into()).to_array()).collect::<Vec<_>>())
-            .flat_map(|points| LineSegment::closed(&points).collect::<Vec<_>>())
-            .collect();
-        if edges.len() > MOST_EDGES {
-            continue;
-        }
+        let flipped = |edge: &LineSegment<f64>| LineSegment {
+            from: flip.point(edge.from),
+            along: flip.direction(edge.along),
+            ..*edge
+        };
+        let edges: Vec<LineSegment<f64>> = edges.iter().map(flipped).collect();
         let Some(guess) = guess(&stretches, &edges) else { continue };
         let Some((map, misfit)) = refined(guess, &edges, &samples) else { continue };
         let choices = groups.len() * flips().len();
