@@ -52,6 +52,7 @@ pub mod scene_refine;
 mod block_code;
 mod cholesky;
 mod colors;
+mod covariance;
 mod doubt;
 mod fitter;
 mod free;

@@ -11,11 +11,9 @@ use dvp_core::{Drawing, Efd, Image, ImageSize, Object, Pose, Scene};
 
 use crate::cholesky::{factor, packed, solve};
 use crate::colors::{ColorScratch, is_rounded, refine_colors};
-use crate::doubt::{covariance, visible_share};
-use crate::free::foot::EdgeLanes;
+use crate::doubt::visible_share;
 use crate::price::{Prices, scene_bits};
 use crate::residual::Residual;
-use crate::segment::EdgeSample;
 use crate::{Ambiguity, Doubts, Fit, FitError, FitOptions, StopReason, fit_image};
 
 #[test]
@@ -78,39 +76,6 @@ fn residuals_of_two_pixels() {
     assert_eq!(residual.count_above(size, [1.0, 0.5], 1.0, 0.25), 1);
     assert_eq!(residual.count_above(size, [0.5, 0.5], 0.5, 0.25), 0);
     assert_eq!(residual.count_above(size, [-9.0, 0.5], 2.0, 0.0), 0);
-}
-
-/// A regular polygon of 64 edges around (20, 20), its edges' middles 10 px away, with a sample on each.
-fn polygon() -> (Vec<[f64; 2]>, Vec<EdgeSample<f64>>) {
-    let step = core::f64::consts::TAU / 64.0;
-    let at = |angle: f64, radius: f64| [20.0 + radius * angle.cos(), 20.0 + radius * angle.sin()];
-    let radius = 10.0 / (0.5 * step).cos();
-    let outline = (0..=64_u32).map(|i| at(f64::from(i) * step, radius)).collect();
-    let middles = (0..64_u32).map(|i| at((f64::from(i) + 0.5) * step, 10.0));
-    (outline, middles.map(|point| EdgeSample { point, distance: 0.0, weight: 0.5 }).collect())
-}
-
-#[test]
-fn covariance_of_a_disk() {
-    let (outline, samples) = polygon();
-    let found = covariance(&outline, [20.0, 20.0], &samples, 40.0, 0.003, &mut EdgeLanes::default());
-    // Each sample tells its distance to 0.003 / 0.5 px. Position: 32 of 64 count (mean of cos^2), 40 px per unit. Log
-    // scale: 10 px per unit. The angle is as unknown as before.
-    let sample = (0.003_f64 / 0.5).powi(2);
-    let expected = [sample / (32.0 * 1600.0), sample / (32.0 * 1600.0), sample / (64.0 * 100.0), 3.29];
-    for (i, expected) in expected.into_iter().enumerate() {
-        assert!((found[6 * i] - expected).abs() < 1e-6 * expected, "{i}: {} is not {expected}", found[6 * i]);
-        for j in (0..4).filter(|&j| j != i) {
-            assert!(found[5 * i + j].abs() < 1e-6 * (found[6 * i] * found[6 * j]).sqrt(), "{i}, {j}");
-        }
-    }
-    // Samples that are off by 0.03 px, five times what noise explains: 25 times the covariance.
-    let off: Vec<EdgeSample<f64>> = samples.iter().map(|sample| EdgeSample { distance: 0.03, ..*sample }).collect();
-    let wide = covariance(&outline, [20.0, 20.0], &off, 40.0, 0.003, &mut EdgeLanes::default());
-    assert!((0..3).all(|i| (wide[6 * i] / found[6 * i] - 25.0).abs() < 0.01), "{wide:?}");
-    // Without samples nothing is known.
-    let found = covariance(&outline, [20.0, 20.0], &[], 40.0, 0.003, &mut EdgeLanes::default());
-    assert!((found[0] - 1.0).abs() < 1e-12 && (found[18] - 3.29).abs() < 1e-12);
 }
 
 #[test]

@@ -282,6 +282,8 @@ pub(crate) const SOFT_PIXEL_NOISE: f64 = 0.002;
 pub(crate) const MIXTURE_OUTLIER: f64 = 0.015;
 /// Samples that miss the outline by more (px) are those of another object.
 pub(crate) const COVARIANCE_ASTRAY_PX: f64 = 1.5;
+/// Standard deviation (px) of what all samples of an outline, or of a part of it, miss alike at best: 64 vertices and rounded colors.
+pub(crate) const SYSTEMATIC_PX: f64 = 0.002;
 /// A standard deviation of the position, in radii of the object, or of the logarithm of its size, that is wide: either makes
 /// the object agree with the true one to an IoU of 0.9 only.
 pub(crate) const WIDE_POSITION: f64 = 0.08;

@@ -16,6 +16,13 @@ use crate::tuning::ALTERNATIVE_RATIO;
 /// An object of this confidence hides what is behind it.
 const OPAQUE: f64 = 0.99;
 
+impl<T: Real> FoundObject<T> {
+    /// Another known shape that explains the object nearly as well, and its squared error over that of the chosen one.
+    pub(super) fn alternative(&self) -> Option<(usize, f64)> {
+        self.twin.filter(|&(_, ratio)| ratio < ALTERNATIVE_RATIO)
+    }
+}
+
 impl<T: Real> Run<'_, T> {
     /// The drawing of the scratch must be that of the scene.
     pub(super) fn ambiguities(&self, scene: &Scene<T>, found: &Found<T>) -> Vec<Ambiguity> {
@@ -36,7 +43,7 @@ impl<T: Real> Run<'_, T> {
             }
             out.extend(self.hidden(scene, found, object));
             out.extend(self.merged(found, object));
-            if let Some((prototype, ratio)) = part.twin.filter(|&(_, ratio)| ratio < ALTERNATIVE_RATIO) {
+            if let Some((prototype, ratio)) = part.alternative() {
                 out.push(Ambiguity::Twin { object, prototype, ratio });
             }
         }

@@ -2,14 +2,13 @@
 
 use alloc::vec::Vec;
 
-use dvp_core::contour::signed_area;
 use dvp_core::render::contour::ContourRenderer;
 use dvp_core::render::{Compositing, EdgeLaw, EdgeProfile};
 use dvp_core::{ImageView, Object, Real, Scene};
 
 use super::{FitScratch, Fitter};
 use crate::colors::{MAX_COVERAGE_VALUES, is_rounded, refine_colors};
-use crate::doubt::covariance;
+use crate::covariance::{Outlined, covariance};
 use crate::marginal_gain::{marginal_gains, ranking, squared_errors};
 use crate::residual::Residual;
 use crate::segment::EdgeKind;
@@ -273,8 +272,19 @@ impl<T: Real> Run<'_, T> {
                 .any(|(k, a)| others().skip(k + 1).any(|b| distance(own, mean(a, b)) < T::of(MEAN_OF_TWO_COLOR)))
     }
 
+    /// Standard deviation (px) of what may have blurred the edges: half of what lies between coverages of one standard deviation to either
+    /// side. The reference's profile is one that no blur makes.
+    fn blur_px(&self) -> T {
+        if self.edge.law == EdgeLaw::SquaredDistance {
+            return T::zero();
+        }
+        let profile = self.edge.in_pixels(self.unit_px());
+        let [outer, inner] = [0.159, 0.841].map(|coverage| profile.distance(T::of(coverage)));
+        T::of(0.5) * (outer - inner)
+    }
+
     fn covariances(&mut self, scene: &Scene<T>, found: &Found<T>) -> Result<Vec<[T; 25]>, FitError> {
-        let unit = self.unit_px();
+        let (unit, blur_px) = (self.unit_px(), self.blur_px());
         scene.draw(&self.fitter.outlines, &mut self.scratch.drawing)?;
         let mut out = Vec::with_capacity(scene.objects.len());
         for (k, (object, part)) in scene.objects.iter().zip(&found.objects).enumerate() {
@@ -282,22 +292,17 @@ impl<T: Real> Run<'_, T> {
             scratch.outline.clear();
             scratch.outline.extend(scratch.drawing.outline(k).iter().map(|v| v.map(|x| x * unit)));
             let center = object.pose.translation.map(|x| x * unit);
-            let samples = &scratch.segmentation.segments()[part.segment].samples;
-            let noise = scratch.segmentation.noise();
-            let mut block = covariance(&scratch.outline, center, samples, unit, noise, &mut scratch.lanes);
-            if object.prototype().is_none() {
-                block[12] += bend_variance(signed_area(&scratch.outline));
-            }
-            out.push(block);
+            let object = Outlined {
+                outline: &scratch.outline,
+                center,
+                samples: &scratch.segmentation.segments()[part.segment].samples,
+                unit_px: unit,
+                pixel_noise: scratch.segmentation.noise(),
+                blur_px,
+                is_free: object.prototype().is_none() || part.alternative().is_some(),
+            };
+            out.push(covariance(&object, &mut scratch.lanes));
         }
         Ok(out)
     }
-}
-
-/// Variance of the log scale of an outline of this area (px^2) that was read off pixels as if it were straight in each: over
-/// the diagonal of a pixel a circle of radius R px bends by 1 / (4 R) px, by 1 / (4 R^2) of its radius. Known shapes have no
-/// freedom to follow that: those of 2 to 4 px came to an IoU of .93 and more, where free outlines came to .81 to .95.
-fn bend_variance<T: Real>(area: T) -> T {
-    let bend = T::of(0.25 * core::f64::consts::PI) / area.abs().max(T::of(1e-3));
-    bend * bend
 }

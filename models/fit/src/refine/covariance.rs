@@ -9,7 +9,7 @@ use alloc::vec::Vec;
 use dvp_core::Real;
 
 use crate::cholesky::{factor, packed, solve};
-use crate::doubt::{PRIOR_VARIANCE, with_stretch};
+use crate::covariance::{PRIOR_VARIANCE, with_stretch};
 use crate::joint::{JointScratch, PER_OBJECT};
 use crate::segment::PIXEL_NOISE;
 

@@ -53,7 +53,8 @@ pub(super) struct Stated(pub(super) [Within; 4]);
 impl Stated {
     /// Compares the poses of objects that are the same. The root of the area within half coverage stands for the scale: an outline farther
     /// out under a profile that is as much narrower is the same. Where shapes are free, so that a pose stands for nothing by itself, the
-    /// center of the area stands for the place, and rotations are left out.
+    /// center of the area stands for the place, and rotations are left out. Outlines that cross themselves have no area to compare: the sum
+    /// over their edges counts what they run around twice two times, and what is painted is something else.
     pub(super) fn of(truth: &Scene<f32>, found: &Found, agreement: &Agreement, size: ImageSize) -> Result<Self> {
         let fit = &found.fit;
         let mut stated = Self::default();
@@ -69,13 +70,14 @@ impl Stated {
             let Some(covariance) = fit.covariance.get(pair.found) else { continue };
             let (true_object, object) = (&truth.objects[k], &found.there.objects[pair.found]);
             let [a, b] = [moments(truly.outline(k), outsets[0]), moments(drawn.outline(pair.found), outsets[1])];
-            let growth = 0.5 * (b[2] / a[2]).abs().ln();
+            let is_simple = [truly.outline(k), drawn.outline(pair.found)].into_iter().all(turns_once);
+            let growth = is_simple.then(|| 0.5 * (b[2] / a[2]).abs().ln());
             let off = if true_object.shape.efd() == object.shape.efd() {
                 let turn = TAU / f64::of_usize(order(fit.ambiguity.iter(), pair.found).max(1));
                 let [x, y, rotation] = pose_difference(true_object, object, turn);
-                [Some(x), Some(y), Some(growth), Some(rotation)]
+                [Some(x), Some(y), growth, Some(rotation)]
             } else {
-                [Some(b[0] - a[0]), Some(b[1] - a[1]), Some(growth), None]
+                [is_simple.then(|| b[0] - a[0]), is_simple.then(|| b[1] - a[1]), growth, None]
             };
             for (i, off) in off.into_iter().enumerate() {
                 let deviation = f64::from(covariance[6 * i]).sqrt();
@@ -106,6 +108,17 @@ fn pose_difference(truth: &Object<f32>, found: &Object<f32>, turn: f64) -> [f64;
     });
     let turned = (b[2] - a[2]) / turn;
     [b[0] - a[0], b[1] - a[1], (turned - turned.round()) * turn]
+}
+
+/// Whether the edges of a closed outline turn once in all, as those of every outline do that does not cross itself.
+fn turns_once(outline: &[[f32; 2]]) -> bool {
+    let ends = outline.iter().skip(1).chain(outline.first());
+    let steps: Vec<[f64; 2]> = outline.iter().zip(ends).map(|(a, b)| [0, 1].map(|c| f64::from(b[c] - a[c]))).collect();
+    let steps: Vec<&[f64; 2]> = steps.iter().filter(|step| step[0].hypot(step[1]) > 0.0).collect();
+    let next = steps.iter().cycle().skip(1);
+    let turn: f64 =
+        steps.iter().zip(next).map(|(a, b)| (a[0] * b[1] - a[1] * b[0]).atan2(a[0] * b[0] + a[1] * b[1])).sum();
+    (turn.abs() - TAU).abs() < 0.5 * TAU
 }
 
 /// Center of the area of a polygon, and its signed area with a border of width `outset` around it.
