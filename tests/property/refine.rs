@@ -73,6 +73,40 @@ fn the_truth_stays_and_memory_has_no_effect() {
     }
 }
 
+/// The picture with every pixel the mean of the 3 x 3 around it.
+fn blurred(image: &Image<f32>) -> Image<f32> {
+    let near = |at: usize| [at.saturating_sub(1), at, (at + 1).min(SIDE - 1)];
+    let mean = |i: usize| -> [f32; 3] {
+        let around = near(i / SIDE).into_iter().flat_map(|y| near(i % SIDE).map(|x| image.view().pixel(y * SIDE + x)));
+        around.fold([0.0; 3], |sum, pixel| core::array::from_fn(|c| sum[c] + pixel[c] / 9.0))
+    };
+    let pixels: Vec<f32> = (0..SIDE * SIDE).flat_map(mean).collect();
+    Image::from_interleaved(ImageSize::new(SIDE, SIDE).unwrap(), &pixels).unwrap()
+}
+
+/// What a blur does to outlines is no noise: many pixels do not average it away.
+#[test]
+fn deviations_hold_where_the_profile_is_wrong() {
+    let mut rng = ChaCha8Rng::seed_from_u64(23);
+    let mut scratch = RefineScratch::default();
+    let (mut within, mut stated) = ([0; 3], 0);
+    for _ in 0..30 {
+        let truth = scene(&mut rng);
+        let image = (0..4).fold(paint(&truth), |image, _| blurred(&image));
+        let fit = Refine::default().fit(image.view(), &truth, &mut scratch).unwrap();
+        for ((object, found), block) in truth.objects.iter().zip(&fit.scene.objects).zip(&fit.covariance) {
+            let [a, b] = [object, found].map(|object| object.pose);
+            let off =
+                [b.translation[0] - a.translation[0], b.translation[1] - a.translation[1], b.rotation - a.rotation];
+            for (k, (off, variance)) in off.into_iter().zip([block[0], block[6], block[18]]).enumerate() {
+                within[k] += usize::from(off * off <= 4.0 * variance);
+            }
+            stated += 1;
+        }
+    }
+    assert!(within.iter().all(|&within| 100 * within >= 90 * stated), "{within:?} of {stated}");
+}
+
 #[test]
 fn symmetry_and_crop_are_told() {
     let mut truth = scene(&mut ChaCha8Rng::seed_from_u64(2));

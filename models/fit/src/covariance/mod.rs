@@ -22,8 +22,9 @@ use crate::tuning::{COVARIANCE_ASTRAY_PX, SYSTEMATIC_PX};
 /// angle. They keep the covariance finite where the image says nothing (the angle of a disk).
 pub(crate) const PRIOR_VARIANCE: [f64; 4] = [1.0, 1.0, 1.0, 3.29];
 
-/// Parts of an outline that miss alike, each on its own, beside what the whole outline misses.
-const ARCS: usize = 8;
+/// Parts of an outline that miss alike, each on its own, beside what the whole outline misses: of objects of a few tens of pixels an eighth is
+/// about as long as the blocks of a coder. Not tuned.
+pub(crate) const ARCS: usize = 8;
 /// Numbers of a pose that keeps its stretch.
 const NUMBERS: usize = 4;
 
@@ -70,7 +71,8 @@ pub(crate) fn covariance<T: Real>(object: &Outlined<'_, T>, lanes: &mut EdgeLane
     if object.is_free {
         for run in unseen_runs(object.outline, &seen) {
             let arm = [0, 1].map(|c| (run.middle[c] - object.center[c]) / object.unit_px);
-            widen(&mut block, [arm[0], arm[1], T::of(0.5), T::zero()], run.area() / area);
+            // As large again is as little as can be known.
+            widen(&mut block, [arm[0], arm[1], T::of(0.5), T::zero()], (run.area() / area).min(T::one()));
         }
     }
     with_stretch(block)

@@ -93,10 +93,10 @@ impl Refine {
         }
         let problem = self.problem(image, start, &scratch.shapes);
         let cost = scratch.joint.assemble(&problem, &posed);
-        let covariance = covariances(&mut scratch.joint, cost, posed.objects.len(), unit);
+        let noise = noise_level(&image, &mut scratch.differences).max(T::of(PIXEL_NOISE));
+        let covariance = covariances(&mut scratch.joint, cost, posed.objects.len(), unit, noise);
         let bits = scene_bits(&scene, scratch.shapes.len()) + scratch.residual.bits(T::of(PIXEL_NOISE));
         let ambiguity = scratch.ambiguities(&posed, image, unit);
-        let noise = noise_level(&image, &mut scratch.differences).max(T::of(PIXEL_NOISE));
         let (unexplained, total) = Residual::unexplained(&image, &scratch.pixels, noise);
         let marginal_gain = marginal_gains(&scratch.drawing, &image, scene.compositing, total);
         let (steps, stop) = (result.steps, result.stop);
