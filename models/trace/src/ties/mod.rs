@@ -39,7 +39,7 @@ pub fn tie(layers: &mut Layers, size: [usize; 2]) -> Option<f64> {
     let ruler = Ruler { extent: width.max(height) };
     let classes = numbers::of(layers).map(|numbers| classes::classes(numbers, &ruler));
     let grid = Grid::infer(&classes, &ruler);
-    let places = Places::new(&classes, grid, &ruler);
+    let places = Places::new(&classes, grid, [width, height], &ruler);
     for layer in &mut layers.layers {
         match &mut layer.form {
             Form::Stroked(stroke) => {

@@ -31,14 +31,25 @@ pub(super) struct Places<'a> {
 }
 
 impl<'a> Places<'a> {
-    pub(super) fn new(classes: &[Vec<Class>; 3], grid: Option<Grid>, ruler: &'a Ruler) -> Self {
-        let shared = |classes: &Vec<Class>| {
-            let on_grid =
-                |class: &Class| Class { value: grid.map_or(class.value, |grid| grid.snap(class, ruler)), ..*class };
+    /// The places of a picture of so many columns and rows.
+    pub(super) fn new(
+        classes: &[Vec<Class>; 3],
+        grid: Option<Grid>,
+        [width, height]: [f64; 2],
+        ruler: &'a Ruler,
+    ) -> Self {
+        let shared = |classes: &Vec<Class>, borders: &[f64]| {
+            let place = |class: &Class| {
+                // Where the picture ends is known: what ends beside it would leave a hairline of what is behind.
+                let border = borders.iter().find(|&border| (class.value - border).abs() <= LIMIT);
+                let value = border.copied().or_else(|| Some(grid?.snap(class, ruler)));
+                Class { value: value.unwrap_or(class.value), ..*class }
+            };
             let count = classes.iter().map(|class| class.count).sum();
-            classes.iter().filter(|class| is_sure(class, count, ruler)).map(on_grid).collect()
+            classes.iter().filter(|class| is_sure(class, count, ruler)).map(place).collect()
         };
-        Self { shared: [shared(&classes[0]), shared(&classes[1]), shared(&classes[2])], grid, ruler }
+        let [xs, ys, lengths] = classes;
+        Self { shared: [shared(xs, &[0.0, width]), shared(ys, &[0.0, height]), shared(lengths, &[])], grid, ruler }
     }
 
     /// Whether no number can move.

@@ -208,3 +208,24 @@ fn long_arcs_stay_long() {
     let Segment::Arc { bulge } = found.segments[0] else { panic!("no arc") };
     assert!(bulge > 1.1, "{bulge}");
 }
+
+/// Things along the border of the picture, on no grid, that were fitted a little within it, as some of them could be seen to be.
+#[test]
+fn what_ends_beside_the_border_ends_there() {
+    let side = SIDE as f64;
+    let ring = |left: f64, right: f64, off: f64| PathRing {
+        points: vec![[left, off], [right, off], [right, side - off], [left, side - off]],
+        segments: vec![Segment::Line; 4],
+    };
+    let rings =
+        [ring(13.71, 31.18, 0.04), ring(57.43, 88.92, 0.05), ring(120.37, 151.66, 0.06), ring(190.05, 217.59, 0.07)];
+    let shapes = rings.into_iter().map(|ring| filled(vec![OutlineShape::Path(ring)])).collect();
+    let mut layers = drawing(shapes);
+    tie(&mut layers, [SIDE; 2]);
+    for layer in &layers.layers {
+        let Form::Filled(outlines) = &layer.form else { panic!("no outline") };
+        let OutlineShape::Path(ring) = &outlines[0].shape else { panic!("no path") };
+        let ys: Vec<f64> = ring.points.iter().map(|point| point[1]).collect();
+        assert_eq!(ys, [0.0, 0.0, side, side]);
+    }
+}
