@@ -23,7 +23,7 @@ use crate::tuning::{COVARIANCE_ASTRAY_PX, SYSTEMATIC_PX};
 pub(crate) const PRIOR_VARIANCE: [f64; 4] = [1.0, 1.0, 1.0, 3.29];
 
 /// Parts of an outline that miss alike, each on its own, beside what the whole outline misses: of objects of a few tens of pixels an eighth is
-/// about as long as the blocks of a coder. Not tuned.
+/// about as long as the blocks of a coder. Half or twice as many change little (`tests/report/sensitivity.md`).
 pub(crate) const ARCS: usize = 8;
 /// Numbers of a pose that keeps its stretch.
 const NUMBERS: usize = 4;
@@ -55,16 +55,16 @@ pub(crate) fn covariance<T: Real>(object: &Outlined<'_, T>, lanes: &mut EdgeLane
     for (i, &variance) in PRIOR_VARIANCE.iter().enumerate() {
         information[i][i] += T::of(1.0 / variance);
     }
-    let mut block = inverse4(information);
-    // What a unit of displacement does to the pose, if all samples of a part share it.
-    let moved = |weights: &[T; NUMBERS], inverse: &[T; 16]| -> [T; NUMBERS] {
+    let inverse = inverse4(information);
+    let mut block = inverse;
+    // What a displacement by a pixel does to the pose, if all samples of a part share it.
+    let moved = |weights: &[T; NUMBERS]| -> [T; NUMBERS] {
         core::array::from_fn(|i| (0..NUMBERS).map(|j| inverse[NUMBERS * i + j] * weights[j]).sum())
     };
-    let inverse = block;
     let deviation = sums.systematic().sqrt();
     let whole: [T; NUMBERS] = core::array::from_fn(|i| sums.arcs.iter().map(|arc| arc[i]).sum());
     for part in sums.arcs.iter().chain([&whole]) {
-        widen(&mut block, moved(part, &inverse), deviation);
+        widen(&mut block, moved(part), deviation);
     }
     let area = signed_area(object.outline).abs().max(T::of(1e-3));
     widen(&mut block, [T::zero(), T::zero(), T::one(), T::zero()], bend(object, area));

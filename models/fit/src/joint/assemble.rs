@@ -21,6 +21,8 @@ pub(crate) struct JointScratch<T> {
     pub(crate) gradient: Vec<T>,
     /// Pixels near outlines in the equations.
     pub(crate) near: usize,
+    /// Their part of the cost.
+    pub(crate) near_cost: T,
     pub(super) damped: Vec<T>,
     pub(super) step: Vec<T>,
     pub(super) tried: JointScene<T>,
@@ -65,7 +67,7 @@ impl<T: Real> JointScratch<T> {
         self.hessian.resize(packed(n, 0), T::zero());
         self.gradient.clear();
         self.gradient.resize(n, T::zero());
-        self.near = 0;
+        (self.near, self.near_cost) = (0, T::zero());
         let band = Band::new(problem);
         self.place(problem, scene, &band);
         let size = problem.image.size();
@@ -91,9 +93,13 @@ impl<T: Real> JointScratch<T> {
                         continue;
                     }
                     let weight = if near { near_weight } else { T::of_usize(INTERIOR_STRIDE * INTERIOR_STRIDE) };
-                    self.near += usize::from(near);
                     let index = row * size.width() + column;
-                    cost += self.add_pixel(problem, scene, &band, [column, row], index, weight);
+                    let added = self.add_pixel(problem, scene, &band, [column, row], index, weight);
+                    cost += added;
+                    if near {
+                        self.near += 1;
+                        self.near_cost += added;
+                    }
                 }
             }
         }

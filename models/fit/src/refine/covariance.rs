@@ -15,11 +15,10 @@ use crate::joint::{JointScratch, PER_OBJECT};
 use crate::tuning::SYSTEMATIC_PX;
 
 /// Per object, row-major 5 x 5 in (x, y in scene units, log scale, rotation, log stretch); empty if the equations are singular.
-/// Expects the equations of `objects` objects in `joint`, with their cost, and leaves it without them. `pixel_noise` is the standard
+/// Expects the equations of `objects` objects in `joint`, and leaves it without them. `pixel_noise` is the standard
 /// deviation of a channel.
 pub(super) fn covariances<T: Real>(
     joint: &mut JointScratch<T>,
-    cost: T,
     objects: usize,
     unit_px: T,
     pixel_noise: T,
@@ -35,7 +34,7 @@ pub(super) fn covariances<T: Real>(
             [of(0) + of(1), of(2), of(3)]
         })
         .collect();
-    let excess = (cost - noise * T::of_usize(3 * joint.near)).max(T::zero());
+    let excess = (joint.near_cost - noise * T::of_usize(3 * joint.near)).max(T::zero());
     let all: T = slopes.iter().map(|slopes| slopes[0]).sum();
     let systematic = if all > T::zero() { excess / all } else { T::zero() } + T::of(SYSTEMATIC_PX * SYSTEMATIC_PX);
     for i in 0..n {

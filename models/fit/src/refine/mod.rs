@@ -92,9 +92,9 @@ impl Refine {
             loss = scratch.compare(&scene, image)?;
         }
         let problem = self.problem(image, start, &scratch.shapes);
-        let cost = scratch.joint.assemble(&problem, &posed);
+        scratch.joint.assemble(&problem, &posed);
         let noise = noise_level(&image, &mut scratch.differences).max(T::of(PIXEL_NOISE));
-        let covariance = covariances(&mut scratch.joint, cost, posed.objects.len(), unit, noise);
+        let covariance = covariances(&mut scratch.joint, posed.objects.len(), unit, noise);
         let bits = scene_bits(&scene, scratch.shapes.len()) + scratch.residual.bits(T::of(PIXEL_NOISE));
         let ambiguity = scratch.ambiguities(&posed, image, unit);
         let (unexplained, total) = Residual::unexplained(&image, &scratch.pixels, noise);

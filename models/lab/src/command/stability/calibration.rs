@@ -202,6 +202,23 @@ mod tests {
     }
 
     #[test]
+    fn outlines_that_cross_themselves_turn_more_than_once() {
+        // r = 1 + second cos(angle), run through as often: above 1 it has a loop within.
+        let outline = |second: f32, times: f32| -> Vec<[f32; 2]> {
+            let point = |i: u16| {
+                let angle = f32::from(i) / 64.0 * core::f32::consts::TAU * times;
+                let radius = 1.0 + second * angle.cos();
+                [radius * angle.cos(), radius * angle.sin()]
+            };
+            (0..64).map(point).collect()
+        };
+        assert!(turns_once(&outline(0.0, 1.0)) && turns_once(&outline(0.9, -1.0)));
+        assert!(!turns_once(&outline(1.5, 1.0)) && !turns_once(&outline(0.0, 3.0)));
+        // Twice the same point is no turn.
+        assert!(turns_once(&[[0.0, 0.0], [1.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.0, 0.0]]));
+    }
+
+    #[test]
     fn shares_are_counted() {
         let mut within = Within::default();
         for off in [-0.5, 0.9, 1.5, -3.0] {
