@@ -192,11 +192,10 @@ proptest! {
         let far = |polygon: &[[f64; 2]], point: [f64; 2]| edge_distance(core::iter::once(polygon), point);
         for &sample in samples.iter().step_by(7) {
             let off = far(&outline.vertices, sample);
-            // A twentieth more next to cusps.
-            prop_assert!(off <= tolerance * 1.05, "{off} off the curve at {sample:?}");
+            prop_assert!(off <= tolerance + 1e-9, "{off} off the curve at {sample:?}");
         }
         for &vertex in &outline.vertices {
-            prop_assert!(far(&samples, vertex) <= tolerance * 1.05, "the vertex {vertex:?}");
+            prop_assert!(far(&samples, vertex) <= tolerance + 1e-9, "the vertex {vertex:?}");
         }
     }
 
@@ -224,11 +223,11 @@ proptest! {
             let fits = missing.as_flattened().iter().all(|missing| (least..=most).contains(missing));
             prop_assert!(fits, "{fine:?} {exact:?}");
         }
-        let (polygon, exact) = (polygon.perimeter().unwrap(), shape.perimeter().unwrap());
-        // Of resolved outlines one may have slivers, where curves all but touch, that the other has not.
-        let share = if is_resolved(&shape) { 1.02 } else { 1.001 };
-        prop_assert!(polygon <= exact * share + tolerance, "{polygon} {exact}");
-        prop_assert!(is_resolved(&shape) || polygon >= exact * 0.999 - tolerance, "{polygon} {exact}");
+        // Where curves all but touch, resolved outlines have slivers without area, or not: their length is not comparable.
+        if !is_resolved(&shape) {
+            let (polygon, exact) = (polygon.perimeter().unwrap(), shape.perimeter().unwrap());
+            prop_assert!((polygon - exact).abs() <= exact * 1e-3 + tolerance, "{polygon} {exact}");
+        }
     }
 
     #[test]

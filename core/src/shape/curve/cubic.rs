@@ -16,8 +16,8 @@ const WIDEST_TURN: f64 = 1.0;
 /// and so on, so that they do not move with the control points.
 ///
 /// The polygon strays at most `tolerance` from the cubic, and those of its parallels at distances up to `distance` from
-/// them; next to a cusp by up to a twentieth more, where its parts are no parabolas. A part strays that far from its chord, and
-/// the vertices stand outside by at most as much; by a third more if there is but one of them.
+/// them. A part strays that far from its chord, and the vertices stand outside by at most as much; by a third more if there is
+/// but one of them.
 pub(crate) fn cut<T: Real>(points: [Vec2<T>; 4], tolerance: T, distance: T, parameters: &mut Vec<T>) {
     let is_flat = |part: &[Vec2<T>; 4], depth: u32| {
         let tolerance = if depth == 1 { tolerance * T::of(0.75) } else { tolerance };
@@ -113,8 +113,9 @@ pub(crate) fn derivatives<T: Real>(points: &[Vec2<T>; 4], t: T) -> [Vec2<T>; 3] 
 /// up to `distance`.
 ///
 /// An edge over a step h lacks the area h^3 |p' x p''| / 12; half of it is each end's, and a vertex that moves out by d
-/// adds d |p'| (h + h') / 2. Where edges curve evenly that is two thirds of what they stray; 0 next to a cusp, where it is more
-/// than three quarters of the tolerance.
+/// adds d |p'| (h + h') / 2. Where edges curve evenly that is two thirds of what they stray. It is 0 next to a cusp, where it
+/// is more than three quarters of the tolerance, and where the curve turns both ways or by a quarter along an edge: what is
+/// outside at the vertex may be inside of such an edge.
 pub(crate) fn push<T: Real>(
     points: &[Vec2<T>; 4],
     t: T,
@@ -128,7 +129,21 @@ pub(crate) fn push<T: Real>(
     let speed = first.length();
     let turning = (first.cross(second) / (speed * speed)).abs();
     let out = push * (speed + distance * turning) * turning;
-    if out <= tolerance * T::of(0.75) { push } else { T::zero() }
+    let is_even = || bends_one_way(points, [first, second], -before) && bends_one_way(points, [first, second], after);
+    if out <= tolerance * T::of(0.75) && is_even() { push } else { T::zero() }
+}
+
+/// Whether a cubic turns to one side only, and by less than a quarter, from the parameter with the given first and second
+/// derivative to that parameter plus `step`.
+fn bends_one_way<T: Real>(points: &[Vec2<T>; 4], [first, second]: [Vec2<T>; 2], step: T) -> bool {
+    let half = T::of(0.5);
+    let third = (points[3] - points[0] + (points[1] - points[2]) * T::of(3.0)) * T::of(6.0);
+    let onward = first + (second + third * (step * half)) * step;
+    // p' x p'' is a parabola: the second and the third of its Bezier coefficients have the sign of the first.
+    let bend = first.cross(second);
+    let middle = bend + first.cross(third) * (step * half);
+    let end = middle + (first.cross(third) + second.cross(third) * step) * (step * half);
+    onward.dot(first) > T::zero() && middle * bend >= T::zero() && end * bend >= T::zero()
 }
 
 /// The vertices at all parameters of [`cut`].

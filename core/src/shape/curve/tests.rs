@@ -5,9 +5,10 @@ use alloc::vec::Vec;
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use super::*;
+use crate::geometry::LineSegment;
 use crate::shape::{
-    AnyShape, Circle, Efd, Ellipse, Path, PathRing, Polygon, Rectangle, RegularPolygon, Segment, Shape as _,
-    ShapeError, Star, Symmetry,
+    AnyShape, Circle, Efd, Ellipse, Flattening, Outline, OutlineBasis, Path, PathRing, Polygon, Rectangle,
+    RegularPolygon, Segment, Shape as _, ShapeError, Star, Symmetry,
 };
 
 fn path(points: &[[f64; 2]], segments: &[Segment<f64>]) -> Path<f64> {
@@ -81,6 +82,30 @@ fn cubics_by_hand() {
     assert!((there_and_back.length() - (2.0 * first - 2.0 * second + 1.0)).abs() < 1e-9);
     let boundary = Boundary { pieces: vec![there_and_back], ..Boundary::default() };
     assert!(close(boundary.bounds().unwrap().max.x, first.max(1.0)), "{first}");
+}
+
+#[test]
+fn polygons_of_cubics_keep_the_tolerance_next_to_cusps_and_inflections() {
+    let curves = [
+        // Turns by 200 degrees along its first edge.
+        [[-0.714, 0.362], [-1.012, 0.033], [-0.606, 0.983], [0.247, 0.56]],
+        // Turns both ways along its last edge.
+        [[-1.255, -1.274], [0.919, -0.347], [-0.035, -0.91], [0.553, -0.537]],
+        // The same, with one sign at both of its ends.
+        [[-0.823, -0.991], [1.039, -0.471], [-0.101, -0.971], [0.836, -0.548]],
+    ];
+    for [from, first, second, to] in curves {
+        let shape = path(&[from, to], &[Segment::Cubic { controls: [first, second] }, Segment::Line]);
+        let mut outline = Outline::default();
+        shape.flatten(&Flattening::new(&OutlineBasis::new(8, 1).unwrap(), 0.03), &mut outline).unwrap();
+        let edges = outline.vertices.iter().zip(outline.vertices.iter().cycle().skip(1));
+        let edges: Vec<_> = edges.map(|(&from, &to)| LineSegment::new(from.into(), to.into())).collect();
+        for i in 0..=400 {
+            let point = Piece::Cubic([from, first, second, to].map(Vec2::from)).point(f64::from(i) / 400.0);
+            let off = edges.iter().map(|edge| edge.nearest(point).distance()).fold(f64::INFINITY, f64::min);
+            assert!(off <= 0.03, "{off} at {point:?} of the cubic from {from:?}");
+        }
+    }
 }
 
 #[test]
