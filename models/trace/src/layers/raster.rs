@@ -40,19 +40,10 @@ pub(super) fn check(
     let mut wrong = Vec::new();
     let mut missed = 0;
     let mut hidden: BTreeMap<u32, usize> = BTreeMap::new();
-    let mut crossings: Vec<f64> = Vec::new();
+    let first = rows.start;
+    let mut crossings = crossings(polygons, &rows);
     for y in rows {
-        crossings.clear();
-        let center = y as f64 + 0.5;
-        for polygon in polygons {
-            let mut last = polygon[polygon.len() - 1];
-            for &point in polygon {
-                if (last[1] <= center) != (point[1] <= center) {
-                    crossings.push(last[0] + (center - last[1]) / (point[1] - last[1]) * (point[0] - last[0]));
-                }
-                last = point;
-            }
-        }
+        let crossings = &mut crossings[y - first];
         crossings.sort_unstable_by(f64::total_cmp);
         let mut crossed = 0;
         for x in columns.clone() {
@@ -60,14 +51,14 @@ pub(super) fn check(
                 crossed += 1;
             }
             let i = y * width + x;
+            let is_missed = match (wanted.get(partition.labels[i] as usize), crossed % 2 == 1) {
+                (Some(Some(true)), false) => true,
+                (Some(Some(false)), true) => false,
+                _ => continue,
+            };
             if partition.shares[i] < tuning::PURE_SHARE {
                 continue;
             }
-            let is_missed = match (wanted[partition.labels[i] as usize], crossed % 2 == 1) {
-                (Some(true), false) => true,
-                (Some(false), true) => false,
-                _ => continue,
-            };
             // Where edges are hard, or a coder left some of its own, an outline may take a pixel beside them or leave it.
             if (partition.is_hard || partition.coded) && is_at_edge(partition, [x, y]) {
                 continue;
@@ -87,6 +78,24 @@ pub(super) fn check(
     let agrees =
         few(missed, area) && hidden.iter().all(|(&face, &count)| few(count, partition.faces[face as usize].area));
     if agrees { Ok(()) } else { Err(wrong) }
+}
+
+/// Where the middle of each row meets polygons.
+fn crossings(polygons: &[Vec<[f64; 2]>], rows: &Range<usize>) -> Vec<Vec<f64>> {
+    let mut crossings: Vec<Vec<f64>> = vec![Vec::new(); rows.len()];
+    for polygon in polygons {
+        let mut last = polygon[polygon.len() - 1];
+        for &point in polygon {
+            // The first row whose middle is not above a place.
+            let row = |y: f64| ((y - 0.5).ceil() as usize).clamp(rows.start, rows.end);
+            for y in row(last[1].min(point[1]))..row(last[1].max(point[1])) {
+                let share = (y as f64 + 0.5 - last[1]) / (point[1] - last[1]);
+                crossings[y - rows.start].push(last[0] + share * (point[0] - last[0]));
+            }
+            last = point;
+        }
+    }
+    crossings
 }
 
 /// Whether a pixel lies beside another face.

@@ -26,27 +26,44 @@ pub(super) enum Figure {
     Star { points: usize },
 }
 
-impl Figure {
+/// A figure of given numbers, ready to be held against many points.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Placed {
+    figure: Figure,
+    numbers: [f64; MOST_NUMBERS],
+    /// The turn from its own axes to the picture's.
+    turn: Vec2<f64>,
+    spoke: Spoke,
+}
+
+/// Half of one point of a star, about its middle axis: one straight line.
+#[derive(Clone, Copy, Debug, Default)]
+struct Spoke {
+    /// Angle from one to the next.
+    sector: f64,
+    tip: Vec2<f64>,
+    /// Away from the star.
+    normal: Vec2<f64>,
+}
+
+impl Placed {
     /// Signed distance of a point, positive outside, to first order, and the direction in which it rises.
-    pub(super) fn distance(self, numbers: &[f64; MOST_NUMBERS], point: Vec2<f64>) -> (f64, Vec2<f64>) {
-        let [x, y, a, b, c, d] = *numbers;
+    pub(super) fn distance(&self, point: Vec2<f64>) -> (f64, Vec2<f64>) {
+        let [x, y, a, b, c, _] = self.numbers;
         let offset = point - Vec2::new(x, y);
-        match self {
-            Self::Circle => {
-                let length = offset.length_squared().sqrt();
-                (length - a, offset / length)
-            }
-            Self::Ellipse => {
-                let turn = Vec2::from_angle(c);
-                let q = offset.turned(conjugate(turn));
+        if self.figure == Figure::Circle {
+            let length = offset.length_squared().sqrt();
+            return (length - a, offset / length);
+        }
+        let q = offset.turned(conjugate(self.turn));
+        let (distance, normal) = match self.figure {
+            Figure::Circle | Figure::Ellipse => {
                 let height = Vec2::new(q.x / a, q.y / b).length_squared().sqrt();
                 let slope = Vec2::new(q.x / (a * a), q.y / (b * b)) / height;
                 let steepness = slope.length_squared().sqrt();
-                ((height - 1.0) / steepness, (slope / steepness).turned(turn))
+                ((height - 1.0) / steepness, slope / steepness)
             }
-            Self::Rectangle => {
-                let turn = Vec2::from_angle(d);
-                let q = offset.turned(conjugate(turn));
+            Figure::Rectangle => {
                 let beyond = Vec2::new(q.x.abs() - (0.5 * a - c), q.y.abs() - (0.5 * b - c));
                 let (distance, normal) = if beyond.x > 0.0 && beyond.y > 0.0 {
                     let length = beyond.length_squared().sqrt();
@@ -56,11 +73,45 @@ impl Figure {
                 } else {
                     (beyond.y - c, Vec2::new(0.0, 1.0))
                 };
-                (distance, Vec2::new(normal.x * q.x.signum(), normal.y * q.y.signum()).turned(turn))
+                (distance, Vec2::new(normal.x * q.x.signum(), normal.y * q.y.signum()))
             }
-            Self::Polygon { sides } => spokes(sides, [a, a * (PI / as_f64(sides)).cos()], b, offset),
-            Self::Star { points } => spokes(points, [a, b], c, offset),
-        }
+            Figure::Polygon { .. } | Figure::Star { .. } => self.spoke.distance(q),
+        };
+        (distance, normal.turned(self.turn))
+    }
+}
+
+impl Spoke {
+    fn new(points: usize, radii: [f64; 2]) -> Self {
+        let sector = 2.0 * PI / as_f64(points);
+        let tip = Vec2::new(radii[0], 0.0);
+        let edge = Vec2::from_angle(0.5 * sector) * radii[1] - tip;
+        Self { sector, tip, normal: -edge.perp() / edge.length() }
+    }
+
+    /// Distance of a point from the star, and the direction in which it rises: the point folded on half of the star's point it is nearest to.
+    fn distance(&self, at: Vec2<f64>) -> (f64, Vec2<f64>) {
+        let bearing = at.angle();
+        let spoke = (bearing / self.sector).round() * self.sector;
+        let side = (bearing - spoke).signum();
+        let turn = Vec2::from_angle(spoke);
+        let local = at.turned(conjugate(turn));
+        let folded = Vec2::new(local.x, local.y * side);
+        ((folded - self.tip).dot(self.normal), Vec2::new(self.normal.x, self.normal.y * side).turned(turn))
+    }
+}
+
+impl Figure {
+    /// The figure of these numbers.
+    pub(super) fn placed(self, numbers: &[f64; MOST_NUMBERS]) -> Placed {
+        let turn = self.angle().map_or(Vec2::new(1.0, 0.0), |k| Vec2::from_angle(numbers[k]));
+        let [_, _, a, b, ..] = *numbers;
+        let spoke = match self {
+            Self::Polygon { sides } => Spoke::new(sides, [a, a * (PI / as_f64(sides)).cos()]),
+            Self::Star { points } => Spoke::new(points, [a, b]),
+            Self::Circle | Self::Ellipse | Self::Rectangle => Spoke::default(),
+        };
+        Placed { figure: self, numbers: *numbers, turn, spoke }
     }
 
     /// How many numbers it has.
@@ -102,20 +153,6 @@ impl Figure {
             Self::Circle | Self::Ellipse | Self::Rectangle => Vec::new(),
         }
     }
-}
-
-/// Distance from a star: folded on half of one of its points it is one straight line.
-fn spokes(points: usize, radii: [f64; 2], angle: f64, offset: Vec2<f64>) -> (f64, Vec2<f64>) {
-    let sector = 2.0 * PI / as_f64(points);
-    let bearing = offset.angle() - angle;
-    let spoke = (bearing / sector).round() * sector;
-    let side = (bearing - spoke).signum();
-    let local = offset.turned(Vec2::from_angle(-spoke - angle));
-    let folded = Vec2::new(local.x, local.y * side);
-    let tip = Vec2::new(radii[0], 0.0);
-    let edge = Vec2::from_angle(0.5 * sector) * radii[1] - tip;
-    let normal = -edge.perp() / edge.length();
-    ((folded - tip).dot(normal), Vec2::new(normal.x, normal.y * side).turned(Vec2::from_angle(spoke + angle)))
 }
 
 /// The turn back.

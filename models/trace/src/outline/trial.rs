@@ -7,8 +7,8 @@ use dvp_core::Vec2;
 use num_traits::Float as _;
 
 use super::bent::unbent;
-use super::figure::{Figure, MOST_NUMBERS, as_f64};
-use super::solve::spoiled_chi2;
+use super::figure::{Figure, MOST_NUMBERS, Placed, as_f64};
+use super::solve::{huber, robust, spoiled_chi2};
 use super::track::{LEAST_COSINE, Track};
 use super::{Outline, OutlineShape};
 use crate::ruler::Ruler;
@@ -44,15 +44,32 @@ struct Equations {
     count: usize,
 }
 
+/// What a sample is missed by.
+struct Missed {
+    /// Pixels.
+    distance: f64,
+    /// 1 / sigma, along the normal of the figure.
+    scale: f64,
+    /// In sigmas.
+    misfit: f64,
+    /// 0 if its window holds a corner: then it tells of both sides.
+    weight: f64,
+    /// What it adds to the sum of squares.
+    chi2: f64,
+}
+
 impl Trial<'_> {
     /// The outline if it costs less than `most` bits.
     pub(super) fn run(&self, start: [f64; MOST_NUMBERS], most: f64) -> Option<Outline> {
         let few = self.samples.len().div_ceil(FIRST_LOOKS);
         // A few samples tell whether all can be met; with much room before the fit, and some after.
-        let bits = |equations: &Equations| self.ruler.misfit(equations.chi2) * as_f64(few);
-        self.equations(&start, few).filter(|first| bits(first) < 20.0 * most)?;
+        let bits = |chi2: f64| self.ruler.misfit(chi2) * as_f64(few);
+        let first = bits(self.chi2(&start, few));
+        if first.is_nan() || first >= 20.0 * most {
+            return None;
+        }
         let (numbers, first) = self.descend(start, few)?;
-        if bits(&first) > 2.0 * most {
+        if bits(first.chi2) > 2.0 * most {
             return None;
         }
         let (numbers, equations) = if few > 1 { self.descend(numbers, 1)? } else { (numbers, first) };
@@ -143,29 +160,46 @@ impl Trial<'_> {
         Some((numbers, now))
     }
 
+    /// Sum of what every `every`-th sample is missed by.
+    fn chi2(&self, numbers: &[f64; MOST_NUMBERS], every: usize) -> f64 {
+        let (placed, corners) = (self.figure.placed(numbers), self.figure.corners(numbers));
+        let held = self.samples.iter().step_by(every).map(|sample| self.miss(&placed, &corners, sample));
+        held.map(|missed| missed.chi2).sum()
+    }
+
+    /// What a sample is missed by.
+    fn miss(&self, placed: &Placed, corners: &[Vec2<f64>], sample: &Sample) -> Missed {
+        let sigma = if self.renderer > 0.0 { sample.sigma } else { Track::own_sigma(sample) };
+        let (distance, normal) = placed.distance(sample.point);
+        let scale = 1.0 / (normal.dot(sample.axis).abs().max(LEAST_COSINE) * sigma);
+        let misfit = distance * scale;
+        if corners.iter().any(|&corner| sample.holds(corner)) {
+            return Missed { distance, scale, misfit, weight: 0.0, chi2: (misfit * misfit).min(spoiled_chi2()) };
+        }
+        let weight = robust(misfit);
+        Missed { distance, scale, misfit, weight, chi2: huber(misfit) }
+    }
+
     fn equations(&self, numbers: &[f64; MOST_NUMBERS], every: usize) -> Option<Equations> {
         let count = self.figure.number_count();
-        let corners = self.figure.corners(numbers);
+        let (placed, corners) = (self.figure.placed(numbers), self.figure.corners(numbers));
+        let moved: [Placed; MOST_NUMBERS] = core::array::from_fn(|k| {
+            let mut moved = *numbers;
+            moved[k] += STEP;
+            self.figure.placed(&moved)
+        });
         let mut equations =
             Equations { normal: [[0.0; MOST_NUMBERS]; MOST_NUMBERS], right: [0.0; MOST_NUMBERS], chi2: 0.0, count: 0 };
         for sample in self.samples.iter().step_by(every) {
             equations.count += 1;
-            let sigma = if self.renderer > 0.0 { sample.sigma } else { Track::own_sigma(sample) };
-            let (distance, normal) = self.figure.distance(numbers, sample.point);
-            let scale = 1.0 / (normal.dot(sample.axis).abs().max(LEAST_COSINE) * sigma);
-            let misfit = distance * scale;
-            if corners.iter().any(|&corner| sample.holds(corner)) {
-                equations.chi2 += (misfit * misfit).min(spoiled_chi2());
+            let Missed { distance, scale, misfit, weight, chi2 } = self.miss(&placed, &corners, sample);
+            equations.chi2 += chi2;
+            if weight == 0.0 {
                 continue;
             }
-            let far = misfit.abs() / tuning::OUTLINE_HUBER;
-            let weight = 1.0 / far.max(1.0);
-            equations.chi2 += misfit * misfit * weight * (2.0 - weight);
             let mut slopes = [0.0; MOST_NUMBERS];
             for k in (0..count).filter(|&k| self.free[k]) {
-                let mut moved = *numbers;
-                moved[k] += STEP;
-                slopes[k] = (self.figure.distance(&moved, sample.point).0 - distance) * scale / STEP;
+                slopes[k] = (moved[k].distance(sample.point).0 - distance) * scale / STEP;
             }
             for i in 0..count {
                 for j in 0..=i {
