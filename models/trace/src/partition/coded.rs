@@ -11,10 +11,11 @@ use alloc::vec::Vec;
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
+use dvp_core::geometry::DisjointSets;
 use dvp_core::sort;
 
 use super::Color;
-use super::flat::{Flats, NONE};
+use super::flat::{Flats, NONE, Noise, index};
 use super::palette::distance;
 use crate::tuning;
 
@@ -36,6 +37,62 @@ pub(super) fn as_rgb([luma, of_blue, of_red]: Color) -> Color {
     let [blue_factor, red_factor] = DIFFERENCES.map(|factor| factor * tuning::CODED_COLOR_WEIGHT);
     let (blue, red) = (luma + of_blue / blue_factor, luma + of_red / red_factor);
     [red, (luma - LUMA[0] * red - LUMA[2] * blue) / LUMA[1], blue]
+}
+
+/// Rounds in which regions come apart.
+const MOST_PARTINGS: usize = 4;
+
+/// Takes apart regions that flat blocks lead across a faint edge, step by step, since coders smooth such edges: what is of one color lies near
+/// its mean.
+pub(super) fn part(pixels: &[[f32; 3]], [width, _]: [usize; 2], flats: &mut Flats, noise: &Noise) {
+    let weights = noise.weights().map(f64::from);
+    let weighted = |color: Color| -> Color { core::array::from_fn(|c| color[c] * weights[c]) };
+    for _ in 0..MOST_PARTINGS {
+        let means: Vec<Color> = flats.means.iter().map(|&(mean, _)| weighted(mean)).collect();
+        let is_off = |i: usize| {
+            let mean = means.get(flats.regions[i] as usize);
+            mean.is_some_and(|&mean| distance(mean, weighted(pixels[i].map(f64::from))) > f64::from(noise.flat))
+        };
+        let off: Vec<usize> = (0..pixels.len()).filter(|&i| is_off(i)).collect();
+        if !part_off(pixels, width, flats, &off, noise.fewest) {
+            return;
+        }
+    }
+}
+
+/// Makes regions of their own of pixels (rising) that are not of the color of theirs, where enough of them are side by side; whether there are such.
+fn part_off(pixels: &[[f32; 3]], width: usize, flats: &mut Flats, off: &[usize], fewest: usize) -> bool {
+    let mut place = vec![NONE; pixels.len()];
+    let mut sets = DisjointSets::default();
+    for &i in off {
+        place[i] = sets.push();
+        let beside = [(i % width > 0).then(|| i - 1), i.checked_sub(width)];
+        for other in beside.into_iter().flatten().filter(|&other| flats.regions[other] == flats.regions[i]) {
+            if place[other] != NONE {
+                sets.unite(place[other], place[i]);
+            }
+        }
+    }
+    let mut parts: Vec<Vec<usize>> = vec![Vec::new(); off.len()];
+    for &i in off {
+        parts[sets.root(place[i]) as usize].push(i);
+    }
+    parts.retain(|part| part.len() >= fewest);
+    for part in &parts {
+        let (old, new) = (flats.regions[part[0]] as usize, index(flats.means.len()));
+        let mut sum: Color = [0.0; 3];
+        for &i in part {
+            flats.regions[i] = new;
+            sum.iter_mut().zip(pixels[i]).for_each(|(total, value)| *total += f64::from(value));
+        }
+        let count = part.len();
+        let (mean, had) = &mut flats.means[old];
+        let left = (*had - count).max(1) as f64;
+        *mean = core::array::from_fn(|c| (mean[c] * *had as f64 - sum[c]) / left);
+        *had -= count;
+        flats.means.push((sum.map(|total| total / count as f64), count));
+    }
+    !parts.is_empty()
 }
 
 /// Leaves regions that the colors of larger ones nearby explain to mixtures: stains beside edges.

@@ -115,6 +115,7 @@ impl Partition {
         let find = |pixels: &[[f32; 3]]| {
             let mut flats = flat::find(pixels, size, &noise);
             if noise.is_coded() {
+                coded::part(pixels, size, &mut flats, &noise);
                 coded::dissolve(pixels, size, &mut flats);
             }
             flats

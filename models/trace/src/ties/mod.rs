@@ -6,6 +6,7 @@
 //! | `classes` | numbers of one kind | which of them are equal |
 //! | `grid` | classes | the step of the grid that most of them lie on |
 //! | `places` | classes, a grid | where a number may go, and what saying so costs |
+//! | `border` | an outline | the same, on the border of the picture where it lies along it |
 //! | `figure` | circles, ellipses, rectangles | the same at those places |
 //! | `circle` | arcs | circles at those places |
 //! | `ring` | a row of lines, arcs and cubics | the same at those places: a dynamic programme |
@@ -14,6 +15,7 @@
 //! the picture. A number only moves while what is drawn stays where it was within the doubt of its position, so a tie that is true
 //! takes a drawing nearer to the artist's, and one that is not costs no more than what cannot be seen.
 
+mod border;
 mod circle;
 mod classes;
 mod figure;
@@ -37,6 +39,11 @@ use places::Places;
 pub fn tie(layers: &mut Layers, size: [usize; 2]) -> Option<f64> {
     let [width, height] = size.map(|side| side as f64);
     let ruler = Ruler { extent: width.max(height) };
+    for layer in &mut layers.layers {
+        if let Form::Filled(outlines) = &mut layer.form {
+            outlines.iter_mut().for_each(|outline| border::tie(&mut outline.shape, [width, height]));
+        }
+    }
     let classes = numbers::of(layers).map(|numbers| classes::classes(numbers, &ruler));
     let grid = Grid::infer(&classes, &ruler);
     let places = Places::new(&classes, grid, [width, height], &ruler);

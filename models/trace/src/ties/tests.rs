@@ -229,3 +229,22 @@ fn what_ends_beside_the_border_ends_there() {
         assert_eq!(ys, [0.0, 0.0, side, side]);
     }
 }
+
+/// A corner cut off by an arc, and a bar: alone, and further off than what is drawn may move elsewhere.
+#[test]
+fn a_side_along_the_border_lies_on_it() {
+    let side = SIDE as f64;
+    let corner = PathRing {
+        points: vec![[0.17, 140.3], [0.12, side - 0.15], [119.4, side - 0.11]],
+        segments: vec![Segment::Line, Segment::Line, Segment::Arc { bulge: 0.3 }],
+    };
+    let near = [30.0, 0.16, 60.0, 90.0];
+    // Nobody drew it to end there.
+    let apart = [100.0, 0.6, 130.0, 90.0];
+    let mut layers = drawing(vec![filled(vec![OutlineShape::Path(corner), rectangle(near), rectangle(apart)])]);
+    tie(&mut layers, [SIDE; 2]);
+    let [OutlineShape::Path(corner), near, apart] = shapes(&layers)[..] else { panic!("no path") };
+    assert_eq!(corner.points, [[0.0, 140.3], [0.0, side], [119.4, side]]);
+    assert_eq!(sides(near)[1], 0.0);
+    assert!((sides(apart)[1] - 0.6).abs() < 0.1, "{apart:?}");
+}

@@ -1,0 +1,53 @@
+//! What lies along the border of the picture ends there.
+//!
+//! Nothing beyond can be seen, so that outlines are held to the border loosely ([`tuning::BORDER_SIGMA`]) and what they share with others may
+//! draw them away from it; what is behind would then be seen as a hairline.
+
+use dvp_core::shape::{PathRing, Segment};
+
+use crate::outline::OutlineShape;
+use crate::tuning;
+
+/// Sides that are no further from the border, pixels, lie on it.
+const BESIDE: f64 = 2.0 * tuning::BORDER_SIGMA;
+
+/// Puts sides along the border of a picture of this width and height on it.
+pub(super) fn tie(shape: &mut OutlineShape, size: [f64; 2]) {
+    match shape {
+        OutlineShape::Path(ring) => lines(ring, size),
+        OutlineShape::Rectangle { center, size: sides, corner_radius, angle }
+            if *corner_radius == 0.0 && *angle == 0.0 =>
+        {
+            for axis in 0..2 {
+                let (middle, side) = (center.to_array()[axis], sides[axis]);
+                let [low, high] = [middle - 0.5 * side, middle + 0.5 * side]
+                    .map(|value| border([value; 2], size[axis]).unwrap_or(value));
+                let middle = 0.5 * (low + high);
+                if axis == 0 {
+                    center.x = middle
+                } else {
+                    center.y = middle
+                }
+                sides[axis] = high - low;
+            }
+        }
+        _ => (),
+    }
+}
+
+fn lines(ring: &mut PathRing<f64>, size: [f64; 2]) {
+    let count = ring.points.len();
+    for (k, _) in ring.segments.iter().enumerate().filter(|(_, segment)| matches!(segment, Segment::Line)) {
+        let next = (k + 1) % count;
+        for axis in 0..2 {
+            if let Some(border) = border([ring.points[k][axis], ring.points[next][axis]], size[axis]) {
+                (ring.points[k][axis], ring.points[next][axis]) = (border, border);
+            }
+        }
+    }
+}
+
+/// The border that both ends of a side lie beside, one way.
+fn border(ends: [f64; 2], size: f64) -> Option<f64> {
+    [0.0, size].into_iter().find(|border| ends.iter().all(|end| (end - border).abs() <= BESIDE))
+}
