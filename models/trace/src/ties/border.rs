@@ -1,15 +1,15 @@
 //! What lies along the border of the picture ends there.
 //!
-//! Nothing beyond can be seen, so that outlines are held to the border loosely ([`tuning::BORDER_SIGMA`]) and what they share with others may
+//! Nothing beyond can be seen, so that outlines are held to the border loosely (`BORDER_SIGMA`) and what they share with others may
 //! draw them away from it; what is behind would then be seen as a hairline.
 
 use dvp_core::shape::{PathRing, Segment};
 
 use crate::outline::OutlineShape;
-use crate::tuning;
 
-/// Sides that are no further from the border, pixels, lie on it.
-const BESIDE: f64 = 2.0 * tuning::BORDER_SIGMA;
+/// Sides that are no further from the border, pixels, lie on it: were more of the pixels along it of something else, they would be a face of its
+/// own.
+const BESIDE: f64 = 0.5;
 
 /// Puts sides along the border of a picture of this width and height on it.
 pub(super) fn tie(shape: &mut OutlineShape, size: [f64; 2]) {
@@ -40,7 +40,11 @@ fn lines(ring: &mut PathRing<f64>, size: [f64; 2]) {
     for (k, _) in ring.segments.iter().enumerate().filter(|(_, segment)| matches!(segment, Segment::Line)) {
         let next = (k + 1) % count;
         for axis in 0..2 {
-            if let Some(border) = border([ring.points[k][axis], ring.points[next][axis]], size[axis]) {
+            // What is as short as it may be far off does not lie along anything.
+            let is_long = (ring.points[next][1 - axis] - ring.points[k][1 - axis]).abs() > 2.0 * BESIDE;
+            if let Some(border) =
+                border([ring.points[k][axis], ring.points[next][axis]], size[axis]).filter(|_| is_long)
+            {
                 (ring.points[k][axis], ring.points[next][axis]) = (border, border);
             }
         }
