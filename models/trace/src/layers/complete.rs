@@ -7,8 +7,6 @@ use core::cell::RefCell;
 use dvp_core::Vec2;
 use dvp_core::shape::{PathRing, Segment};
 use dvp_core::sort;
-#[cfg(not(feature = "std"))]
-use num_traits::Float as _;
 
 use super::memo::Memo;
 use super::order::Order;

@@ -7,6 +7,8 @@ use core::ops::Range;
 
 use dvp_core::contour::signed_area;
 use dvp_core::shape::{FillRule, Outline as Polygons, Path, Shape as _};
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
 
 use crate::outline::Outline;
 use crate::partition::{Face, OUTSIDE, Partition};
