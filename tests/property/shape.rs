@@ -190,6 +190,7 @@ proptest! {
             .flat_map(|piece| (0..1000).map(|i| piece.point(f64::from(i) / 1000.0).to_array()))
             .collect();
         let far = |polygon: &[[f64; 2]], point: [f64; 2]| edge_distance(core::iter::once(polygon), point);
+        // Beyond the tolerance there is rounding alone.
         for &sample in samples.iter().step_by(7) {
             let off = far(&outline.vertices, sample);
             prop_assert!(off <= tolerance + 1e-9, "{off} off the curve at {sample:?}");

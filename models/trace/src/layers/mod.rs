@@ -51,6 +51,7 @@ use complete::Completion;
 use edge_to_edge::EdgeToEdge;
 use memo::Memo;
 use order::Order;
+pub(crate) use raster::polygon;
 
 /// What is painted at once.
 #[derive(Clone, Debug)]

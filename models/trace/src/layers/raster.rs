@@ -15,7 +15,7 @@ use crate::partition::{Face, OUTSIDE, Partition};
 use crate::tuning;
 
 /// The polygon of an outline.
-pub(super) fn polygon(outline: &Outline) -> Option<Vec<[f64; 2]>> {
+pub(crate) fn polygon(outline: &Outline) -> Option<Vec<[f64; 2]>> {
     let path = Path { rings: vec![outline.shape.ring()], fill: FillRule::EvenOdd };
     let mut polygons = Polygons::default();
     path.boundary().ok()?.flatten(0.1, &mut polygons).ok()?;

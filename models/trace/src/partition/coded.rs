@@ -87,6 +87,7 @@ fn part_off(pixels: &[[f32; 3]], width: usize, flats: &mut Flats, off: &[usize],
         }
         let count = part.len();
         let (mean, had) = &mut flats.means[old];
+        // A region of which nothing is left has no pixel that its color could be wrong for, and goes with the stains.
         let left = (*had - count).max(1) as f64;
         *mean = core::array::from_fn(|c| (mean[c] * *had as f64 - sum[c]) / left);
         *had -= count;

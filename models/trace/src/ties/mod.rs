@@ -6,10 +6,10 @@
 //! | `classes` | numbers of one kind | which of them are equal |
 //! | `grid` | classes | the step of the grid that most of them lie on |
 //! | `places` | classes, a grid | where a number may go, and what saying so costs |
-//! | `border` | an outline | the same, on the border of the picture where it lies along it |
 //! | `figure` | circles, ellipses, rectangles | the same at those places |
 //! | `circle` | arcs | circles at those places |
 //! | `ring` | a row of lines, arcs and cubics | the same at those places: a dynamic programme |
+//! | `border` | an outline | the same, on the border of the picture where it lies along it |
 //!
 //! *Why*: a number that is on a grid needs the bits of one of the grid's places, fewer than one that is told to the precision of
 //! the picture. A number only moves while what is drawn stays where it was within the doubt of its position, so a tie that is true
@@ -39,14 +39,9 @@ use places::Places;
 pub fn tie(layers: &mut Layers, size: [usize; 2]) -> Option<f64> {
     let [width, height] = size.map(|side| side as f64);
     let ruler = Ruler { extent: width.max(height) };
-    for layer in &mut layers.layers {
-        if let Form::Filled(outlines) = &mut layer.form {
-            outlines.iter_mut().for_each(|outline| border::tie(&mut outline.shape, [width, height]));
-        }
-    }
     let classes = numbers::of(layers).map(|numbers| classes::classes(numbers, &ruler));
     let grid = Grid::infer(&classes, &ruler);
-    let places = Places::new(&classes, grid, [width, height], &ruler);
+    let places = Places::new(&classes, grid, &ruler);
     for layer in &mut layers.layers {
         match &mut layer.form {
             Form::Stroked(stroke) => {
@@ -59,6 +54,7 @@ pub fn tie(layers: &mut Layers, size: [usize; 2]) -> Option<f64> {
                         OutlineShape::Path(path) => ring::tie(path, &places),
                         shape => figure::tie(shape, &places),
                     }
+                    border::tie(outline, [width, height]);
                 }
             }
         }

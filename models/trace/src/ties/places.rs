@@ -31,25 +31,14 @@ pub(super) struct Places<'a> {
 }
 
 impl<'a> Places<'a> {
-    /// The places of a picture of so many columns and rows.
-    pub(super) fn new(
-        classes: &[Vec<Class>; 3],
-        grid: Option<Grid>,
-        [width, height]: [f64; 2],
-        ruler: &'a Ruler,
-    ) -> Self {
-        let shared = |classes: &Vec<Class>, borders: &[f64]| {
-            let place = |class: &Class| {
-                // Where the picture ends is known: what ends beside it would leave a hairline of what is behind.
-                let border = borders.iter().find(|&border| (class.value - border).abs() <= LIMIT);
-                let value = border.copied().or_else(|| Some(grid?.snap(class, ruler)));
-                Class { value: value.unwrap_or(class.value), ..*class }
-            };
+    pub(super) fn new(classes: &[Vec<Class>; 3], grid: Option<Grid>, ruler: &'a Ruler) -> Self {
+        let shared = |classes: &Vec<Class>| {
+            let place =
+                |class: &Class| Class { value: grid.map_or(class.value, |grid| grid.snap(class, ruler)), ..*class };
             let count = classes.iter().map(|class| class.count).sum();
             classes.iter().filter(|class| is_sure(class, count, ruler)).map(place).collect()
         };
-        let [xs, ys, lengths] = classes;
-        Self { shared: [shared(xs, &[0.0, width]), shared(ys, &[0.0, height]), shared(lengths, &[])], grid, ruler }
+        Self { shared: [0, 1, 2].map(|kind: usize| shared(&classes[kind])), grid, ruler }
     }
 
     /// Whether no number can move.

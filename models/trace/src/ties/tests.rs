@@ -230,21 +230,34 @@ fn what_ends_beside_the_border_ends_there() {
     }
 }
 
-/// A corner cut off by an arc, and a bar: alone, and further off than what is drawn may move elsewhere.
+/// A corner cut off by an arc, either way round, and bars: alone, and further off than what is drawn may move elsewhere.
 #[test]
 fn a_side_along_the_border_lies_on_it() {
     let side = SIDE as f64;
+    let arc = Segment::Arc { bulge: 0.3 };
     let corner = PathRing {
         points: vec![[0.17, 140.3], [0.12, side - 0.15], [119.4, side - 0.11]],
-        segments: vec![Segment::Line, Segment::Line, Segment::Arc { bulge: 0.3 }],
+        segments: vec![Segment::Line, Segment::Line, arc],
     };
-    let near = [30.0, 0.16, 60.0, 90.0];
-    // Nobody drew it to end there.
-    let apart = [100.0, 0.6, 130.0, 90.0];
-    let mut layers = drawing(vec![filled(vec![OutlineShape::Path(corner), rectangle(near), rectangle(apart)])]);
+    let back = PathRing {
+        points: vec![[119.4, side - 0.11], [0.12, side - 0.15], [0.17, 140.3]],
+        segments: vec![Segment::Line, Segment::Line, Segment::Arc { bulge: -0.3 }],
+    };
+    let rounded =
+        OutlineShape::Rectangle { center: Vec2::new(80.0, 45.2), size: [60.0, 89.8], corner_radius: 9.0, angle: 0.0 };
+    // Nobody drew it to end there, and of a strip one side does.
+    let [apart, strip] = [[150.0, 0.6, 180.0, 90.0], [200.0, 0.1, 240.0, 0.45]].map(rectangle);
+    let [corner, back] = [corner, back].map(OutlineShape::Path);
+    let mut layers = drawing(vec![filled(vec![corner, back, rounded, apart, strip])]);
     tie(&mut layers, [SIDE; 2]);
-    let [OutlineShape::Path(corner), near, apart] = shapes(&layers)[..] else { panic!("no path") };
-    assert_eq!(corner.points, [[0.0, 140.3], [0.0, side], [119.4, side]]);
-    assert_eq!(sides(near)[1], 0.0);
+    let [OutlineShape::Path(corner), OutlineShape::Path(back), rounded, apart, strip] = shapes(&layers)[..] else {
+        panic!("no path")
+    };
+    let expected = [[0.0, 140.3], [0.0, side], [119.4, side]];
+    assert_eq!(corner.points, expected);
+    assert!(back.points.iter().eq(expected.iter().rev()), "{back:?}");
+    assert!(sides(rounded)[1].abs() < 1e-9, "{rounded:?}");
     assert!((sides(apart)[1] - 0.6).abs() < 0.1, "{apart:?}");
+    let [_, top, _, bottom] = sides(strip);
+    assert!(top.abs() < 1e-9 && (bottom - 0.45).abs() < 0.1, "{strip:?}");
 }
