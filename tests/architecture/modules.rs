@@ -21,7 +21,7 @@ const CORE: Order = &[
 
 const TRACE: Order = &[
     &["tuning"],
-    &["ruler", "sample"],
+    &["noise", "ruler", "sample"],
     &["outline"],
     &["stroke"],
     &["partition"],

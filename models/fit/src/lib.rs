@@ -11,7 +11,6 @@
 //! | `split` | samples of a segment that no single shape explains | several shapes of one color and their poses |
 //! | `free` | samples, no bank | elliptic Fourier descriptors, as few as the samples support |
 //! | `fitter` | all of it | a [`Fit`] |
-//! | [`denoise`] | a picture | the picture without its noise |
 //! | [`picture`] | a picture of any kind | a [`Fit`]: as a drawing (`dvp-trace`) or as segments |
 //! | [`paint`] | a scene | its image |
 //! | [`prototypes`] | fits without a bank | the few shapes they share, a [`Bank`] |
@@ -36,7 +35,6 @@ extern crate alloc;
 mod readme {}
 
 pub mod adam;
-pub mod denoise;
 pub mod live;
 pub mod masks;
 pub mod opt_iter;
@@ -75,6 +73,9 @@ mod verdict;
 use alloc::vec::Vec;
 
 use dvp_core::{Drawing, ImageView, Real, Scene};
+
+/// Noise of pictures, and pictures without it.
+pub use dvp_trace::noise;
 
 pub use fitter::{FitScratch, Fitter, fit_image};
 pub use options::{Bank, FitError, FitOptions};

@@ -5,8 +5,9 @@ use core::cell::Cell;
 use core::ops::Range;
 
 use dvp_core::{ImageSize, ImageView, Real, simd};
+use dvp_trace::noise::noise_level;
 
-use crate::segment::{PIXEL_NOISE, noise_level};
+use crate::segment::PIXEL_NOISE;
 
 /// A rectangle of pixels inside an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -89,10 +89,6 @@ pub(crate) const LEAST_COMPRESSED_NOISE: f64 = 0.03;
 pub(crate) const HALO_SHARE: f64 = 0.8;
 /// Compression that halves the resolution of color leaves strips of mixed color as wide as this (px).
 pub(crate) const COMPRESSED_STRIP_PX: f64 = 6.0;
-/// Pixels this far apart are averaged (px).
-pub(crate) const DENOISE_REACH_PX: usize = 5;
-/// Noise that the first pass leaves, in units of the picture's.
-pub(crate) const DENOISE_LEFT: f64 = 0.25;
 /// Squared error (in units of the noise's variance) that a pixel of boundary must save.
 pub(crate) const BOUNDARY_PRICE: f64 = 3.0;
 /// Strips along the edges of a picture that is not compressed are up to this wide (px).

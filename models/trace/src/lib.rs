@@ -8,6 +8,7 @@
 //! |---|---|---|
 //! | `tuning` | | every number that was chosen, with unit and reason |
 //! | `ruler` | misfits, numbers with their covariance | bits: the one price of everything |
+//! | `noise` | an image | its noise level, and the image without noise |
 //! | `partition` | an image | faces of one color, and mixed pixels with the shares of two faces |
 //! | `boundary` | a partition | where two faces meet, to a few thousandths of a pixel |
 //! | `outline` | samples of a boundary | the shortest outline through them: circle, rectangle, path, ... |
@@ -38,6 +39,7 @@ extern crate std;
 pub mod boundary;
 pub mod centers;
 pub mod layers;
+pub mod noise;
 pub mod outline;
 pub mod partition;
 pub mod ruler;
@@ -51,9 +53,10 @@ pub mod tuning;
 
 use alloc::vec::Vec;
 
-use dvp_core::{ImageView, Scene};
+use dvp_core::{ImageSize, ImageView, Scene};
 
-use crate::partition::{NoPartition, Partition};
+use crate::boundary::Ring;
+use crate::partition::{NoPartition, Partition, Reading};
 pub use crate::scene::PoseCovariance;
 
 /// A picture as a drawing.
@@ -95,6 +98,8 @@ pub struct Known {
     /// Whether outlines along edges without mixed pixels may be half a pixel off where that is shorter, instead of having the middle of every
     /// pixel on the right side: so they are alike where objects share a shape.
     pub loose: bool,
+    /// Whether it may have noise or soft edges: it is read then as what it was before.
+    pub spoiled: bool,
 }
 
 impl Known {
@@ -110,6 +115,12 @@ impl Known {
         Self { loose, ..self }
     }
 
+    /// The same, with noise and soft edges or not.
+    #[must_use]
+    pub fn with_spoiled(self, spoiled: bool) -> Self {
+        Self { spoiled, ..self }
+    }
+
     /// The same, changed by a coder of photographs or not.
     #[must_use]
     pub fn with_coded(self, coded: bool) -> Self {
@@ -120,18 +131,56 @@ impl Known {
 /// The drawing that a picture is.
 ///
 /// # Errors
-/// [`NoDrawing`] if the picture is no drawing of flat colors with clear edges.
+/// [`NoDrawing`] if the picture is no drawing of flat colors, or, unless it may be spoiled, has noise or soft edges.
 pub fn trace(image: &ImageView<'_, f32>, known: &Known) -> Result<Traced, NoDrawing> {
-    let (partition, faces) = Partition::readings(image, known.coded).map_err(NoDrawing::Partition)?;
-    let rings = boundary::rings(&partition);
+    let reading = Reading { coded: known.coded, soft: known.spoiled, ..Reading::default() };
+    let read = match read(image, reading) {
+        // What is no drawing as it is may be one under noise, or under what a coder left beside edges.
+        Err(_) if known.spoiled && !known.coded => match noise::denoised(*image) {
+            Some(smooth) => {
+                read(&smooth.view(), Reading { noise: noise::noise_level(image, &mut Vec::new()), ..reading })
+            }
+            None => read(image, reading.with_coded(true)),
+        },
+        read => read,
+    };
+    draw(read.map_err(NoDrawing::Partition)?, image.size(), known)
+}
+
+/// A picture as faces, in one way or two.
+struct Read {
+    partition: Partition,
+    faces: Option<Partition>,
+    rings: Vec<Vec<Ring>>,
+}
+
+/// Reads a picture, as changed by a coder if that makes its boundaries shorter where they may be ringing.
+fn read(image: &ImageView<'_, f32>, reading: Reading) -> Result<Read, NoPartition> {
+    let of = |reading: Reading| {
+        let (partition, faces) = Partition::readings(image, reading)?;
+        let rings = boundary::rings(&partition);
+        Ok(Read { partition, faces, rings })
+    };
+    let length = |read: &Read| read.rings.iter().flatten().map(|ring| ring.steps.len()).sum::<usize>() as f64;
+    let plain = of(reading)?;
+    if plain.partition.ripple <= tuning::RIPPLED {
+        return Ok(plain);
+    }
+    let coded = of(reading.with_coded(true));
+    Ok(coded.ok().filter(|coded| length(coded) < (1.0 - tuning::RINGING) * length(&plain)).unwrap_or(plain))
+}
+
+/// The drawing of faces.
+fn draw(read: Read, size: ImageSize, known: &Known) -> Result<Traced, NoDrawing> {
+    let Read { partition, faces, rings } = read;
     let stained = match partition.coded {
         // Coders stain what is beside an edge, whatever its profile is: in large pictures one of their own is seen as blur, small ones leave a doubt.
-        true if image.size().width().min(image.size().height()) < tuning::CODED_SMALL => tuning::UNKNOWN_STAINED,
+        true if size.width().min(size.height()) < tuning::CODED_SMALL => tuning::UNKNOWN_STAINED,
         true => 0.0,
         false => boundary::stained(&partition, &rings).unwrap_or(tuning::UNKNOWN_STAINED),
     };
     let wobble = if partition.coded || partition.is_hard { 0.0 } else { boundary::wobble(&rings).unwrap_or(0.0) };
-    if !partition.coded && !partition.is_hard && is_soft(stained, wobble) {
+    if !known.spoiled && !partition.coded && !partition.is_hard && is_soft(stained, wobble) {
         return Err(NoDrawing::Soft { stained });
     }
     // Renderers that count few places in each pixel are as steep as those with a profile of their own.
@@ -153,7 +202,7 @@ pub fn trace(image: &ImageView<'_, f32>, known: &Known) -> Result<Traced, NoDraw
         centers::meet(&mut layers, read);
     }
     let bits = layers.bits();
-    let (scene, covariances) = scene::scene(&layers, image.size(), known.matte.is_some(), partition.is_hard);
+    let (scene, covariances) = scene::scene(&layers, size, known.matte.is_some(), partition.is_hard);
     Ok(Traced { scene, covariances, bits, stained })
 }
 

@@ -40,6 +40,11 @@ pub const OUTLINE_HUBER: f64 = 3.0;
 /// What a piece costs beside its numbers, bits: its kind, one of four.
 pub const OUTLINE_PIECE_BITS: f64 = 2.0;
 
+/// Pixels up to this far apart (along rows and columns) are averaged, pixels.
+pub const DENOISE_REACH: usize = 5;
+/// Noise that the first of two averages leaves, in units of the picture's.
+pub const DENOISE_LEFT: f64 = 0.25;
+
 /// Share of a picture's pixels that must lie in flat blocks for it to be a drawing of flat colors. Photographs have fewer than
 /// a tenth, dense line art at 128 pixels about a half.
 pub const LEAST_FLAT: f64 = 0.3;
@@ -53,6 +58,14 @@ pub const CODED_STEP: f32 = 6.5 / 255.0;
 pub const CLEAN_MIX: f32 = 5.0 / 255.0;
 /// The same in pictures that went through a coder.
 pub const CODED_MIX: f32 = 24.0 / 255.0;
+/// Most difference of a channel between pixels of one color, and between a pixel and the mixture that explains it, and the standard deviation of a
+/// channel in pixels at edges, of a picture whose noise was averaged away: in units of the noise. Of 50 icons, emoji and flags with noise of 4, 12
+/// and 25 levels, 99.9 % of the flat pixels were off by less than the first, 99 % of those at edges by less than the second.
+pub const NOISY_STEP: f32 = 0.6;
+/// See [`NOISY_STEP`].
+pub const NOISY_MIX: f32 = 2.6;
+/// See [`NOISY_STEP`].
+pub const NOISY_SIGMA: f64 = 0.7;
 /// Weight of color differences beside brightness in pictures that went through a coder: across edges they are off by 13 levels and brightness
 /// by 5.
 pub const CODED_COLOR_WEIGHT: f64 = 0.35;
@@ -133,6 +146,14 @@ pub const BORDER_SIGMA: f64 = 0.1;
 
 /// By how much a curve may be longer than the walk along its samples, pixels: corners lie beyond the last samples beside them.
 pub const OUTLINE_SLACK: f64 = 6.0;
+/// How far from a pixel of a blurred edge its colors are looked for, and how far its window reaches, pixels: three standard deviations of a blur of
+/// two and a half pixels.
+pub const SOFT_REACH: usize = 8;
+/// Ripple from which on a picture may have gone through a coder or a filter: renderers leave .05 beside edges, coders of photographs and filters
+/// mostly .1 to 2.
+pub const RIPPLED: f64 = 0.06;
+/// A picture has if that makes its boundaries so much shorter, as a share: what ringing adds.
+pub const RINGING: f64 = 0.02;
 /// Share of another color in a pixel beyond an edge from which on the edge is not one of area coverage: 8 bits cannot show less at
 /// full contrast.
 pub const LEAST_STAIN: f64 = 0.003;

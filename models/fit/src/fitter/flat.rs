@@ -3,10 +3,10 @@
 use alloc::vec::Vec;
 
 use dvp_core::image::CHANNELS;
+use dvp_core::sort::median_by;
 use dvp_core::{Drawing, ImageView, Real, Scene};
 
 use crate::residual::Unexplained;
-use crate::segment::median_by;
 use crate::{Fit, Prices, StopReason};
 
 /// A step of 8 bits. Within it rounding may decide which of two colors is nearer to a picture; scenes that are worse by more than

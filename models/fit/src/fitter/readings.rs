@@ -9,12 +9,13 @@ use alloc::vec::Vec;
 
 use dvp_core::render::{Compositing, EdgeLaw, EdgeProfile};
 use dvp_core::{ImageView, Object, Real};
+use dvp_trace::noise::noise_level;
 
 use super::run::{Care, Run, has_fractions, visible_error};
 use super::{DIRECT_PIXELS, FitScratch, Fitter};
 use crate::block_code::BlockCode;
 use crate::colors::{is_rounded, round_color};
-use crate::segment::{EdgeKind, NoisyOptions, SegmentOptions, noise_level};
+use crate::segment::{EdgeKind, NoisyOptions, SegmentOptions};
 use crate::tuning::{
     CODED_NOISE, COMPRESSED_BLUR_PX, COMPRESSED_NOISE, FINE_ZONE, MANY_REGIONS, MISSED_SHARE, MOST_CLEAN_REGIONS,
     NOT_FLAT_SHARE, QUIET_NOISE, STILL_SOFT_SHARE, TEXTURE_NOISE,

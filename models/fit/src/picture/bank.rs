@@ -44,6 +44,6 @@ pub(super) fn fit(
     // Where edges leave a doubt, shapes that are known tell more than shapes that are not.
     let traced = dvp_trace::trace(&image, known).ok().filter(|traced| !leaves_doubt(traced));
     let Some(traced) = traced else { return Ok(found) };
-    let drawn = drawing(fitter, traced, image, scratch)?;
+    let drawn = drawing(fitter, traced, image, known, scratch)?;
     Ok(likelier(found, drawn))
 }

@@ -27,11 +27,12 @@ use core::cmp::Ordering;
 
 use dvp_core::loss::{ImagePair, Loss as _};
 use dvp_core::render::{EdgeLaw, PixelLoss};
-use dvp_core::{ImageView, Real as _};
-use dvp_trace::{PoseCovariance, Traced, tuning};
+use dvp_core::{ImageView, Real as _, Scene};
+use dvp_trace::{PoseCovariance, Traced};
 
 use crate::paint::Canvas;
 use crate::prototypes::Decoder;
+use crate::tuning::{MISSED_SHARE, NOT_FLAT_SHARE};
 use crate::{Ambiguity, Fit, FitError, FitOptions, FitScratch, Fitter, StopReason};
 
 pub use dvp_trace::Known;
@@ -42,7 +43,9 @@ use most::at_most;
 
 /// Where two fits are of different kinds, the likelier one is taken, unless it misses the picture by so many times as much as the other one:
 /// ringing is read as faces, which come nearer to it but are none, and outlines that are free come nearer than shapes that are known.
-const CLEARLY_WORSE: f32 = 2.0;
+const CLEARLY_WORSE: f64 = 2.0;
+/// Noise of rounding to 8 bits, and as much again.
+const ROUNDED: f32 = 0.003;
 
 /// Memory of [`fit_picture`], one per thread, kept between pictures.
 #[derive(Debug, Default)]
@@ -118,9 +121,27 @@ fn drawing_or_segments(
         return bank::fit(fitter, bank, image, known, scratch);
     }
     match dvp_trace::trace(&image, known) {
-        Ok(traced) => drawing(fitter, traced, image, scratch),
-        Err(_) => fitter.fit(image, &mut scratch.fit),
+        Ok(traced) => drawing(fitter, traced, image, known, scratch),
+        Err(_) => {
+            let segments = fitter.fit(image, &mut scratch.fit)?;
+            if is_of_renderer(&segments) {
+                return Ok(segments);
+            }
+            match dvp_trace::trace(&image, &known.with_spoiled(true)) {
+                Ok(traced) => likeliest(segments, traced, image, scratch),
+                Err(_) => Ok(segments),
+            }
+        }
     }
+}
+
+/// The fit of a drawing.
+fn drawn(traced: Traced, image: ImageView<'_, f32>, scratch: &mut PictureScratch) -> Result<Fit<f32>, FitError> {
+    let (painted, drawing) = scratch.canvas.paint(&traced.scene, image.size())?;
+    let loss = PixelLoss::Mae.value(ImagePair::new(painted.view(), image)?, &mut ())?;
+    let fit = Fit::of_painted(traced.scene, &drawing, &image, painted.data());
+    let (covariance, ambiguity) = doubt_of_poses(&traced.covariances);
+    Ok(Fit { loss, bits: traced.bits, stop: StopReason::Converged, covariance, ambiguity, ..fit })
 }
 
 /// The fit of a drawing, or of segments where edges leave a doubt and those are nearer.
@@ -128,38 +149,77 @@ fn drawing(
     fitter: &Fitter<f32>,
     traced: Traced,
     image: ImageView<'_, f32>,
+    known: &Known,
     scratch: &mut PictureScratch,
 ) -> Result<Fit<f32>, FitError> {
-    let is_doubtful = leaves_doubt(&traced);
-    let (painted, drawing) = scratch.canvas.paint(&traced.scene, image.size())?;
-    let loss = PixelLoss::Mae.value(ImagePair::new(painted.view(), image)?, &mut ())?;
-    let fit = Fit::of_painted(traced.scene, &drawing, &image, painted.data());
-    let (covariance, ambiguity) = doubt_of_poses(&traced.covariances);
-    let drawn = Fit { loss, bits: traced.bits, stop: StopReason::Converged, covariance, ambiguity, ..fit };
-    if !is_doubtful {
-        return Ok(drawn);
+    if !leaves_doubt(&traced) {
+        return drawn(traced, image, scratch);
     }
     let segments = fitter.fit(image, &mut scratch.fit)?;
-    // Segments measure the profile of all edges at once: drawings have that of area coverage. Ringing hides it, but makes things of its own,
-    // and a scene is not more than it needs to be; of as many things the nearer ones.
-    let fewer = match drawn.scene.objects.len().cmp(&segments.scene.objects.len()) {
+    if is_of_renderer(&segments) {
+        return Ok(segments);
+    }
+    // Edges that are wide were not read as such.
+    let traced = if segments.scene.edge.law == EdgeLaw::Area {
+        traced
+    } else {
+        dvp_trace::trace(&image, &known.with_spoiled(true)).unwrap_or(traced)
+    };
+    likeliest(segments, traced, image, scratch)
+}
+
+/// Whether segments explain a picture with the edges of the paper's renderer, which no drawing has.
+fn is_of_renderer(segments: &Fit<f32>) -> bool {
+    segments.scene.edge.law == EdgeLaw::SquaredDistance && segments.unexplained <= NOT_FLAT_SHARE
+}
+
+/// Of segments and a drawing the one that the picture is. Segments measure the profile of all edges at once: drawings have that of area coverage, or a
+/// blur; the paper's renderer has its own. Ringing hides it, but makes things of its own, and a scene is not more than it needs to be; of as many
+/// things the nearer ones.
+fn likeliest(
+    segments: Fit<f32>,
+    traced: Traced,
+    image: ImageView<'_, f32>,
+    scratch: &mut PictureScratch,
+) -> Result<Fit<f32>, FitError> {
+    let edge = segments.scene.edge;
+    let mut drawn_as = drawn(traced, image, scratch)?;
+    if edge.law == EdgeLaw::Distance {
+        let scene = Scene { edge, ..drawn_as.scene.clone() };
+        let (painted, drawing) = scratch.canvas.paint(&scene, image.size())?;
+        let loss = PixelLoss::Mae.value(ImagePair::new(painted.view(), image)?, &mut ())?;
+        if loss < drawn_as.loss {
+            let fit = Fit::of_painted(scene, &drawing, &image, painted.data());
+            let Fit { bits, stop, covariance, ambiguity, .. } = drawn_as;
+            drawn_as = Fit { loss, bits, stop, covariance, ambiguity, ..fit };
+        }
+    }
+    // What is left of a noisy picture is noise; where next to nothing else is, it says nothing.
+    let is_noisy = drawn_as.noise > ROUNDED;
+    let misses = |fit: &Fit<f32>| if is_noisy { fit.unexplained.max(MISSED_SHARE) } else { f64::from(fit.loss) };
+    let [of_drawing, of_segments] = [&drawn_as, &segments].map(misses);
+    let fewer = match drawn_as.scene.objects.len().cmp(&segments.scene.objects.len()) {
         Ordering::Less => true,
-        Ordering::Equal => drawn.loss <= segments.loss,
+        Ordering::Equal => of_drawing <= of_segments,
         Ordering::Greater => false,
     };
-    let is_drawing = segments.scene.edge.law == EdgeLaw::Area && fewer;
-    Ok(if is_drawing { likelier(drawn, segments) } else { likelier(segments, drawn) })
+    let is_drawing = if edge.law != EdgeLaw::SquaredDistance && fewer {
+        of_drawing <= CLEARLY_WORSE * of_segments
+    } else {
+        CLEARLY_WORSE * of_drawing < of_segments
+    };
+    Ok(if is_drawing { drawn_as } else { segments })
 }
 
 /// The first of two fits, or the second if that is much nearer.
 fn likelier(first: Fit<f32>, second: Fit<f32>) -> Fit<f32> {
-    if CLEARLY_WORSE * second.loss < first.loss { second } else { first }
+    if CLEARLY_WORSE * f64::from(second.loss) < f64::from(first.loss) { second } else { first }
 }
 
 /// Whether edges leave a doubt that a picture is a drawing. Stains of either sign: blur and profiles of their own leave too much of the other
 /// side beyond edges, filters that sharpen too little.
 fn leaves_doubt(traced: &Traced) -> bool {
-    traced.stained.abs() > tuning::DOUBTFUL_STAINED
+    traced.stained.abs() > dvp_trace::tuning::DOUBTFUL_STAINED
 }
 
 /// What is known of poses as a fit says it: covariances of (x, y, log scale, rotation, log stretch), NaN where nothing is known, and which

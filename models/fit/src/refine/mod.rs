@@ -9,6 +9,7 @@ mod covariance;
 mod scratch;
 
 use dvp_core::{ImageView, Real, Scene};
+use dvp_trace::noise::noise_level;
 
 use crate::joint::{JointProblem, continue_sigma};
 use crate::marginal_gain::marginal_gains;
@@ -16,7 +17,7 @@ use crate::options::check_finite;
 use crate::pose::search::Prototype;
 use crate::price::scene_bits;
 use crate::residual::Residual;
-use crate::segment::{PIXEL_NOISE, noise_level};
+use crate::segment::PIXEL_NOISE;
 use crate::{Fit, FitError};
 use covariance::covariances;
 pub use scratch::RefineScratch;

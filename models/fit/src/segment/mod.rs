@@ -10,7 +10,6 @@ pub(crate) mod color;
 mod edge_kind;
 mod flat;
 mod interpret;
-mod median;
 mod noisy;
 mod region;
 mod rim;
@@ -27,9 +26,7 @@ use dvp_core::{ImageView, Real};
 
 pub(crate) use edge_kind::EdgeKind;
 pub(crate) use interpret::{Border, Evidence, Stacking};
-pub(crate) use median::median_by;
 pub(crate) use noisy::NoisyOptions;
-pub(crate) use robust::{denoise_twice, noise_level};
 
 /// Signed distance from a pixel center to the outline of an object, read from the pixel's color.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,10 +2,10 @@
 
 use alloc::vec::Vec;
 
+use dvp_core::sort::median_by;
 use dvp_core::{ImageView, Real};
 
 use super::flat::FlatMap;
-use super::median::median_by;
 use crate::tuning::{CORE_PIXELS, RIM_COLOR};
 
 /// Pixels looked at for the color of a region of a picture without noise.

@@ -19,7 +19,7 @@ use dvp_core::render::EdgeProfile;
 use dvp_core::shape::PrototypeBank;
 use dvp_core::tensor::{Host, HostDevice, Parameters};
 use dvp_core::{AnyShape, Image, ImageView, Object, Real, Scene};
-use dvp_fit::denoise::denoised;
+use dvp_fit::noise::denoised;
 
 pub use built_in::{BUILT_IN, BUILT_IN_LOOK};
 use second::Second;

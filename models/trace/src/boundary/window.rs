@@ -11,6 +11,7 @@ use dvp_core::contour::Heading;
 use super::{Ring, Step};
 use crate::partition::{OUTSIDE, Partition};
 use crate::sample::{Sample, straightened};
+use crate::tuning;
 
 /// Cracks before and behind one that tell which way the boundary goes there.
 const AROUND: usize = 4;
@@ -89,7 +90,8 @@ fn sum(
     let mut total = 0.0;
     let mut at = at;
     let step = [at[0].wrapping_sub(from[0]), at[1].wrapping_sub(from[1])];
-    for count in 0..=REACH {
+    let reach = if partition.reading.soft { tuning::SOFT_REACH } else { REACH };
+    for count in 0..=reach {
         if partition.face_at(at) != face {
             return None;
         }

@@ -8,7 +8,7 @@ use num_traits::Float as _;
 
 use dvp_core::geometry::DisjointSets;
 
-use super::Partition;
+use super::{Partition, Reading};
 use super::flat::{NONE, index};
 use super::mix::{Mixed, best_mixture};
 use super::runs::renumber;
@@ -80,6 +80,8 @@ fn partition(size: [usize; 2], pixels: Vec<[f32; 3]>, mixed: Mixed, labels: Vec<
         slivers: Vec::new(),
         palette,
         coded: false,
+        reading: Reading::default(),
+        ripple: 0.0,
         mix_noise: noise,
         sigma: tuning::ROUNDING,
         is_hard,

@@ -6,7 +6,7 @@ use core::ops::Range;
 
 use dvp_core::geometry::DisjointSets;
 
-use super::NoPartition;
+use super::{NoPartition, Reading};
 use super::runs::{renumber, runs};
 use crate::tuning;
 
@@ -23,6 +23,12 @@ pub(super) struct Noise {
     pub(super) contrast: f64,
     /// Fewest pixels that do.
     pub(super) fewest: usize,
+    /// Blocks that differ a little, per block that differs much: what is left beside edges. 0 where it was not counted.
+    pub(super) ripple: f64,
+    /// Whether it is that of a coder.
+    pub(super) is_coded: bool,
+    /// How often colors are looked for around a pixel, further off each time.
+    pub(super) reaches: usize,
 }
 
 /// Pixels in flat blocks, and the regions that these make.
@@ -38,8 +44,10 @@ pub(super) struct Flats {
 pub(super) const NONE: u32 = u32::MAX;
 
 impl Noise {
-    /// From the blocks themselves: in a clean picture nearly all that are not equal are edges; noise leaves many that differ a little.
-    pub(super) fn of(pixels: &[[f32; 3]], size: [usize; 2], coded: bool) -> Result<Self, NoPartition> {
+    /// Of a picture that is read in some way.
+    pub(super) fn of(pixels: &[[f32; 3]], size: [usize; 2], reading: Reading) -> Result<Self, NoPartition> {
+        let Reading { coded, noise, soft } = reading;
+        let reaches = if soft { 3 } else if coded { 2 } else { 1 };
         if coded {
             return Ok(Self {
                 flat: tuning::CODED_STEP,
@@ -47,8 +55,25 @@ impl Noise {
                 sigma: tuning::CODED_SIGMA,
                 contrast: tuning::CODED_CONTRAST,
                 fewest: tuning::CODED_THIN,
+                ripple: 0.0,
+                is_coded: true,
+                reaches,
             });
         }
+        if noise > 0.0 {
+            let mixed = tuning::CLEAN_MIX + tuning::NOISY_MIX * noise;
+            return Ok(Self {
+                flat: tuning::CLEAN_STEP + tuning::NOISY_STEP * noise,
+                mixed,
+                sigma: tuning::ROUNDING.hypot(tuning::NOISY_SIGMA * f64::from(noise)),
+                contrast: tuning::LEAST_CONTRAST.max(2.0 * f64::from(mixed)),
+                fewest: tuning::CODED_THIN,
+                ripple: 0.0,
+                is_coded: false,
+                reaches,
+            });
+        }
+        // In a clean picture nearly all blocks that are not equal are edges; noise leaves many that differ a little.
         let [mut little, mut much] = [0usize; 2];
         ranges(pixels, size, [1.0; 3], |ranges| {
             let more_than = |step: f32| ranges.iter().filter(|&&range| range > step).count();
@@ -65,26 +90,17 @@ impl Noise {
             sigma: tuning::ROUNDING,
             contrast: tuning::LEAST_CONTRAST,
             fewest: tuning::LEAST_THIN,
+            ripple: little as f64 / much.max(1) as f64,
+            is_coded: false,
+            reaches,
         })
     }
-}
 
-impl Noise {
     /// Weights of the channels where pixels or regions of one color are compared: color differences of coded pictures, which pass slowly into one
     /// another, are not made less of there.
     pub(super) fn weights(&self) -> [f32; 3] {
-        let color = if self.is_coded() { 1.0 / tuning::CODED_COLOR_WEIGHT as f32 } else { 1.0 };
+        let color = if self.is_coded { 1.0 / tuning::CODED_COLOR_WEIGHT as f32 } else { 1.0 };
         [1.0, color, color]
-    }
-
-    /// How often colors are looked for around a pixel, further off each time.
-    pub(super) fn reaches(&self) -> usize {
-        if self.is_coded() { 2 } else { 1 }
-    }
-
-    /// Whether it is that of a coder.
-    pub(super) fn is_coded(&self) -> bool {
-        self.flat > tuning::CLEAN_STEP
     }
 }
 

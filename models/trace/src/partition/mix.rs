@@ -35,8 +35,8 @@ pub(super) struct Mixture {
 }
 
 /// How far (pixels) from a mixed pixel the colors that it is made of are looked for; and again where these do not explain it, since
-/// coders stain further.
-const REACH: [usize; 2] = [2, tuning::CODED_REACH];
+/// coders stain further, and blur further still.
+const REACH: [usize; 3] = [2, tuning::CODED_REACH, tuning::SOFT_REACH];
 
 pub(super) fn explain(pixels: &[[f32; 3]], size: [usize; 2], flats: &Flats, palette: Palette, noise: &Noise) -> Mixed {
     let of_region: Vec<u16> = palette.of_region.iter().map(|&color| narrow(color)).collect();
@@ -57,7 +57,7 @@ pub(super) fn explain(pixels: &[[f32; 3]], size: [usize; 2], flats: &Flats, pale
     let mut open = Vec::new();
     let mut near = Vec::new();
     for i in (0..pixels.len()).filter(|&i| flats.regions[i] == NONE) {
-        let best = REACH[..noise.reaches()].iter().find_map(|&reach| {
+        let best = REACH[..noise.reaches].iter().find_map(|&reach| {
             colors_near(&flat_colors, size, (i, reach), &mut near);
             let best = best_mixture(pixels[i].map(f64::from), &near, &mixed.palette);
             best.filter(|best| best.misfit <= mixed.noise)
@@ -270,7 +270,7 @@ pub(super) fn open(
             best_mixture(pixels[i].map(f64::from), near.within(reach, flat_colors, size, i), palette)
                 .is_none_or(|best| best.misfit > f64::from(noise.mixed))
         };
-        is_open[i] = REACH[..noise.reaches()].iter().all(&mut is_left);
+        is_open[i] = REACH[..noise.reaches].iter().all(&mut is_left);
     }
     is_open
 }

@@ -7,6 +7,7 @@
 
 mod chain;
 mod checker;
+mod clipped;
 mod coded;
 mod cross;
 mod erase;
@@ -30,6 +31,7 @@ use dvp_core::ImageView;
 use crate::tuning;
 
 pub use faces::Face;
+use flat::Noise;
 pub(crate) use mix::coverage;
 pub(crate) use palette::distance;
 pub(crate) use seam::{BEHIND, Seam};
@@ -62,8 +64,13 @@ pub struct Partition {
     pub(crate) slivers: Vec<sliver::Sliver>,
     /// The colors; faces name one of them. [`Self::rgb`] makes colors of them.
     pub palette: Vec<Color>,
-    /// Whether it looks as if a coder of photographs had changed it.
+    /// Whether it was read as changed by a coder of photographs.
     pub coded: bool,
+    /// How else it was read.
+    pub(crate) reading: Reading,
+    /// Blocks of two by two pixels that differ a little, per block that differs much: what coders and filters leave beside edges. 0 where it was
+    /// not counted.
+    pub(crate) ripple: f64,
     /// Most difference of a channel between a pixel and the mixture that explains it.
     pub mix_noise: f64,
     /// Standard deviation of a channel in a pixel of an edge.
@@ -72,6 +79,26 @@ pub struct Partition {
     pub is_hard: bool,
     /// Share of the pixels that no mixture of the palette explains, [0, 1].
     pub unexplained: f64,
+}
+
+/// How a picture is read: what was done to it after it was drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct Reading {
+    /// Whether a coder of photographs (JPEG) has changed its pixels.
+    pub coded: bool,
+    /// Standard deviation of a channel that was averaged away before.
+    pub noise: f32,
+    /// Whether its edges may be wider than those of area coverage.
+    pub soft: bool,
+}
+
+impl Reading {
+    /// The same, changed by a coder of photographs or not.
+    #[must_use]
+    pub fn with_coded(self, coded: bool) -> Self {
+        Self { coded, ..self }
+    }
 }
 
 /// Why a picture was not cut into faces.
@@ -90,31 +117,31 @@ pub enum NoPartition {
 }
 
 impl Partition {
-    /// Cuts a picture into faces; `coded` says that a coder of photographs has changed its pixels.
+    /// Cuts a picture into faces.
     ///
     /// # Errors
     /// [`NoPartition`] if it is no drawing of flat colors.
-    pub fn of(image: &ImageView<'_, f32>, coded: bool) -> Result<Self, NoPartition> {
-        Ok(Self::readings(image, coded)?.0)
+    pub fn of(image: &ImageView<'_, f32>, reading: Reading) -> Result<Self, NoPartition> {
+        Ok(Self::readings(image, reading)?.0)
     }
 
     /// The ways to cut a picture into faces: lines that cross taken out of it, and, if there are such with pixels of their own, as faces.
     ///
     /// # Errors
     /// As [`Self::of`].
-    pub fn readings(image: &ImageView<'_, f32>, coded: bool) -> Result<(Self, Option<Self>), NoPartition> {
+    pub fn readings(image: &ImageView<'_, f32>, reading: Reading) -> Result<(Self, Option<Self>), NoPartition> {
         let size = [image.size().width(), image.size().height()];
         let [red, green, blue] = [0, 1, 2].map(|c| image.channel(c));
         let mut pixels: Vec<[f32; 3]> =
             red.iter().zip(green).zip(blue).map(|((&red, &green), &blue)| [red, green, blue]).collect();
-        let noise = flat::Noise::of(&pixels, size, coded)?;
+        let noise = Noise::of(&pixels, size, reading)?;
         let weighted = |pixels: &mut [[f32; 3]]| pixels.iter_mut().for_each(|pixel| *pixel = coded::weighted(*pixel));
-        if noise.is_coded() {
+        if noise.is_coded {
             weighted(&mut pixels);
         }
         let find = |pixels: &[[f32; 3]]| {
             let mut flats = flat::find(pixels, size, &noise);
-            if noise.is_coded() {
+            if noise.is_coded {
                 coded::part(pixels, size, &mut flats, &noise);
                 coded::dissolve(pixels, size, &mut flats);
             }
@@ -129,7 +156,9 @@ impl Partition {
         let finish = |pixels: Vec<[f32; 3]>, flats: &flat::Flats, colors, lines, mut seams: Vec<Seam>| {
             seams.sort_unstable_by_key(|seam| seam.pixel);
             let mixed = mix::explain(&pixels, size, flats, colors, &noise);
-            Self { coded: noise.is_coded(), sigma: noise.sigma, lines, seams, ..faces::cut(size, pixels, mixed) }
+            let Reading { coded, .. } = reading;
+            let Noise { ripple, sigma, .. } = noise;
+            Self { coded, reading, ripple, sigma, lines, seams, ..faces::cut(size, pixels, mixed) }
         };
         let mut lines = Vec::new();
         let mut seams = Vec::new();
@@ -142,7 +171,7 @@ impl Partition {
             let found = Found::of(&mut pixels, size, &flats, &colors, &noise, widest);
             if !found.mended.is_empty() {
                 // What a coder leaves along edges is as much as what shows through.
-                if !noise.is_coded() {
+                if !noise.is_coded {
                     seams.extend(&found.mended);
                 }
                 flats = find(&pixels);
@@ -176,7 +205,11 @@ impl Partition {
     /// A color of the palette, or of a line, as the picture stores it.
     #[must_use]
     pub fn rgb(&self, color: Color) -> Color {
-        if self.coded { coded::as_rgb(color) } else { color }
+        match self.reading.noise {
+            _ if self.coded => coded::as_rgb(color),
+            noise if noise > 0.0 => color.map(|mean| clipped::level(mean, f64::from(noise))),
+            _ => color,
+        }
     }
 
     /// A color that the picture stores as its palette has it.
@@ -215,11 +248,11 @@ impl Found {
         size: [usize; 2],
         flats: &flat::Flats,
         colors: &palette::Palette,
-        noise: &flat::Noise,
+        noise: &Noise,
         widest: f64,
     ) -> Self {
         let flat = cross::thick(&flats.regions, size[0], &colors.of_region, widest as u16 + 1);
-        let (contrast, white) = (noise.contrast, if noise.is_coded() { coded::weighted([1.0; 3]) } else { [1.0; 3] });
+        let (contrast, white) = (noise.contrast, if noise.is_coded { coded::weighted([1.0; 3]) } else { [1.0; 3] });
         let mut open = mix::open(pixels, size, &flat, &colors.colors, noise);
         let noise = f64::from(noise.mixed);
         let mended = seam::mend(pixels, size, &flat, &mut open, &colors.colors, noise);

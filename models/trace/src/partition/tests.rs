@@ -32,7 +32,7 @@ fn partition(data: &[f32]) -> Partition {
 
 fn read(data: &[f32], coded: bool) -> Partition {
     let image = Image::from_interleaved(ImageSize::new(SIDE, SIDE).unwrap(), data).unwrap();
-    Partition::of(&image.view(), coded).unwrap()
+    Partition::of(&image.view(), Reading::default().with_coded(coded)).unwrap()
 }
 
 /// A coder of photographs smooths faint edges so far that no two pixels side by side differ by more than others of one color.

@@ -1,7 +1,7 @@
 //! Edges that lie close to others, and those that a renderer left uneven.
 
 use super::*;
-use crate::partition::Partition;
+use crate::partition::{Partition, Reading};
 
 #[test]
 fn what_is_seen_of_a_thing_in_a_sliver_is_no_line() {
@@ -41,7 +41,7 @@ fn counted(lattice: usize) -> Image<f32> {
 #[test]
 fn edges_are_as_uneven_as_the_renderer_left_them() {
     let sigma = |lattice: usize| {
-        let partition = Partition::of(&counted(lattice).view(), false).unwrap();
+        let partition = Partition::of(&counted(lattice).view(), Reading::default()).unwrap();
         let rings = crate::boundary::rings(&partition);
         let mut sigmas: Vec<f64> =
             rings.iter().flatten().flat_map(|ring| &ring.steps).filter_map(|step| Some(step.sample?.sigma)).collect();

@@ -4,7 +4,7 @@ use dvp_core::Vec2;
 
 use super::edges::hard;
 use super::*;
-use crate::partition::Partition;
+use crate::partition::{Partition, Reading};
 
 /// Whether a heart of about this size, at an angle, covers a point.
 fn is_heart([x, y]: [f64; 2], [cx, cy]: [f64; 2], size: f64, angle: f64) -> bool {
@@ -108,7 +108,7 @@ fn fields_with_a_gap_between_are_not_cut() {
     let is_upper = |[x, y]: [f64; 2]| (44.0..54.0).contains(&x) && (30.0..41.0).contains(&y);
     let is_lower = |[x, y]: [f64; 2]| (33.0..43.0).contains(&x) && (39.0..49.0).contains(&y);
     let picture = hard(|at| if is_upper(at) || is_lower(at) { RED } else { WHITE });
-    let partition = Partition::of(&picture.view(), false).unwrap();
+    let partition = Partition::of(&picture.view(), Reading::default()).unwrap();
     let areas: Vec<usize> = partition.faces.iter().map(|face| face.area).collect();
     assert_eq!(areas[1..], [110, 100], "{areas:?}");
 }

@@ -1,11 +1,9 @@
 //! Flat regions of a picture with noise: denoised, partitioned, and freed from the soft pixels along their boundaries.
 //!
 //! In: a picture. Out: a [`FlatMap`] like that of a picture without noise, and the denoised picture to place soft pixels by.
-//! `level` estimates the noise, `denoise` averages, `merge` partitions, `strips` tells strips of soft pixels that became
+//! `merge` partitions, `strips` tells strips of soft pixels that became
 //! regions of their own from thin objects; here pixels near boundaries are freed.
 
-mod denoise;
-mod level;
 mod merge;
 mod strips;
 #[cfg(test)]
@@ -14,11 +12,10 @@ mod tests;
 use alloc::vec::Vec;
 
 use dvp_core::{ImageView, Real};
+use dvp_trace::noise::{DenoiseScratch, denoise_twice};
 
 use super::flat::FlatMap;
-use crate::tuning::{BOUNDARY_PRICE, DENOISE_LEFT, DENOISE_REACH_PX, MIN_REGION_PIXELS, SOFT_RINGS, STRIP_WIDTH_PX};
-use denoise::{DenoiseScratch, DenoiseSettings, denoise};
-pub(crate) use level::noise_level;
+use crate::tuning::{BOUNDARY_PRICE, MIN_REGION_PIXELS, SOFT_RINGS, STRIP_WIDTH_PX};
 use merge::{Merger, Stop};
 use strips::{Zone, find_strips, measure_zones};
 
@@ -60,24 +57,6 @@ pub(crate) struct RobustScratch<T> {
     eroded: Vec<u32>,
     zones: Vec<Zone<T>>,
     steps: Vec<(u32, u32)>,
-}
-
-/// Fills `smooth` (planar) with the picture, of which noise of standard deviation `noise` is averaged away; `first` becomes what
-/// neighborhoods are judged by.
-pub(crate) fn denoise_twice<T: Real>(
-    image: &ImageView<'_, T>,
-    noise: T,
-    scratch: &mut DenoiseScratch<T>,
-    first: &mut Vec<T>,
-    smooth: &mut Vec<T>,
-) {
-    let two_variances = T::of(2.0) * noise * noise;
-    let settings = DenoiseSettings { reach: DENOISE_REACH_PX, expected: two_variances, limit: two_variances };
-    denoise(image, image, settings, scratch, first);
-    let Ok(guide) = ImageView::new(image.size(), first) else { return };
-    let left = two_variances * T::of(DENOISE_LEFT * DENOISE_LEFT);
-    let settings = DenoiseSettings { expected: left, limit: T::of(2.0) * left, ..settings };
-    denoise(image, &guide, settings, scratch, smooth);
 }
 
 /// Fills `map` and the denoised picture.

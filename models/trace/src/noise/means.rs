@@ -12,18 +12,18 @@ const PATCH: usize = 1;
 
 /// Settings of [`denoise`].
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct DenoiseSettings<T> {
+pub(super) struct DenoiseSettings<T> {
     /// Pixels up to this far (px, a square) are averaged.
-    pub(crate) reach: usize,
+    pub(super) reach: usize,
     /// Mean squared difference of two neighborhoods that noise alone makes.
-    pub(crate) expected: T,
+    pub(super) expected: T,
     /// Surplus of the mean squared difference at which a pixel has no say any more.
-    pub(crate) limit: T,
+    pub(super) limit: T,
 }
 
 /// Memory of [`denoise`].
 #[derive(Clone, Debug, Default)]
-pub(crate) struct DenoiseScratch<T> {
+pub struct DenoiseScratch<T> {
     weights: Vec<T>,
     /// Squared differences of one row, with margins.
     line: Vec<T>,
@@ -33,7 +33,7 @@ pub(crate) struct DenoiseScratch<T> {
 }
 
 /// Fills `out` (planar, as the image) with means of `image`, alike being judged by `guide`.
-pub(crate) fn denoise<T: Real>(
+pub(super) fn denoise<T: Real>(
     image: &ImageView<'_, T>,
     guide: &ImageView<'_, T>,
     settings: DenoiseSettings<T>,

@@ -1,0 +1,132 @@
+use alloc::vec::Vec;
+
+use dvp_core::{Image, ImageSize};
+
+use super::means::{DenoiseScratch, DenoiseSettings, denoise};
+use super::{denoised, noise_level};
+
+const SIDE: usize = 64;
+
+fn paint(color: impl Fn(usize, usize) -> [f64; 3]) -> Image<f64> {
+    let pixels: Vec<f64> = (0..SIDE * SIDE).flat_map(|i| color(i % SIDE, i / SIDE)).collect();
+    Image::from_interleaved(ImageSize::new(SIDE, SIDE).unwrap(), &pixels).unwrap()
+}
+
+/// Adds normal noise: Box-Muller on a 64-bit linear congruential generator (Knuth's constants).
+fn add_noise(image: &mut Image<f64>, sigma: f64) {
+    let mut state = 1_u64;
+    let mut uniform = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        f64::from(u32::try_from(state >> 32).unwrap()) / f64::from(u32::MAX)
+    };
+    for value in image.data_mut() {
+        let (radius, turn) = (uniform().max(1e-12), uniform());
+        *value += sigma * (-2.0 * radius.ln()).sqrt() * (core::f64::consts::TAU * turn).cos();
+    }
+}
+
+/// A disk of radius 20 with an edge 4 px soft, on another color.
+fn soft_disk() -> Image<f64> {
+    paint(|x, y| {
+        let off = [x, y].map(|v| f64::from(u32::try_from(v).unwrap()) - 31.5);
+        let share = ((22.0 - off[0].hypot(off[1])) / 4.0).clamp(0.0, 1.0);
+        [0.2 + 0.6 * share, 0.7 - 0.4 * share, 0.5]
+    })
+}
+
+#[test]
+fn the_noise_level_is_found() {
+    for sigma in [0.005, 0.01, 0.02, 0.05, 0.1] {
+        let mut image = soft_disk();
+        add_noise(&mut image, sigma);
+        let found = noise_level(&image.view(), &mut Vec::new());
+        assert!((found / sigma - 1.0).abs() < 0.1, "{found} is not {sigma}");
+        image.data_mut().iter_mut().for_each(|value| *value = (*value * 255.0).round() / 255.0);
+        let found = noise_level(&image.view(), &mut Vec::new());
+        assert!((found / sigma - 1.0).abs() < 0.1, "{found} of 8 bits is not {sigma}");
+    }
+}
+
+#[test]
+fn noise_cut_off_at_black_is_found() {
+    let mut image = paint(|x, y| if x.abs_diff(32).max(y.abs_diff(32)) < 16 { [0.5, 0.4, 0.6] } else { [0.0; 3] });
+    add_noise(&mut image, 0.03);
+    image.data_mut().iter_mut().for_each(|value| *value = value.clamp(0.0, 1.0));
+    let found = noise_level(&image.view(), &mut Vec::new());
+    // One black block in 16 happens to lie above 0, and spreads less. Over all blocks it would be 0.017.
+    assert!((found / 0.03 - 1.0).abs() < 0.15, "{found}");
+}
+
+#[test]
+fn pictures_without_noise_have_none() {
+    assert!(noise_level(&soft_disk().view(), &mut Vec::new()) < 1e-12);
+    let slope = paint(|x, y| [x, y, x + y].map(|v| f64::from(u32::try_from(v).unwrap()) / 128.0));
+    assert!(noise_level(&slope.view(), &mut Vec::new()) < 1e-12);
+    let one = Image::<f64>::zeros(ImageSize::new(1, 1).unwrap());
+    assert!(noise_level(&one.view(), &mut Vec::new()).abs() < 1e-12);
+}
+
+fn mean_square(a: &[f64], b: &[f64]) -> f64 {
+    let count = f64::from(u32::try_from(a.len()).unwrap());
+    a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>() / count
+}
+
+#[test]
+fn denoising_keeps_edges() {
+    let clean = soft_disk();
+    let mut image = clean.clone();
+    let sigma: f64 = 0.05;
+    add_noise(&mut image, sigma);
+    let mut out = Vec::new();
+    let settings = DenoiseSettings { reach: 5, expected: 2.0 * sigma * sigma, limit: 2.0 * sigma * sigma };
+    denoise(&image.view(), &image.view(), settings, &mut DenoiseScratch::default(), &mut out);
+    // A 3 x 3 mean would leave a ninth of the noise and blur the edge.
+    let left = mean_square(&out, clean.data()) / (sigma * sigma);
+    assert!(left < 0.1, "{left} of the noise is left");
+    // A picture without noise stays as it is.
+    let nothing = DenoiseSettings { reach: 5, expected: 0.0, limit: 1e-9 };
+    denoise(&clean.view(), &clean.view(), nothing, &mut DenoiseScratch::default(), &mut out);
+    assert!(mean_square(&out, clean.data()) < 1e-12);
+}
+
+#[test]
+fn denoising_averages_pairs_once() {
+    // 3 x 1 pixels 0, 1, 0.5 of equal neighborhoods at this limit: all pairs have a share near 1, so all become the mean.
+    let pixels: Vec<f64> = [0.0, 1.0, 0.5].into_iter().flat_map(|v| [v; 3]).collect();
+    let image = Image::from_interleaved(ImageSize::new(3, 1).unwrap(), &pixels).unwrap();
+    let mut out = Vec::new();
+    let settings = DenoiseSettings { reach: 2, expected: 0.0, limit: 1e9 };
+    denoise(&image.view(), &image.view(), settings, &mut DenoiseScratch::default(), &mut out);
+    assert!(out.iter().all(|v| (v - 0.5).abs() < 1e-6), "{out:?}");
+}
+
+/// Two halves, and a noise that takes three values in an order that does not repeat itself.
+fn picture(noise: f64) -> Image<f64> {
+    let size = ImageSize::new(48, 48).unwrap();
+    let mut state = 7_u64;
+    let values: Vec<f64> = (0..3 * size.pixels())
+        .map(|i| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            let level = if i % 48 < 24 { 0.3 } else { 0.7 };
+            level + noise * (f64::from(u32::try_from(state >> 33).unwrap() % 3) - 1.0)
+        })
+        .collect();
+    Image::from_planar(size, values).unwrap()
+}
+
+#[test]
+fn noise_goes_and_edges_stay() {
+    let (clean, noisy) = (picture(0.0), picture(0.05));
+    let found = denoised(noisy.view()).unwrap();
+    let off = |image: &Image<f64>| image.data().iter().zip(clean.data()).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
+    assert!(off(&found) < 0.1 * off(&noisy), "{} of {}", off(&found), off(&noisy));
+}
+
+#[test]
+fn pictures_without_noise_or_with_numbers_that_are_none_are_left_alone() {
+    assert_eq!(denoised(picture(0.0).view()), None);
+    assert_eq!(denoised(picture(0.002).view()), None);
+    let mut broken = picture(0.05);
+    broken.data_mut()[5] = f64::NAN;
+    assert_eq!(denoised(broken.view()), None);
+}

@@ -1,0 +1,60 @@
+//! Levels of which noise was cut off at black or white.
+
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
+
+use core::f64::consts::{FRAC_1_SQRT_2, TAU};
+
+/// Standard deviations of noise beyond which nothing is cut off.
+const REACH: f64 = 4.0;
+/// Halvings of the interval that a level is looked for in: to a millionth of the noise.
+const HALVINGS: usize = 22;
+
+/// The level that noise of a standard deviation makes pixels of with some mean, between 0 (black) and 1 (white), where it is cut off.
+pub(super) fn level(mean: f64, noise: f64) -> f64 {
+    if mean > REACH * noise && mean < 1.0 - REACH * noise {
+        return mean;
+    }
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        if clipped_mean(middle, noise) < mean { low = middle } else { high = middle }
+    }
+    0.5 * (low + high)
+}
+
+/// Mean of normal values around a level, cut off at 0 and 1.
+fn clipped_mean(level: f64, noise: f64) -> f64 {
+    level + noise * (shortfall(level / noise) - shortfall((1.0 - level) / noise))
+}
+
+/// What cutting off at so many standard deviations below the mean adds to it: the integral of the normal distribution's tail.
+fn shortfall(sigmas: f64) -> f64 {
+    (-0.5 * sigmas * sigmas).exp() / TAU.sqrt() - sigmas * 0.5 * libm::erfc(sigmas * FRAC_1_SQRT_2)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// Mean of a normal distribution cut off at 0 and 1, by the midpoint rule.
+    fn by_sum(level: f64, noise: f64) -> f64 {
+        let sum = |f: &dyn Fn(f64) -> f64| -> f64 {
+            (0..4000)
+                .map(|k| (f64::from(k) + 0.5) / 250.0 - 8.0)
+                .map(|z| f(z) * (-0.5 * z * z).exp() / TAU.sqrt() / 250.0)
+                .sum()
+        };
+        sum(&|z| (level + noise * z).clamp(0.0, 1.0))
+    }
+
+    proptest! {
+        #[test]
+        fn levels_come_back(at in 0.0f64..=1.0, noise in 0.005f64..0.2) {
+            let mean = by_sum(at, noise);
+            prop_assert!((level(mean, noise) - at).abs() < 1e-4, "{} instead of {at}", level(mean, noise));
+        }
+    }
+}
