@@ -72,6 +72,8 @@ pub struct Traced {
     /// Share of the pixels just beyond edges that still show the other side, [0, 1]: near 0 if edges are of area coverage, as the
     /// drawing's are.
     pub stained: f64,
+    /// Standard deviation of the blur that its edges show, pixels; looked for in spoiled pictures only, else 0.
+    pub blur: f64,
 }
 
 /// Why a picture is no drawing.
@@ -84,6 +86,8 @@ pub enum NoDrawing {
     Soft {
         /// Share of the pixels just beyond edges that still show the other side.
         stained: f64,
+        /// Faces that it would have.
+        faces: usize,
     },
 }
 
@@ -154,7 +158,7 @@ struct Read {
     rings: Vec<Vec<Ring>>,
 }
 
-/// Reads a picture, as changed by a coder if that makes its boundaries shorter where they may be ringing.
+/// Reads a picture; where edges ring, as changed by a coder if that makes fewer faces with shorter boundaries.
 fn read(image: &ImageView<'_, f32>, reading: Reading) -> Result<Read, NoPartition> {
     let of = |reading: Reading| {
         let (partition, faces) = Partition::readings(image, reading)?;
@@ -162,26 +166,31 @@ fn read(image: &ImageView<'_, f32>, reading: Reading) -> Result<Read, NoPartitio
         Ok(Read { partition, faces, rings })
     };
     let length = |read: &Read| read.rings.iter().flatten().map(|ring| ring.steps.len()).sum::<usize>() as f64;
+    let is_less = |coded: &Read, plain: &Read| {
+        let shorter = length(coded) < (1.0 - tuning::RINGING) * length(plain);
+        shorter && coded.partition.faces.len() < plain.partition.faces.len()
+    };
     let plain = of(reading)?;
     if plain.partition.ripple <= tuning::RIPPLED {
         return Ok(plain);
     }
     let coded = of(reading.with_coded(true));
-    Ok(coded.ok().filter(|coded| length(coded) < (1.0 - tuning::RINGING) * length(&plain)).unwrap_or(plain))
+    Ok(coded.ok().filter(|coded| is_less(coded, &plain)).unwrap_or(plain))
 }
 
 /// The drawing of faces.
 fn draw(read: Read, size: ImageSize, known: &Known) -> Result<Traced, NoDrawing> {
     let Read { partition, faces, rings } = read;
     let stained = match partition.coded {
-        // Coders stain what is beside an edge, whatever its profile is: in large pictures one of their own is seen as blur, small ones leave a doubt.
-        true if size.width().min(size.height()) < tuning::CODED_SMALL => tuning::UNKNOWN_STAINED,
+        // Coders stain what is beside an edge, whatever its profile is: in large pictures one of their own is seen as blur, small ones leave a doubt,
+        // and so do those that only look as if there had been a coder.
+        true if !known.coded || size.width().min(size.height()) < tuning::CODED_SMALL => tuning::UNKNOWN_STAINED,
         true => 0.0,
         false => boundary::stained(&partition, &rings).unwrap_or(tuning::UNKNOWN_STAINED),
     };
     let wobble = if partition.coded || partition.is_hard { 0.0 } else { boundary::wobble(&rings).unwrap_or(0.0) };
     if !known.spoiled && !partition.coded && !partition.is_hard && is_soft(stained, wobble) {
-        return Err(NoDrawing::Soft { stained });
+        return Err(NoDrawing::Soft { stained, faces: partition.faces.len() });
     }
     // Renderers that count few places in each pixel are as steep as those with a profile of their own.
     let stained = if wobble < -tuning::SURE_WOBBLE { stained.max(tuning::UNKNOWN_STAINED) } else { stained };
@@ -203,7 +212,8 @@ fn draw(read: Read, size: ImageSize, known: &Known) -> Result<Traced, NoDrawing>
     }
     let bits = layers.bits();
     let (scene, covariances) = scene::scene(&layers, size, known.matte.is_some(), partition.is_hard);
-    Ok(Traced { scene, covariances, bits, stained })
+    let blur = if known.spoiled || partition.coded { boundary::blur(&partition, &rings) } else { 0.0 };
+    Ok(Traced { scene, covariances, bits, stained, blur })
 }
 
 /// Whether edges have another profile than area coverage: wider, or steeper with stains beyond.
@@ -221,7 +231,7 @@ impl core::fmt::Display for NoDrawing {
             Self::Partition(NoPartition::TooManyColors) => {
                 write!(f, "the picture has more than {} flat colors", tuning::MOST_COLORS)
             }
-            Self::Soft { stained } => {
+            Self::Soft { stained, .. } => {
                 write!(f, "edges are soft: {:.0} % of the pixels beside them are stained", 100.0 * stained)
             }
         }

@@ -7,7 +7,7 @@ use dvp_core::ImageView;
 use dvp_core::loss::{ImagePair, Loss as _};
 use dvp_core::render::PixelLoss;
 
-use super::{Known, PictureScratch, drawing, leaves_doubt, likelier};
+use super::{Known, PictureScratch, drawn, leaves_doubt, likelier};
 use crate::prototypes::{Decoded, Decoder, Undecoded};
 use crate::{Bank, Fit, FitError, Fitter, StopReason};
 
@@ -44,6 +44,6 @@ pub(super) fn fit(
     // Where edges leave a doubt, shapes that are known tell more than shapes that are not.
     let traced = dvp_trace::trace(&image, known).ok().filter(|traced| !leaves_doubt(traced));
     let Some(traced) = traced else { return Ok(found) };
-    let drawn = drawing(fitter, traced, image, known, scratch)?;
+    let drawn = drawn(traced, image, scratch)?;
     Ok(likelier(found, drawn))
 }

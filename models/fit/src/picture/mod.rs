@@ -26,9 +26,9 @@ use alloc::vec::Vec;
 use core::cmp::Ordering;
 
 use dvp_core::loss::{ImagePair, Loss as _};
-use dvp_core::render::{EdgeLaw, PixelLoss};
+use dvp_core::render::{EdgeLaw, EdgeProfile, PixelLoss};
 use dvp_core::{ImageView, Real as _, Scene};
-use dvp_trace::{PoseCovariance, Traced};
+use dvp_trace::{NoDrawing, PoseCovariance, Traced};
 
 use crate::paint::Canvas;
 use crate::prototypes::Decoder;
@@ -44,6 +44,8 @@ use most::at_most;
 /// Where two fits are of different kinds, the likelier one is taken, unless it misses the picture by so many times as much as the other one:
 /// ringing is read as faces, which come nearer to it but are none, and outlines that are free come nearer than shapes that are known.
 const CLEARLY_WORSE: f64 = 2.0;
+/// Pictures of more things are no scenes of the paper's renderer, whatever their edges are: segments, which take long for many, are not asked for.
+const FEW: usize = 16;
 /// Noise of rounding to 8 bits, and as much again.
 const ROUNDED: f32 = 0.003;
 
@@ -120,52 +122,54 @@ fn drawing_or_segments(
     if let Some(bank) = &options.bank {
         return bank::fit(fitter, bank, image, known, scratch);
     }
-    match dvp_trace::trace(&image, known) {
-        Ok(traced) => drawing(fitter, traced, image, known, scratch),
-        Err(_) => {
+    let spoiled = || dvp_trace::trace(&image, &known.with_spoiled(true));
+    let traced = match dvp_trace::trace(&image, known) {
+        Ok(traced) if !leaves_doubt(&traced) => return drawn(traced, image, scratch),
+        Ok(traced) if !known.coded => spoiled().or(Ok(traced)),
+        // The paper's renderer has edges of its own, and few things.
+        Err(NoDrawing::Soft { faces, .. }) if faces <= FEW => {
             let segments = fitter.fit(image, &mut scratch.fit)?;
             if is_of_renderer(&segments) {
                 return Ok(segments);
             }
-            match dvp_trace::trace(&image, &known.with_spoiled(true)) {
+            return match spoiled() {
                 Ok(traced) => likeliest(segments, traced, image, scratch),
                 Err(_) => Ok(segments),
-            }
+            };
+        }
+        Err(_) if !known.coded => spoiled(),
+        traced => traced,
+    };
+    match traced {
+        Ok(traced) if traced.scene.objects.len() > FEW => drawn(traced, image, scratch),
+        Ok(traced) => {
+            let segments = fitter.fit(image, &mut scratch.fit)?;
+            if is_of_renderer(&segments) { Ok(segments) } else { likeliest(segments, traced, image, scratch) }
+        }
+        Err(_) => fitter.fit(image, &mut scratch.fit),
+    }
+}
+
+/// The fit of a drawing, with the blur of the picture if that brings it nearer.
+fn drawn(traced: Traced, image: ImageView<'_, f32>, scratch: &mut PictureScratch) -> Result<Fit<f32>, FitError> {
+    let Traced { scene, covariances, bits, blur, .. } = traced;
+    let (covariance, ambiguity) = doubt_of_poses(&covariances);
+    let blurred = (blur > 0.0).then(|| {
+        // The logistic curve of the same standard deviation, in the doubled frame.
+        let sigma = 2.0 * blur * 3.0_f64.sqrt() / core::f64::consts::PI;
+        let edge = EdgeProfile::distance(f32::of(sigma) / f32::of_usize(image.size().unit_px()));
+        Scene { edge, ..scene.clone() }
+    });
+    let mut best: Option<Fit<f32>> = None;
+    for scene in [Some(scene), blurred].into_iter().flatten() {
+        let (painted, drawing) = scratch.canvas.paint(&scene, image.size())?;
+        let loss = PixelLoss::Mae.value(ImagePair::new(painted.view(), image)?, &mut ())?;
+        if best.as_ref().is_none_or(|best| loss < best.loss) {
+            best = Some(Fit { loss, ..Fit::of_painted(scene, &drawing, &image, painted.data()) });
         }
     }
-}
-
-/// The fit of a drawing.
-fn drawn(traced: Traced, image: ImageView<'_, f32>, scratch: &mut PictureScratch) -> Result<Fit<f32>, FitError> {
-    let (painted, drawing) = scratch.canvas.paint(&traced.scene, image.size())?;
-    let loss = PixelLoss::Mae.value(ImagePair::new(painted.view(), image)?, &mut ())?;
-    let fit = Fit::of_painted(traced.scene, &drawing, &image, painted.data());
-    let (covariance, ambiguity) = doubt_of_poses(&traced.covariances);
-    Ok(Fit { loss, bits: traced.bits, stop: StopReason::Converged, covariance, ambiguity, ..fit })
-}
-
-/// The fit of a drawing, or of segments where edges leave a doubt and those are nearer.
-fn drawing(
-    fitter: &Fitter<f32>,
-    traced: Traced,
-    image: ImageView<'_, f32>,
-    known: &Known,
-    scratch: &mut PictureScratch,
-) -> Result<Fit<f32>, FitError> {
-    if !leaves_doubt(&traced) {
-        return drawn(traced, image, scratch);
-    }
-    let segments = fitter.fit(image, &mut scratch.fit)?;
-    if is_of_renderer(&segments) {
-        return Ok(segments);
-    }
-    // Edges that are wide were not read as such.
-    let traced = if segments.scene.edge.law == EdgeLaw::Area {
-        traced
-    } else {
-        dvp_trace::trace(&image, &known.with_spoiled(true)).unwrap_or(traced)
-    };
-    likeliest(segments, traced, image, scratch)
+    let best = best.ok_or(FitError::Setting { what: "edge", must: "known" })?;
+    Ok(Fit { bits, stop: StopReason::Converged, covariance, ambiguity, ..best })
 }
 
 /// Whether segments explain a picture with the edges of the paper's renderer, which no drawing has.
@@ -182,33 +186,22 @@ fn likeliest(
     image: ImageView<'_, f32>,
     scratch: &mut PictureScratch,
 ) -> Result<Fit<f32>, FitError> {
-    let edge = segments.scene.edge;
-    let mut drawn_as = drawn(traced, image, scratch)?;
-    if edge.law == EdgeLaw::Distance {
-        let scene = Scene { edge, ..drawn_as.scene.clone() };
-        let (painted, drawing) = scratch.canvas.paint(&scene, image.size())?;
-        let loss = PixelLoss::Mae.value(ImagePair::new(painted.view(), image)?, &mut ())?;
-        if loss < drawn_as.loss {
-            let fit = Fit::of_painted(scene, &drawing, &image, painted.data());
-            let Fit { bits, stop, covariance, ambiguity, .. } = drawn_as;
-            drawn_as = Fit { loss, bits, stop, covariance, ambiguity, ..fit };
-        }
-    }
+    let drawn = drawn(traced, image, scratch)?;
     // What is left of a noisy picture is noise; where next to nothing else is, it says nothing.
-    let is_noisy = drawn_as.noise > ROUNDED;
+    let is_noisy = drawn.noise > ROUNDED;
     let misses = |fit: &Fit<f32>| if is_noisy { fit.unexplained.max(MISSED_SHARE) } else { f64::from(fit.loss) };
-    let [of_drawing, of_segments] = [&drawn_as, &segments].map(misses);
-    let fewer = match drawn_as.scene.objects.len().cmp(&segments.scene.objects.len()) {
+    let [of_drawing, of_segments] = [&drawn, &segments].map(misses);
+    let fewer = match drawn.scene.objects.len().cmp(&segments.scene.objects.len()) {
         Ordering::Less => true,
         Ordering::Equal => of_drawing <= of_segments,
         Ordering::Greater => false,
     };
-    let is_drawing = if edge.law != EdgeLaw::SquaredDistance && fewer {
+    let is_drawing = if segments.scene.edge.law != EdgeLaw::SquaredDistance && fewer {
         of_drawing <= CLEARLY_WORSE * of_segments
     } else {
         CLEARLY_WORSE * of_drawing < of_segments
     };
-    Ok(if is_drawing { drawn_as } else { segments })
+    Ok(if is_drawing { drawn } else { segments })
 }
 
 /// The first of two fits, or the second if that is much nearer.

@@ -54,7 +54,7 @@ fn soft_edges_make_segments() {
     let mut canvas = Canvas::default();
     let image = canvas.paint(&scene, ImageSize::new(SIDE, SIDE).unwrap()).unwrap().0;
     let doubt = dvp_trace::trace(&image.view(), &Known::default()).map(|traced| traced.stained);
-    assert!(doubt.is_err() || doubt.is_ok_and(|stained| stained > tuning::DOUBTFUL_STAINED));
+    assert!(doubt.is_err() || doubt.is_ok_and(|stained| stained > dvp_trace::tuning::DOUBTFUL_STAINED));
     let soft = fit(image, &Known::default(), FitOptions::default());
     let segments = crate::fit_image(image.view(), &FitOptions::default()).unwrap();
     assert_eq!(soft.scene, segments.scene);
@@ -149,11 +149,11 @@ fn a_doubt_about_edges_is_decided_by_the_profile_of_them_all() {
         [1.0, 1.0, 0.9].map(|white: f32| ((white - 0.2 * count as f32) * 255.0).round() / 255.0)
     });
     let traced = dvp_trace::trace(&image.view(), &Known::default()).unwrap();
-    assert!(traced.stained > tuning::DOUBTFUL_STAINED, "{}", traced.stained);
+    assert!(traced.stained > dvp_trace::tuning::DOUBTFUL_STAINED, "{}", traced.stained);
     let segments = crate::fit_image(image.view(), &FitOptions::default()).unwrap();
     assert_eq!((segments.scene.edge.law, segments.scene.objects.len()), (EdgeLaw::Area, 2));
     let drawn = fit(&image, &Known::default(), FitOptions::default());
-    assert!(segments.loss < CLEARLY_WORSE * drawn.loss, "{} {}", segments.loss, drawn.loss);
+    assert!(f64::from(segments.loss) < CLEARLY_WORSE * f64::from(drawn.loss), "{} {}", segments.loss, drawn.loss);
     let [object] = &drawn.scene.objects[..] else { panic!("{:?}", drawn.scene) };
     assert!(object.shape.efd().is_none(), "{object:?}");
 }

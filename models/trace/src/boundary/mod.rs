@@ -17,7 +17,7 @@ use crate::partition::Partition;
 use crate::sample::Sample;
 use crate::tuning;
 
-pub use profile::{stained, wobble};
+pub use profile::{blur, stained, wobble};
 
 /// A step along the boundary of a face.
 #[derive(Clone, Copy, Debug, PartialEq)]

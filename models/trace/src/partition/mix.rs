@@ -34,6 +34,9 @@ pub(super) struct Mixture {
     pub(super) misfit: f64,
 }
 
+/// Of more colors no three are tried: among so many some explain any pixel, and it takes the third power of their number.
+const MOST_OF_THREE: usize = 16;
+
 /// How far (pixels) from a mixed pixel the colors that it is made of are looked for; and again where these do not explain it, since
 /// coders stain further, and blur further still.
 const REACH: [usize; 3] = [2, tuning::CODED_REACH, tuning::SOFT_REACH];
@@ -182,7 +185,7 @@ pub(super) fn best_mixture(pixel: Color, colors: &[u16], palette: &[Color]) -> O
             }
         }
     }
-    if colors.len() > 2 && best.misfit > tuning::LEAST_CONTRAST / 2.0 {
+    if (3..=MOST_OF_THREE).contains(&colors.len()) && best.misfit > tuning::LEAST_CONTRAST / 2.0 {
         for (k, &a) in colors.iter().enumerate() {
             for (l, &b) in colors[..k].iter().enumerate() {
                 for &c in &colors[..l] {

@@ -1,0 +1,122 @@
+//! Pictures that had noise, a blur or a filter after they were drawn are read as what they were before.
+
+use dvp_core::shape::Ellipse;
+
+use super::*;
+
+/// A disk, an upright rectangle and an ellipse that is turned.
+fn drawn() -> Scene<f32> {
+    let ellipse = AnyShape::Ellipse(Ellipse { radii: [17.0, 9.0] });
+    scene(
+        [0.9, 0.9, 0.8],
+        vec![
+            object(circle(17.3), [27.2, 30.6], 0.0, RED),
+            object(rectangle(30.0, 22.0), [70.0, 25.0], 0.0, BLUE),
+            object(ellipse, [55.0, 70.0], 0.5, [0.1, 0.5, 0.2]),
+        ],
+    )
+}
+
+/// The picture after every row and column went through a filter, weights from the middle outward; rounded to 8 bits.
+fn filtered(picture: &Image<f32>, weights: &[f32]) -> Image<f32> {
+    let mut data = picture.data().to_vec();
+    for step in [1, SIZE] {
+        let before = data.clone();
+        for (i, value) in data.iter_mut().enumerate() {
+            let place = i / step % SIZE;
+            let at = |offset: isize| before[i - place * step + place.saturating_add_signed(offset).min(SIZE - 1) * step];
+            let beside = |k: usize| at(k as isize) + at(-(k as isize));
+            *value = weights[0] * at(0) + (1..weights.len()).map(|k| weights[k] * beside(k)).sum::<f32>();
+        }
+    }
+    let rounded = data.into_iter().map(|value| (value.clamp(0.0, 1.0) * 255.0).round() / 255.0);
+    Image::from_planar(size(), rounded.collect()).unwrap()
+}
+
+/// A Gaussian blur of some standard deviation, pixels.
+fn blurred(picture: &Image<f32>, deviation: f32) -> Image<f32> {
+    let weights: Vec<f32> = (0..=12).map(|k| (-0.5 * (k as f32 / deviation).powi(2)).exp()).collect();
+    let sum = 2.0 * weights.iter().sum::<f32>() - weights[0];
+    filtered(picture, &weights.iter().map(|weight| weight / sum).collect::<Vec<f32>>())
+}
+
+/// The same with noise of some standard deviation: sums of twelve even numbers, of a generator with Knuth's constants.
+fn noisy(picture: &Image<f32>, deviation: f32) -> Image<f32> {
+    let mut state = 9_u64;
+    let mut even = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 40) as f32 / (1u64 << 24) as f32
+    };
+    let mut add = |value: f32| {
+        let noise = (0..12).map(|_| even()).sum::<f32>() - 6.0;
+        ((value + deviation * noise).clamp(0.0, 1.0) * 255.0).round() / 255.0
+    };
+    Image::from_planar(size(), picture.data().iter().map(|&value| add(value)).collect()).unwrap()
+}
+
+/// That the three shapes are found, `off` pixels off at most, and their colors.
+fn assert_found(picture: &Image<f32>, off: f64, of_color: f32) {
+    let traced = trace(&picture.view(), &Known::default().with_spoiled(true)).unwrap();
+    let found = &traced.scene.objects;
+    assert_eq!(found.len(), 3, "{found:?}");
+    let mut kinds = [0; 3];
+    for object in found {
+        let near = |truth: &&Object<f32>| {
+            let [x, y] = [0, 1].map(|k| truth.pose.translation[k] - object.pose.translation[k]);
+            f64::from(x.hypot(y)) * (SIZE as f64) < off
+        };
+        let truth = drawn();
+        let truth = truth.objects.iter().find(near).expect("an object at its place");
+        let (sizes, kind) = match &object.shape {
+            AnyShape::Circle(circle) => ([circle.radius, 17.3 / SIZE as f32], 0),
+            AnyShape::Rectangle(rectangle) => ([rectangle.size[0] * rectangle.size[1], 660.0 / (SIZE * SIZE) as f32], 1),
+            AnyShape::Ellipse(ellipse) => ([ellipse.radii[0] * ellipse.radii[1], 153.0 / (SIZE * SIZE) as f32], 2),
+            shape => panic!("{shape:?}"),
+        };
+        kinds[kind] += 1;
+        assert!((sizes[0] / sizes[1] - 1.0).abs() < 0.1 * off as f32, "{sizes:?}");
+        for (a, b) in object.color().into_iter().zip(truth.color()) {
+            assert!((a - b).abs() < of_color, "{a} instead of {b}");
+        }
+    }
+    assert_eq!(kinds, [1; 3]);
+}
+
+#[test]
+fn noise_is_averaged_away() {
+    for deviation in [0.02, 0.05, 0.1] {
+        let picture = noisy(&paint(&drawn()), deviation);
+        assert!(matches!(trace(&picture.view(), &Known::default()), Err(NoDrawing::Partition(_))));
+        assert_found(&picture, 3.0 * f64::from(deviation) + 0.05, 0.01 + 0.1 * deviation);
+    }
+}
+
+#[test]
+fn a_blur_is_taken_off_and_told() {
+    for deviation in [0.6, 1.0, 2.0] {
+        let picture = blurred(&paint(&drawn()), deviation);
+        assert_found(&picture, 0.1, 0.004);
+        let traced = trace(&picture.view(), &Known::default().with_spoiled(true)).unwrap();
+        assert!((traced.blur / f64::from(deviation) - 1.0).abs() < 0.1, "{} instead of {deviation}", traced.blur);
+    }
+}
+
+#[test]
+fn a_clean_picture_has_no_blur() {
+    let traced = trace(&paint(&drawn()).view(), &Known::default().with_spoiled(true)).unwrap();
+    assert!(traced.blur < 0.05, "{}", traced.blur);
+}
+
+#[test]
+fn noise_on_a_blur_is_both() {
+    assert_found(&noisy(&blurred(&paint(&drawn()), 0.8), 0.02), 0.15, 0.01);
+}
+
+#[test]
+fn ringing_is_no_thing() {
+    // A filter that sharpens leaves rims of up to a fifth of the contrast.
+    let picture = filtered(&paint(&drawn()), &[1.3, -0.15, 0.0]);
+    let traced = trace(&picture.view(), &Known::default()).unwrap();
+    assert_eq!(traced.scene.objects.len(), 3, "{:?}", traced.scene.objects);
+    assert_found(&picture, 0.1, 0.02);
+}
