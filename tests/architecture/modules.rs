@@ -1,5 +1,5 @@
-//! Inside crates. Core: `real, dims, simd, sort, optim -> geometry, diff_op -> tensor, image -> contour -> shape -> scene -> render, matching -> loss
-//! -> metric`. Trace: `tuning -> ruler, sample -> outline -> stroke -> partition -> boundary -> layers -> ties -> scene`.
+//! Inside crates. Core: `real, dims, simd, optim -> sort -> geometry, diff_op -> tensor, image -> contour -> shape -> scene -> render, matching -> loss
+//! -> metric`. Trace: `tuning -> noise, ruler, sample -> outline -> stroke -> partition -> boundary -> layers -> ties -> scene`.
 
 use crate::source::{code_lines, rust_sources};
 
@@ -7,7 +7,8 @@ use crate::source::{code_lines, rust_sources};
 type Order = &'static [&'static [&'static str]];
 
 const CORE: Order = &[
-    &["real", "dims", "simd", "sort", "optim"],
+    &["real", "dims", "simd", "optim"],
+    &["sort"],
     &["geometry", "diff_op"],
     &["tensor", "image"],
     &["contour"],

@@ -17,6 +17,7 @@ from PIL import Image
 
 import charts
 import measure
+from spoiled import spoiled
 
 # Seed and number of the generated scenes. Nobody debugs on them: whoever wants pictures to look at takes another seed (--seed).
 FRESH_SEED = 915_402_117
@@ -51,8 +52,8 @@ class Place:
         """Where the scenes of a set go."""
         return self.work / "out" / name.replace(" ", "_").replace(",", "")
 
-    def fit(self, name, paths, options=()):
-        """Fits pictures to a folder, one thread: the folder, and figures by picture.
+    def fit(self, name, paths, options=(), drawn=False):
+        """Fits pictures to a folder, one thread: the folder, and figures by picture. `drawn`: with their SVG.
 
         A hash of the pictures tells whether two records are about the same ones.
         """
@@ -64,7 +65,7 @@ class Place:
             digest.update(pathlib.Path(path).read_bytes())
         self.hashes[name] = digest.hexdigest()[:16]
         print(f"{name}: {len(paths)} files", file=sys.stderr, flush=True)
-        command = [self.dvp, "fit", *map(str, paths), "--out", out, "--threads", "1", "--no-png", "--no-svg", "--json",
+        command = [self.dvp, "fit", *map(str, paths), "--out", out, "--threads", "1", "--no-png", *([] if drawn else ["--no-svg"]), "--json",
                    "--table", out / "table.csv", *options]
         done = subprocess.run(command, capture_output=True, text=True, env=self.env)
         try:
@@ -295,4 +296,4 @@ def read_whole(path, side, count):
     return wide.reshape(wide.shape[0], count, side).transpose(1, 0, 2)
 
 
-ALL = dict(val=val, fresh=fresh, pictures=pictures, holes=holes, circles=circles, charts=chart_sets, real=real)
+ALL = dict(val=val, fresh=fresh, pictures=pictures, holes=holes, circles=circles, charts=chart_sets, real=real, spoiled=spoiled)

@@ -72,6 +72,8 @@ pub struct Traced {
     /// Share of the pixels just beyond edges that still show the other side, [0, 1]: near 0 if edges are of area coverage, as the
     /// drawing's are.
     pub stained: f64,
+    /// Whether it was read as changed by a coder of photographs: known to be, or since its edges ring.
+    pub coded: bool,
     /// Standard deviation of the blur that its edges show, pixels; looked for in spoiled pictures only, else 0.
     pub blur: f64,
 }
@@ -212,8 +214,9 @@ fn draw(read: Read, size: ImageSize, known: &Known) -> Result<Traced, NoDrawing>
     }
     let bits = layers.bits();
     let (scene, covariances) = scene::scene(&layers, size, known.matte.is_some(), partition.is_hard);
-    let blur = if known.spoiled || partition.coded { boundary::blur(&partition, &rings) } else { 0.0 };
-    Ok(Traced { scene, covariances, bits, stained, blur })
+    // What a coder leaves beside edges looks like blur.
+    let blur = if known.spoiled && !known.coded { boundary::blur(&partition, &rings) } else { 0.0 };
+    Ok(Traced { scene, covariances, bits, stained, coded: partition.coded, blur })
 }
 
 /// Whether edges have another profile than area coverage: wider, or steeper with stains beyond.

@@ -1,8 +1,8 @@
 //! A picture to its scene, whatever kind of picture it is: the one entry for programs that embed the fit.
 //!
-//! Two fits share the work. [`dvp_trace`] reads drawings: flat colors with clear edges. [`Fitter`] reads everything else: soft,
-//! noisy and coded pictures, and those whose shapes are known. [`fit_picture`] decides which one a picture takes, and cuts the
-//! openings out of transparent ones.
+//! Two fits share the work. [`dvp_trace`] reads drawings: flat colors with clear edges, and what noise, blur and coders left of such. [`Fitter`]
+//! reads everything else: scenes of the paper's renderer, pictures that are not flat, and those whose shapes are known. [`fit_picture`] decides
+//! which one a picture takes, and cuts the openings out of transparent ones.
 //!
 //! | file | holds |
 //! |---|---|
@@ -26,13 +26,13 @@ use alloc::vec::Vec;
 use core::cmp::Ordering;
 
 use dvp_core::loss::{ImagePair, Loss as _};
-use dvp_core::render::{EdgeLaw, EdgeProfile, PixelLoss};
+use dvp_core::render::{Compositing, EdgeLaw, EdgeProfile, PixelLoss};
 use dvp_core::{ImageView, Real as _, Scene};
 use dvp_trace::{NoDrawing, PoseCovariance, Traced};
 
 use crate::paint::Canvas;
 use crate::prototypes::Decoder;
-use crate::tuning::{MISSED_SHARE, NOT_FLAT_SHARE};
+use crate::tuning::NOT_FLAT_SHARE;
 use crate::{Ambiguity, Fit, FitError, FitOptions, FitScratch, Fitter, StopReason};
 
 pub use dvp_trace::Known;
@@ -43,7 +43,9 @@ use most::at_most;
 
 /// Where two fits are of different kinds, the likelier one is taken, unless it misses the picture by so many times as much as the other one:
 /// ringing is read as faces, which come nearer to it but are none, and outlines that are free come nearer than shapes that are known.
-const CLEARLY_WORSE: f64 = 2.0;
+const CLEARLY_WORSE: f32 = 2.0;
+/// The same in noise, whose own mean is known to half a percent of it at 64 x 64 pixels.
+const CLEARLY_WORSE_IN_NOISE: f32 = 1.02;
 /// Pictures of more things are no scenes of the paper's renderer, whatever their edges are: segments, which take long for many, are not asked for.
 const FEW: usize = 16;
 /// Noise of rounding to 8 bits, and as much again.
@@ -63,8 +65,8 @@ pub struct PictureScratch {
 
 /// The scene of a picture, with the openings of a transparent one cut out.
 ///
-/// The picture is taken as a drawing if it is one (flat colors with clear edges), else as segments; where edges leave a doubt as what
-/// their profile says. If the options of `fitter` know the shapes, these are laid on it, unless a drawing without them is much nearer; if they
+/// The picture is taken as a drawing if it is one (flat colors with clear edges), or was one before it got noise, a blur, or what coders and
+/// filters leave; else as segments; where edges leave a doubt as what their profile says. If the options of `fitter` know the shapes, these are laid on it, unless a drawing without them is much nearer; if they
 /// say how objects mix, it is taken as segments.
 ///
 /// A transparent picture comes over its matte ([`Ground`]), and [`Known::matte`] says which color that is; of an opaque one it
@@ -122,32 +124,83 @@ fn drawing_or_segments(
     if let Some(bank) = &options.bank {
         return bank::fit(fitter, bank, image, known, scratch);
     }
-    let spoiled = || dvp_trace::trace(&image, &known.with_spoiled(true));
-    let traced = match dvp_trace::trace(&image, known) {
-        Ok(traced) if !leaves_doubt(&traced) => return drawn(traced, image, scratch),
-        Ok(traced) if !known.coded => spoiled().or(Ok(traced)),
-        // The paper's renderer has edges of its own, and few things.
-        Err(NoDrawing::Soft { faces, .. }) if faces <= FEW => {
-            let segments = fitter.fit(image, &mut scratch.fit)?;
-            if is_of_renderer(&segments) {
-                return Ok(segments);
-            }
-            return match spoiled() {
-                Ok(traced) => likeliest(segments, traced, image, scratch),
-                Err(_) => Ok(segments),
-            };
-        }
-        Err(_) if !known.coded => spoiled(),
-        traced => traced,
-    };
-    match traced {
-        Ok(traced) if traced.scene.objects.len() > FEW => drawn(traced, image, scratch),
-        Ok(traced) => {
-            let segments = fitter.fit(image, &mut scratch.fit)?;
-            if is_of_renderer(&segments) { Ok(segments) } else { likeliest(segments, traced, image, scratch) }
-        }
-        Err(_) => fitter.fit(image, &mut scratch.fit),
+    match dvp_trace::trace(&image, known) {
+        Ok(traced) => drawing(fitter, traced, image, known, scratch),
+        Err(reason) => spoiled_or_segments(fitter, &reason, image, known, scratch),
     }
+}
+
+/// The picture as it was before it was spoiled; none if a coder has spoiled it, which is known then, or if it was no drawing.
+fn unspoiled(image: ImageView<'_, f32>, known: &Known) -> Option<Traced> {
+    if known.coded { None } else { dvp_trace::trace(&image, &known.with_spoiled(true)).ok() }
+}
+
+/// The fit of a drawing, or of segments where edges leave a doubt and those are likelier.
+fn drawing(
+    fitter: &Fitter<f32>,
+    traced: Traced,
+    image: ImageView<'_, f32>,
+    known: &Known,
+    scratch: &mut PictureScratch,
+) -> Result<Fit<f32>, FitError> {
+    let is_doubtful = leaves_doubt(&traced);
+    if !is_doubtful || traced.scene.objects.len() > FEW {
+        let again = if is_doubtful { unspoiled(image, known) } else { None };
+        return many(fitter, again.unwrap_or(traced), image, scratch);
+    }
+    let segments = fitter.fit(image, &mut scratch.fit)?;
+    // Edges that are wide were not read as such; what a coder leaves beside them looks like it.
+    let may_be_wide = !traced.coded || segments.scene.edge.law != EdgeLaw::Area;
+    let again = if may_be_wide { unspoiled(image, known) } else { None };
+    Ok(likeliest(segments, drawn(again.unwrap_or(traced), image, scratch)?, CLEARLY_WORSE))
+}
+
+/// The fit of a picture that is no drawing as it is: of what it was before it was spoiled, or of segments.
+fn spoiled_or_segments(
+    fitter: &Fitter<f32>,
+    reason: &NoDrawing,
+    image: ImageView<'_, f32>,
+    known: &Known,
+    scratch: &mut PictureScratch,
+) -> Result<Fit<f32>, FitError> {
+    // The paper's renderer has edges of its own, and few things.
+    let traced = match reason {
+        NoDrawing::Soft { faces, .. } if *faces <= FEW => None,
+        _ => Some(unspoiled(image, known)),
+    };
+    if let Some(Some(traced)) = &traced
+        && traced.scene.objects.len() > FEW
+    {
+        return many(fitter, traced.clone(), image, scratch);
+    }
+    let segments = fitter.fit(image, &mut scratch.fit)?;
+    if is_of_renderer(&segments, reason) {
+        return Ok(segments);
+    }
+    let Some(traced) = traced.unwrap_or_else(|| unspoiled(image, known)) else { return Ok(segments) };
+    let drawn = drawn(traced, image, scratch)?;
+    // What both leave of a noisy picture is its noise for the most part.
+    let factor = if drawn.noise > ROUNDED { CLEARLY_WORSE_IN_NOISE } else { CLEARLY_WORSE };
+    Ok(likeliest(segments, drawn, factor))
+}
+
+/// The fit of a drawing of many things, or without a doubt; if it leaves much of the picture, which is not flat then,
+/// the nearer one of it and of segments.
+fn many(
+    fitter: &Fitter<f32>,
+    traced: Traced,
+    image: ImageView<'_, f32>,
+    scratch: &mut PictureScratch,
+) -> Result<Fit<f32>, FitError> {
+    let drawn = drawn(traced, image, scratch)?;
+    if drawn.unexplained <= NOT_FLAT_SHARE {
+        return Ok(drawn);
+    }
+    let segments = fitter.fit(image, &mut scratch.fit)?;
+    if segments.unexplained > NOT_FLAT_SHARE {
+        return Ok(if drawn.loss < segments.loss { drawn } else { segments });
+    }
+    Ok(likeliest(segments, drawn, CLEARLY_WORSE))
 }
 
 /// The fit of a drawing, with the blur of the picture if that brings it nearer.
@@ -172,41 +225,37 @@ fn drawn(traced: Traced, image: ImageView<'_, f32>, scratch: &mut PictureScratch
     Ok(Fit { bits, stop: StopReason::Converged, covariance, ambiguity, ..best })
 }
 
-/// Whether segments explain a picture with the edges of the paper's renderer, which no drawing has.
-fn is_of_renderer(segments: &Fit<f32>) -> bool {
-    segments.scene.edge.law == EdgeLaw::SquaredDistance && segments.unexplained <= NOT_FLAT_SHARE
+/// Whether segments explain a picture as the paper's renderer paints, which no drawing is: by its edges, or by edges that are soft without a blur
+/// and colors that mix.
+fn is_of_renderer(segments: &Fit<f32>, reason: &NoDrawing) -> bool {
+    let is_like_it = match segments.scene.edge.law {
+        EdgeLaw::SquaredDistance => true,
+        EdgeLaw::Area => matches!(reason, NoDrawing::Soft { .. }) && segments.scene.compositing == Compositing::Blend,
+        EdgeLaw::Distance => false,
+    };
+    is_like_it && segments.unexplained <= NOT_FLAT_SHARE
 }
 
 /// Of segments and a drawing the one that the picture is. Segments measure the profile of all edges at once: drawings have that of area coverage, or a
 /// blur; the paper's renderer has its own. Ringing hides it, but makes things of its own, and a scene is not more than it needs to be; of as many
-/// things the nearer ones.
-fn likeliest(
-    segments: Fit<f32>,
-    traced: Traced,
-    image: ImageView<'_, f32>,
-    scratch: &mut PictureScratch,
-) -> Result<Fit<f32>, FitError> {
-    let drawn = drawn(traced, image, scratch)?;
-    // What is left of a noisy picture is noise; where next to nothing else is, it says nothing.
-    let is_noisy = drawn.noise > ROUNDED;
-    let misses = |fit: &Fit<f32>| if is_noisy { fit.unexplained.max(MISSED_SHARE) } else { f64::from(fit.loss) };
-    let [of_drawing, of_segments] = [&drawn, &segments].map(misses);
+/// things the nearer ones, `factor` saying what is clearly worse.
+fn likeliest(segments: Fit<f32>, drawn: Fit<f32>, factor: f32) -> Fit<f32> {
     let fewer = match drawn.scene.objects.len().cmp(&segments.scene.objects.len()) {
         Ordering::Less => true,
-        Ordering::Equal => of_drawing <= of_segments,
+        Ordering::Equal => drawn.loss <= segments.loss,
         Ordering::Greater => false,
     };
     let is_drawing = if segments.scene.edge.law != EdgeLaw::SquaredDistance && fewer {
-        of_drawing <= CLEARLY_WORSE * of_segments
+        drawn.loss <= factor * segments.loss
     } else {
-        CLEARLY_WORSE * of_drawing < of_segments
+        factor * drawn.loss < segments.loss
     };
-    Ok(if is_drawing { drawn } else { segments })
+    if is_drawing { drawn } else { segments }
 }
 
 /// The first of two fits, or the second if that is much nearer.
 fn likelier(first: Fit<f32>, second: Fit<f32>) -> Fit<f32> {
-    if CLEARLY_WORSE * f64::from(second.loss) < f64::from(first.loss) { second } else { first }
+    if CLEARLY_WORSE * second.loss < first.loss { second } else { first }
 }
 
 /// Whether edges leave a doubt that a picture is a drawing. Stains of either sign: blur and profiles of their own leave too much of the other

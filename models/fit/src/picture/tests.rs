@@ -153,7 +153,7 @@ fn a_doubt_about_edges_is_decided_by_the_profile_of_them_all() {
     let segments = crate::fit_image(image.view(), &FitOptions::default()).unwrap();
     assert_eq!((segments.scene.edge.law, segments.scene.objects.len()), (EdgeLaw::Area, 2));
     let drawn = fit(&image, &Known::default(), FitOptions::default());
-    assert!(f64::from(segments.loss) < CLEARLY_WORSE * f64::from(drawn.loss), "{} {}", segments.loss, drawn.loss);
+    assert!(segments.loss < CLEARLY_WORSE * drawn.loss, "{} {}", segments.loss, drawn.loss);
     let [object] = &drawn.scene.objects[..] else { panic!("{:?}", drawn.scene) };
     assert!(object.shape.efd().is_none(), "{object:?}");
 }

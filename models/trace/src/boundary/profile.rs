@@ -63,8 +63,7 @@ pub fn blur(partition: &Partition, rings: &[Vec<Ring>]) -> f64 {
         for (side, [x, y]) in step.crack.sides().into_iter().enumerate() {
             let outward = if side == 0 { across } else { across * -1.0 };
             for k in 0..=tuning::SOFT_REACH as isize {
-                let at =
-                    [x.wrapping_add_signed(k * outward.x as isize), y.wrapping_add_signed(k * outward.y as isize)];
+                let at = [x.wrapping_add_signed(k * outward.x as isize), y.wrapping_add_signed(k * outward.y as isize)];
                 if partition.face_at(at) != [step.inner, step.other][side] {
                     break;
                 }

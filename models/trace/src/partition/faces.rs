@@ -8,10 +8,10 @@ use num_traits::Float as _;
 
 use dvp_core::geometry::DisjointSets;
 
-use super::{Partition, Reading};
 use super::flat::{NONE, index};
 use super::mix::{Mixed, best_mixture};
 use super::runs::renumber;
+use super::{Partition, Reading};
 use crate::tuning;
 
 /// A connected part of the picture of one color.

@@ -6,8 +6,8 @@ use core::ops::Range;
 
 use dvp_core::geometry::DisjointSets;
 
-use super::{NoPartition, Reading};
 use super::runs::{renumber, runs};
+use super::{NoPartition, Reading};
 use crate::tuning;
 
 /// How far pixels of one color differ.
@@ -47,7 +47,13 @@ impl Noise {
     /// Of a picture that is read in some way.
     pub(super) fn of(pixels: &[[f32; 3]], size: [usize; 2], reading: Reading) -> Result<Self, NoPartition> {
         let Reading { coded, noise, soft } = reading;
-        let reaches = if soft { 3 } else if coded { 2 } else { 1 };
+        let reaches = if soft {
+            3
+        } else if coded {
+            2
+        } else {
+            1
+        };
         if coded {
             return Ok(Self {
                 flat: tuning::CODED_STEP,

@@ -360,7 +360,9 @@ fn profiled(center: [f64; 2], radius: f64, coverage: impl Fn(f64) -> f64) -> Ima
 }
 
 fn wobble(picture: &Image<f32>) -> Option<f64> {
-    crate::boundary::wobble(&crate::boundary::rings(&crate::partition::Partition::of(&picture.view(), crate::partition::Reading::default()).unwrap()))
+    crate::boundary::wobble(&crate::boundary::rings(
+        &crate::partition::Partition::of(&picture.view(), crate::partition::Reading::default()).unwrap(),
+    ))
 }
 
 proptest! {
