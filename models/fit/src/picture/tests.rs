@@ -6,6 +6,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use dvp_core::render::Compositing;
+use dvp_core::shape::{AnyShape, Circle, Rectangle};
 use dvp_core::{Efd, Image, ImageSize, Object, Pose, Scene};
 
 use super::*;
@@ -156,4 +157,57 @@ fn a_doubt_about_edges_is_decided_by_the_profile_of_them_all() {
     assert!(segments.loss < CLEARLY_WORSE * drawn.loss, "{} {}", segments.loss, drawn.loss);
     let [object] = &drawn.scene.objects[..] else { panic!("{:?}", drawn.scene) };
     assert!(object.shape.efd().is_none(), "{object:?}");
+}
+
+/// A disk of radius 22 and a rectangle of 30 by 40 pixels, in 96 x 96, with edges of some profile.
+fn disk_and_rectangle(edge: EdgeProfile<f32>) -> Image<f32> {
+    let object = |shape, x: f32, color| {
+        let pose = Pose { translation: [x / 96.0, 0.5], scale: 1.0, rotation: 0.0 };
+        Object { shape, pose, paint: color, confidence: 1.0 }
+    };
+    let disk = AnyShape::Circle(Circle { radius: 22.0 / 96.0 });
+    let rectangle = AnyShape::Rectangle(Rectangle { size: [30.0 / 96.0, 40.0 / 96.0], corner_radius: 0.0 });
+    let objects = vec![object(disk, 25.3, [0.1, 0.4, 0.2].into()), object(rectangle, 72.0, [0.7, 0.2, 0.3].into())];
+    let scene = Scene { edge, compositing: Compositing::Over, objects, ..Scene::empty([0.9, 0.9, 0.8]) };
+    Canvas::default().paint(&scene, ImageSize::new(96, 96).unwrap()).unwrap().0.clone()
+}
+
+fn assert_disk_and_rectangle(fit: &Fit<f32>) {
+    let [one, other] = &fit.scene.objects[..] else { panic!("{:?}", fit.scene.objects) };
+    let kinds = [one, other].map(|object| match object.shape {
+        AnyShape::Circle(_) => 1,
+        AnyShape::Rectangle(_) => 2,
+        _ => 0,
+    });
+    assert!(kinds == [1, 2] || kinds == [2, 1], "{:?}", fit.scene.objects);
+}
+
+#[test]
+fn a_drawing_under_a_blur_is_a_drawing_and_the_blur_is_told() {
+    // A logistic curve whose scale is 0.7 px: a blur of 1.27 px.
+    let image = disk_and_rectangle(EdgeProfile::distance(1.4 / 96.0));
+    assert!(dvp_trace::trace(&image.view(), &Known::default()).is_err());
+    let found = fit(&image, &Known::default(), FitOptions::default());
+    assert_disk_and_rectangle(&found);
+    assert_eq!(found.scene.edge.law, EdgeLaw::Distance);
+    assert!((found.scene.edge.sigma * 96.0 / 1.4 - 1.0).abs() < 0.15, "{}", found.scene.edge.sigma * 96.0);
+    assert!(found.loss < 2e-3, "{}", found.loss);
+}
+
+#[test]
+fn a_drawing_under_noise_is_a_drawing() {
+    let mut image = disk_and_rectangle(EdgeProfile::area());
+    let mut state = 5_u64;
+    for value in image.data_mut() {
+        // The sum of four even numbers, of a generator with Knuth's constants: a standard deviation of 0.03.
+        let mut even = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 40) as f32 / (1_u64 << 24) as f32 - 0.5
+        };
+        *value += 0.03 * 3.0_f32.sqrt() * (0..4).map(|_| even()).sum::<f32>();
+    }
+    assert!(dvp_trace::trace(&image.view(), &Known::default()).is_err());
+    let found = fit(&image, &Known::default(), FitOptions::default());
+    assert_disk_and_rectangle(&found);
+    assert!((found.noise / 0.03 - 1.0).abs() < 0.1, "{}", found.noise);
 }
