@@ -138,6 +138,7 @@ impl Known {
 ///
 /// # Errors
 /// [`NoDrawing`] if the picture is no drawing of flat colors, or, unless it may be spoiled, has noise or soft edges.
+#[inline(never)]
 pub fn trace(image: &ImageView<'_, f32>, known: &Known) -> Result<Traced, NoDrawing> {
     let reading = Reading { coded: known.coded, soft: known.spoiled, ..Reading::default() };
     let read = match read(image, reading) {
@@ -161,6 +162,7 @@ struct Read {
 }
 
 /// Reads a picture; where edges ring, as changed by a coder if that makes fewer faces with shorter boundaries.
+#[inline(never)]
 fn read(image: &ImageView<'_, f32>, reading: Reading) -> Result<Read, NoPartition> {
     let of = |reading: Reading| {
         let (partition, faces) = Partition::readings(image, reading)?;
@@ -181,6 +183,7 @@ fn read(image: &ImageView<'_, f32>, reading: Reading) -> Result<Read, NoPartitio
 }
 
 /// The drawing of faces.
+#[inline(never)]
 fn draw(read: Read, size: ImageSize, known: &Known) -> Result<Traced, NoDrawing> {
     let Read { partition, faces, rings } = read;
     let stained = match partition.coded {

@@ -48,8 +48,13 @@ const CLEARLY_WORSE: f32 = 2.0;
 const CLEARLY_WORSE_IN_NOISE: f32 = 1.02;
 /// Pictures of more things are no scenes of the paper's renderer, whatever their edges are: segments, which take long for many, are not asked for.
 const FEW: usize = 16;
+/// Share of a picture of which a drawing that leaves more is none.
+const MOSTLY: f64 = 0.5;
 /// Noise of rounding to 8 bits, and as much again.
 const ROUNDED: f32 = 0.003;
+
+/// Softness of the logistic curve, a length in the doubled frame, over its standard deviation: 2 sqrt(3) / pi.
+const LOGISTIC: f64 = 1.102_657_790_843_584_2;
 
 /// Memory of [`fit_picture`], one per thread, kept between pictures.
 #[derive(Debug, Default)]
@@ -131,6 +136,7 @@ fn drawing_or_segments(
 }
 
 /// The picture as it was before it was spoiled; none if a coder has spoiled it, which is known then, or if it was no drawing.
+#[inline(never)]
 fn unspoiled(image: ImageView<'_, f32>, known: &Known) -> Option<Traced> {
     if known.coded { None } else { dvp_trace::trace(&image, &known.with_spoiled(true)).ok() }
 }
@@ -184,8 +190,9 @@ fn spoiled_or_segments(
     Ok(likeliest(segments, drawn, factor))
 }
 
-/// The fit of a drawing of many things, or without a doubt; if it leaves much of the picture, which is not flat then,
+/// The fit of a drawing of many things, or without a doubt; if it leaves most of the picture, which is not flat then,
 /// the nearer one of it and of segments.
+#[inline(never)]
 fn many(
     fitter: &Fitter<f32>,
     traced: Traced,
@@ -193,7 +200,7 @@ fn many(
     scratch: &mut PictureScratch,
 ) -> Result<Fit<f32>, FitError> {
     let drawn = drawn(traced, image, scratch)?;
-    if drawn.unexplained <= NOT_FLAT_SHARE {
+    if drawn.unexplained <= MOSTLY {
         return Ok(drawn);
     }
     let segments = fitter.fit(image, &mut scratch.fit)?;
@@ -204,13 +211,12 @@ fn many(
 }
 
 /// The fit of a drawing, with the blur of the picture if that brings it nearer.
+#[inline(never)]
 fn drawn(traced: Traced, image: ImageView<'_, f32>, scratch: &mut PictureScratch) -> Result<Fit<f32>, FitError> {
     let Traced { scene, covariances, bits, blur, .. } = traced;
     let (covariance, ambiguity) = doubt_of_poses(&covariances);
     let blurred = (blur > 0.0).then(|| {
-        // The logistic curve of the same standard deviation, in the doubled frame.
-        let sigma = 2.0 * blur * 3.0_f64.sqrt() / core::f64::consts::PI;
-        let edge = EdgeProfile::distance(f32::of(sigma) / f32::of_usize(image.size().unit_px()));
+        let edge = EdgeProfile::distance(f32::of(LOGISTIC * blur) / f32::of_usize(image.size().unit_px()));
         Scene { edge, ..scene.clone() }
     });
     let mut best: Option<Fit<f32>> = None;
@@ -240,9 +246,12 @@ fn is_of_renderer(segments: &Fit<f32>, reason: &NoDrawing) -> bool {
 /// blur; the paper's renderer has its own. Ringing hides it, but makes things of its own, and a scene is not more than it needs to be; of as many
 /// things the nearer ones, `factor` saying what is clearly worse.
 fn likeliest(segments: Fit<f32>, drawn: Fit<f32>, factor: f32) -> Fit<f32> {
+    // Under noise or a blur what follows it is nearer without being right.
+    let is_clear = segments.scene.edge.law == EdgeLaw::Area && factor >= CLEARLY_WORSE;
+    let as_many = if is_clear { 1.0 } else { factor };
     let fewer = match drawn.scene.objects.len().cmp(&segments.scene.objects.len()) {
         Ordering::Less => true,
-        Ordering::Equal => drawn.loss <= segments.loss,
+        Ordering::Equal => drawn.loss <= as_many * segments.loss,
         Ordering::Greater => false,
     };
     let is_drawing = if segments.scene.edge.law != EdgeLaw::SquaredDistance && fewer {

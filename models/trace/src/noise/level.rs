@@ -27,6 +27,7 @@ const TIE: f64 = 1e-5;
 /// picture without noise is 0. Black and white cut noise off: blocks that have neither tell more, if there are enough of
 /// them. Noise that only stands beside edges (of compression) is not seen.
 #[must_use]
+#[inline(never)]
 pub fn noise_level<T: Real>(image: &ImageView<'_, T>, differences: &mut Vec<T>) -> T {
     let (width, height) = (image.size().width(), image.size().height());
     let (columns, rows) = (width / 2, height / 2);

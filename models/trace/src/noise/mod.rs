@@ -44,6 +44,7 @@ pub fn denoise_twice<T: Real>(
 ///
 /// Noise is independent from pixel to pixel. What compression leaves beside edges is no such noise, and stays.
 #[must_use]
+#[inline(never)]
 pub fn denoised<T: Real>(image: ImageView<'_, T>) -> Option<Image<T>> {
     if !image.data().iter().all(|value| value.is_finite()) {
         return None;

@@ -4,6 +4,9 @@ use alloc::vec;
 use alloc::vec::Vec;
 use core::ops::Range;
 
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
+
 use dvp_core::geometry::DisjointSets;
 
 use super::runs::{renumber, runs};

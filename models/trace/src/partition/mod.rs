@@ -129,6 +129,7 @@ impl Partition {
     ///
     /// # Errors
     /// As [`Self::of`].
+    #[inline(never)]
     pub fn readings(image: &ImageView<'_, f32>, reading: Reading) -> Result<(Self, Option<Self>), NoPartition> {
         let size = [image.size().width(), image.size().height()];
         let [red, green, blue] = [0, 1, 2].map(|c| image.channel(c));
