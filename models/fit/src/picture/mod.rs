@@ -170,20 +170,19 @@ fn spoiled_or_segments(
     scratch: &mut PictureScratch,
 ) -> Result<Fit<f32>, FitError> {
     // The paper's renderer has edges of its own, and few things.
-    let traced = match reason {
-        NoDrawing::Soft { faces, .. } if *faces <= FEW => None,
-        _ => Some(unspoiled(image, known)),
-    };
-    if let Some(Some(traced)) = &traced
-        && traced.scene.objects.len() > FEW
-    {
-        return many(fitter, traced.clone(), image, scratch);
+    let is_few = matches!(reason, NoDrawing::Soft { faces, .. } if *faces <= FEW);
+    let mut traced = if is_few { None } else { unspoiled(image, known) };
+    if let Some(traced) = traced.take_if(|traced| traced.scene.objects.len() > FEW) {
+        return many(fitter, traced, image, scratch);
     }
     let segments = fitter.fit(image, &mut scratch.fit)?;
     if is_of_renderer(&segments, reason) {
         return Ok(segments);
     }
-    let Some(traced) = traced.unwrap_or_else(|| unspoiled(image, known)) else { return Ok(segments) };
+    if is_few {
+        traced = unspoiled(image, known);
+    }
+    let Some(traced) = traced else { return Ok(segments) };
     let drawn = drawn(traced, image, scratch)?;
     // What both leave of a noisy picture is its noise for the most part.
     let factor = if drawn.noise > ROUNDED { CLEARLY_WORSE_IN_NOISE } else { CLEARLY_WORSE };
@@ -245,6 +244,7 @@ fn is_of_renderer(segments: &Fit<f32>, reason: &NoDrawing) -> bool {
 /// Of segments and a drawing the one that the picture is. Segments measure the profile of all edges at once: drawings have that of area coverage, or a
 /// blur; the paper's renderer has its own. Ringing hides it, but makes things of its own, and a scene is not more than it needs to be; of as many
 /// things the nearer ones, `factor` saying what is clearly worse.
+#[inline(never)]
 fn likeliest(segments: Fit<f32>, drawn: Fit<f32>, factor: f32) -> Fit<f32> {
     // Under noise or a blur what follows it is nearer without being right.
     let is_clear = segments.scene.edge.law == EdgeLaw::Area && factor >= CLEARLY_WORSE;

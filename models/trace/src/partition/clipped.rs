@@ -3,8 +3,8 @@
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
-use core::f64::consts::{FRAC_1_SQRT_2, TAU};
-
+/// Steps of the midpoint rule on either side, out to six standard deviations.
+const STEPS: i32 = 64;
 /// Standard deviations of noise beyond which nothing is cut off.
 const REACH: f64 = 4.0;
 /// Halvings of the interval that a level is looked for in: to a millionth of the noise.
@@ -23,14 +23,16 @@ pub(super) fn level(mean: f64, noise: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// Mean of normal values around a level, cut off at 0 and 1.
+/// Mean of normal values around a level, cut off at 0 and 1: by the midpoint rule.
 fn clipped_mean(level: f64, noise: f64) -> f64 {
-    level + noise * (shortfall(level / noise) - shortfall((1.0 - level) / noise))
-}
-
-/// What cutting off at so many standard deviations below the mean adds to it: the integral of the normal distribution's tail.
-fn shortfall(sigmas: f64) -> f64 {
-    (-0.5 * sigmas * sigmas).exp() / TAU.sqrt() - sigmas * 0.5 * libm::erfc(sigmas * FRAC_1_SQRT_2)
+    let [mut sum, mut weights] = [0.0; 2];
+    for k in -STEPS..STEPS {
+        let sigmas = (f64::from(k) + 0.5) * (6.0 / f64::from(STEPS));
+        let weight = (-0.5 * sigmas * sigmas).exp();
+        sum += weight * (level + noise * sigmas).clamp(0.0, 1.0);
+        weights += weight;
+    }
+    sum / weights
 }
 
 #[cfg(test)]
@@ -39,22 +41,21 @@ mod tests {
 
     use super::*;
 
-    /// Mean of a normal distribution cut off at 0 and 1, by the midpoint rule.
-    fn by_sum(level: f64, noise: f64) -> f64 {
-        let sum = |f: &dyn Fn(f64) -> f64| -> f64 {
-            (0..4000)
-                .map(|k| (f64::from(k) + 0.5) / 250.0 - 8.0)
-                .map(|z| f(z) * (-0.5 * z * z).exp() / TAU.sqrt() / 250.0)
-                .sum()
+    /// Mean of a normal distribution cut off at 0 and 1, in closed form.
+    fn closed(level: f64, noise: f64) -> f64 {
+        // What cutting off at so many standard deviations below the mean adds to it.
+        let shortfall = |sigmas: f64| {
+            (-0.5 * sigmas * sigmas).exp() / core::f64::consts::TAU.sqrt()
+                - sigmas * 0.5 * libm::erfc(sigmas * core::f64::consts::FRAC_1_SQRT_2)
         };
-        sum(&|z| (level + noise * z).clamp(0.0, 1.0))
+        level + noise * (shortfall(level / noise) - shortfall((1.0 - level) / noise))
     }
 
     proptest! {
         #[test]
         fn levels_come_back(at in 0.0f64..=1.0, noise in 0.005f64..0.2) {
-            let mean = by_sum(at, noise);
-            prop_assert!((level(mean, noise) - at).abs() < 1e-4, "{} instead of {at}", level(mean, noise));
+            let mean = closed(at, noise);
+            prop_assert!((level(mean, noise) - at).abs() < 1e-2 * noise, "{} instead of {at}", level(mean, noise));
         }
     }
 }
