@@ -144,9 +144,7 @@ pub fn trace(image: &ImageView<'_, f32>, known: &Known) -> Result<Traced, NoDraw
     let read = match read(image, reading) {
         // What is no drawing as it is may be one under noise, or under what a coder left beside edges.
         Err(_) if known.spoiled && !known.coded => match noise::denoised(*image) {
-            Some(smooth) => {
-                read(&smooth.view(), Reading { noise: noise::noise_level(image, &mut Vec::new()), ..reading })
-            }
+            Some((smooth, noise)) => read(&smooth.view(), Reading { noise, ..reading }),
             None => read(image, reading.with_coded(true)),
         },
         read => read,
@@ -165,8 +163,15 @@ struct Read {
 #[inline(never)]
 fn read(image: &ImageView<'_, f32>, reading: Reading) -> Result<Read, NoPartition> {
     let of = |reading: Reading| {
-        let (partition, faces) = Partition::readings(image, reading)?;
-        let rings = boundary::rings(&partition);
+        let (mut partition, mut faces) = Partition::readings(image, reading)?;
+        let mut rings = boundary::rings(&partition);
+        // What a coder leaves beside edges looks like blur.
+        if reading.soft && !reading.coded {
+            let blur = boundary::blur(&partition, &rings);
+            partition.blur = blur;
+            faces.iter_mut().for_each(|faces| faces.blur = blur);
+            rings = boundary::rings(&partition);
+        }
         Ok(Read { partition, faces, rings })
     };
     let length = |read: &Read| read.rings.iter().flatten().map(|ring| ring.steps.len()).sum::<usize>() as f64;
@@ -186,15 +191,16 @@ fn read(image: &ImageView<'_, f32>, reading: Reading) -> Result<Read, NoPartitio
 #[inline(never)]
 fn draw(read: Read, size: ImageSize, known: &Known) -> Result<Traced, NoDrawing> {
     let Read { partition, faces, rings } = read;
-    let stained = match partition.coded {
+    let stained = match partition.reading.coded {
         // Coders stain what is beside an edge, whatever its profile is: in large pictures one of their own is seen as blur, small ones leave a doubt,
         // and so do those that only look as if there had been a coder.
         true if !known.coded || size.width().min(size.height()) < tuning::CODED_SMALL => tuning::UNKNOWN_STAINED,
         true => 0.0,
         false => boundary::stained(&partition, &rings).unwrap_or(tuning::UNKNOWN_STAINED),
     };
-    let wobble = if partition.coded || partition.is_hard { 0.0 } else { boundary::wobble(&rings).unwrap_or(0.0) };
-    if !known.spoiled && !partition.coded && !partition.is_hard && is_soft(stained, wobble) {
+    let wobble =
+        if partition.reading.coded || partition.is_hard { 0.0 } else { boundary::wobble(&rings).unwrap_or(0.0) };
+    if !known.spoiled && !partition.reading.coded && !partition.is_hard && is_soft(stained, wobble) {
         return Err(NoDrawing::Soft { stained, faces: partition.faces.len() });
     }
     // Renderers that count few places in each pixel are as steep as those with a profile of their own.
@@ -217,9 +223,8 @@ fn draw(read: Read, size: ImageSize, known: &Known) -> Result<Traced, NoDrawing>
     }
     let bits = layers.bits();
     let (scene, covariances) = scene::scene(&layers, size, known.matte.is_some(), partition.is_hard);
-    // What a coder leaves beside edges looks like blur.
     let blur = if known.spoiled && !known.coded { boundary::blur(&partition, &rings) } else { 0.0 };
-    Ok(Traced { scene, covariances, bits, stained, coded: partition.coded, blur })
+    Ok(Traced { scene, covariances, bits, stained, coded: partition.reading.coded, blur })
 }
 
 /// Whether edges have another profile than area coverage: wider, or steeper with stains beyond.

@@ -146,6 +146,9 @@ pub const BORDER_SIGMA: f64 = 0.1;
 
 /// By how much a curve may be longer than the walk along its samples, pixels: corners lie beyond the last samples beside them.
 pub const OUTLINE_SLACK: f64 = 6.0;
+/// Of more colors no three are tried for a pixel: among so many some explain any, and it takes the third power of their number (a flag as WebP, of 96
+/// colors: 17 s, without 6).
+pub const MOST_OF_THREE: usize = 16;
 /// How far from a pixel of a blurred edge its colors are looked for, and how far its window reaches, pixels: three standard deviations of a blur of
 /// two and a half pixels.
 pub const SOFT_REACH: usize = 8;

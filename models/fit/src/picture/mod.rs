@@ -28,7 +28,7 @@ use core::cmp::Ordering;
 use dvp_core::loss::{ImagePair, Loss as _};
 use dvp_core::render::{Compositing, EdgeLaw, EdgeProfile, PixelLoss};
 use dvp_core::{ImageView, Real as _, Scene};
-use dvp_trace::{NoDrawing, PoseCovariance, Traced};
+use dvp_trace::{NoDrawing, PoseCovariance, Traced, noise};
 
 use crate::paint::Canvas;
 use crate::prototypes::Decoder;
@@ -50,8 +50,6 @@ const CLEARLY_WORSE_IN_NOISE: f32 = 1.02;
 const FEW: usize = 16;
 /// Share of a picture of which a drawing that leaves more is none.
 const MOSTLY: f64 = 0.5;
-/// Noise of rounding to 8 bits, and as much again.
-const ROUNDED: f32 = 0.003;
 
 /// Softness of the logistic curve, a length in the doubled frame, over its standard deviation: 2 sqrt(3) / pi.
 const LOGISTIC: f64 = 1.102_657_790_843_584_2;
@@ -71,8 +69,8 @@ pub struct PictureScratch {
 /// The scene of a picture, with the openings of a transparent one cut out.
 ///
 /// The picture is taken as a drawing if it is one (flat colors with clear edges), or was one before it got noise, a blur, or what coders and
-/// filters leave; else as segments; where edges leave a doubt as what their profile says. If the options of `fitter` know the shapes, these are laid on it, unless a drawing without them is much nearer; if they
-/// say how objects mix, it is taken as segments.
+/// filters leave; else as segments; where edges leave a doubt as what their profile says. If the options of `fitter` know the shapes, these are
+/// laid on it, unless a drawing without them is much nearer; if they say how objects mix, it is taken as segments.
 ///
 /// A transparent picture comes over its matte ([`Ground`]), and [`Known::matte`] says which color that is; of an opaque one it
 /// is none.
@@ -152,7 +150,7 @@ fn drawing(
     let is_doubtful = leaves_doubt(&traced);
     if !is_doubtful || traced.scene.objects.len() > FEW {
         let again = if is_doubtful { unspoiled(image, known) } else { None };
-        return many(fitter, again.unwrap_or(traced), image, scratch);
+        return settled(fitter, again.unwrap_or(traced), image, scratch);
     }
     let segments = fitter.fit(image, &mut scratch.fit)?;
     // Edges that are wide were not read as such; what a coder leaves beside them looks like it.
@@ -173,26 +171,35 @@ fn spoiled_or_segments(
     let is_few = matches!(reason, NoDrawing::Soft { faces, .. } if *faces <= FEW);
     let mut traced = if is_few { None } else { unspoiled(image, known) };
     if let Some(traced) = traced.take_if(|traced| traced.scene.objects.len() > FEW) {
-        return many(fitter, traced, image, scratch);
+        return settled(fitter, traced, image, scratch);
     }
     let segments = fitter.fit(image, &mut scratch.fit)?;
-    if is_of_renderer(&segments, reason) {
-        return Ok(segments);
-    }
+    let is_of_renderer = is_of_renderer(&segments);
     if is_few {
+        if is_of_renderer {
+            return Ok(segments);
+        }
         traced = unspoiled(image, known);
     }
     let Some(traced) = traced else { return Ok(segments) };
     let drawn = drawn(traced, image, scratch)?;
-    // What both leave of a noisy picture is its noise for the most part.
-    let factor = if drawn.noise > ROUNDED { CLEARLY_WORSE_IN_NOISE } else { CLEARLY_WORSE };
-    Ok(likeliest(segments, drawn, factor))
+    if drawn.noise <= f32::of(noise::ROUNDED) {
+        return Ok(likeliest(segments, drawn, CLEARLY_WORSE));
+    }
+    // Noise hides the profile of edges: what looks like the paper's renderer is a drawing only if that is clearly nearer with as many things. What both
+    // leave of a noisy picture is its noise for the most part.
+    if is_of_renderer {
+        let is_nearer = CLEARLY_WORSE_IN_NOISE * drawn.loss < segments.loss;
+        let are_as_many = drawn.scene.objects.len() == segments.scene.objects.len();
+        return Ok(if is_nearer && are_as_many { drawn } else { segments });
+    }
+    Ok(likeliest(segments, drawn, CLEARLY_WORSE_IN_NOISE))
 }
 
 /// The fit of a drawing of many things, or without a doubt; if it leaves most of the picture, which is not flat then,
 /// the nearer one of it and of segments.
 #[inline(never)]
-fn many(
+fn settled(
     fitter: &Fitter<f32>,
     traced: Traced,
     image: ImageView<'_, f32>,
@@ -230,12 +237,11 @@ fn drawn(traced: Traced, image: ImageView<'_, f32>, scratch: &mut PictureScratch
     Ok(Fit { bits, stop: StopReason::Converged, covariance, ambiguity, ..best })
 }
 
-/// Whether segments explain a picture as the paper's renderer paints, which no drawing is: by its edges, or by edges that are soft without a blur
-/// and colors that mix.
-fn is_of_renderer(segments: &Fit<f32>, reason: &NoDrawing) -> bool {
+/// Whether segments explain a picture as the paper's renderer paints, which no drawing is: by its edges, or by colors that mix.
+fn is_of_renderer(segments: &Fit<f32>) -> bool {
     let is_like_it = match segments.scene.edge.law {
         EdgeLaw::SquaredDistance => true,
-        EdgeLaw::Area => matches!(reason, NoDrawing::Soft { .. }) && segments.scene.compositing == Compositing::Blend,
+        EdgeLaw::Area => segments.scene.compositing == Compositing::Blend,
         EdgeLaw::Distance => false,
     };
     is_like_it && segments.unexplained <= NOT_FLAT_SHARE

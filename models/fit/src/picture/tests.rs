@@ -193,3 +193,21 @@ fn a_drawing_under_a_blur_is_a_drawing_and_the_blur_is_told() {
     assert!((found.scene.edge.sigma * 96.0 / 1.4 - 1.0).abs() < 0.15, "{}", found.scene.edge.sigma * 96.0);
     assert!(found.loss < 2e-3, "{}", found.loss);
 }
+
+#[test]
+fn a_drawing_under_noise_is_a_drawing() {
+    let mut image = disk_and_rectangle(EdgeProfile::area());
+    let mut state = 5_u64;
+    for value in image.data_mut() {
+        // The sum of four even numbers, of a generator with Knuth's constants: a standard deviation of 0.03.
+        let mut even = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 40) as f32 / (1_u64 << 24) as f32 - 0.5
+        };
+        *value += 0.03 * 3.0_f32.sqrt() * (0..4).map(|_| even()).sum::<f32>();
+    }
+    assert!(dvp_trace::trace(&image.view(), &Known::default()).is_err());
+    let found = fit(&image, &Known::default(), FitOptions::default());
+    assert_disk_and_rectangle(&found);
+    assert!((found.noise / 0.03 - 1.0).abs() < 0.1, "{}", found.noise);
+}

@@ -40,7 +40,7 @@ pub(crate) struct EdgeSample<T> {
 }
 
 /// Noise of a pixel value that no outline explains, at least: rounding to 8 bits and the seams of the reference renderer.
-pub(crate) const PIXEL_NOISE: f64 = 0.003;
+pub(crate) const PIXEL_NOISE: f64 = dvp_trace::noise::ROUNDED;
 
 /// One object as the segmentation sees it.
 #[derive(Clone, Debug, Default)]

@@ -46,6 +46,7 @@ pub(super) fn read(partition: &Partition, ring: &mut Ring) {
         along = [along[0] + x - gone_x, along[1] + y - gone_y];
     }
     straighten(partition, ring);
+    unblur(partition, ring);
 }
 
 /// The mean position of the boundary across one crack; none where a third color shows in the window, or the border is met.
@@ -133,6 +134,31 @@ fn straighten(partition: &Partition, ring: &mut Ring) {
     }
     for (k, sample) in corrected {
         ring.steps[k].sample = Some(sample);
+    }
+}
+
+/// A blur moves a boundary that is bent inward: by half its variance times the change of the slope, which windows further along tell.
+fn unblur(partition: &Partition, ring: &mut Ring) {
+    if partition.blur <= 0.0 {
+        return;
+    }
+    // Far enough that what noise makes of the change of the slope is not more than the blur does.
+    let apart = (2.0 * partition.blur).ceil() as usize;
+    let far = |k: usize, ahead: bool| (0..apart).try_fold(k, |k, _| beside(ring, k, ahead));
+    let moved = |k: usize| {
+        let here = ring.steps[k].sample?;
+        // Where columns give way to rows the windows beyond are read for this alone.
+        let read = |k: usize| ring.steps[k].sample.or_else(|| sample(partition, &ring.steps[k]));
+        let at = |k: usize| Some((read(k)?.point - here.point).dot(here.axis));
+        let bend = at(far(k, false)?)? + at(far(k, true)?)?;
+        // At corners a boundary is not bent: it ends.
+        let bend = if bend.abs() < tuning::MOST_BEND * apart as f64 { bend } else { 0.0 };
+        let by = -0.5 * (partition.blur / apart as f64).powi(2) * bend;
+        Some(Sample { point: here.point + here.axis * by, ..here })
+    };
+    let moved: alloc::vec::Vec<_> = (0..ring.steps.len()).map(moved).collect();
+    for (step, moved) in ring.steps.iter_mut().zip(moved) {
+        step.sample = moved;
     }
 }
 

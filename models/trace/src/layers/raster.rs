@@ -62,7 +62,7 @@ pub(super) fn check(
                 continue;
             }
             // Where edges are hard, or a coder left some of its own, an outline may take a pixel beside them or leave it.
-            if (partition.is_hard || partition.coded) && is_at_edge(partition, [x, y]) {
+            if (partition.is_hard || partition.reading.coded) && is_at_edge(partition, [x, y]) {
                 continue;
             }
             if is_missed {

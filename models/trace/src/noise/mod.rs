@@ -5,7 +5,7 @@
 mod level;
 mod means;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 use alloc::vec::Vec;
 
@@ -17,7 +17,7 @@ pub use level::noise_level;
 pub use means::DenoiseScratch;
 
 /// Noise of rounding to 8 bits, and as much again: below it there is nothing to average away.
-const ROUNDED: f64 = 0.003;
+pub const ROUNDED: f64 = 0.003;
 
 /// Fills `smooth` (planar) with the picture, of which noise of standard deviation `noise` is averaged away; `first` becomes what
 /// neighborhoods are judged by.
@@ -39,13 +39,13 @@ pub fn denoise_twice<T: Real>(
     means::denoise(image, &guide, settings, scratch, smooth);
 }
 
-/// The picture with its noise averaged away where its edges stay (non-local means, twice), values in the unit of the picture; none if
-/// its noise is that of 8 bits or less, or it holds NaN or infinity.
+/// The picture with its noise averaged away where its edges stay (non-local means, twice), and the standard deviation of that noise, in the unit of
+/// the picture; none if its noise is that of 8 bits or less, or it holds NaN or infinity.
 ///
 /// Noise is independent from pixel to pixel. What compression leaves beside edges is no such noise, and stays.
 #[must_use]
 #[inline(never)]
-pub fn denoised<T: Real>(image: ImageView<'_, T>) -> Option<Image<T>> {
+pub fn denoised<T: Real>(image: ImageView<'_, T>) -> Option<(Image<T>, T)> {
     if !image.data().iter().all(|value| value.is_finite()) {
         return None;
     }
@@ -55,5 +55,5 @@ pub fn denoised<T: Real>(image: ImageView<'_, T>) -> Option<Image<T>> {
     }
     let (mut scratch, mut first, mut second) = (Default::default(), Vec::new(), Vec::new());
     denoise_twice(&image, noise, &mut scratch, &mut first, &mut second);
-    Image::from_planar(image.size(), second).ok()
+    Some((Image::from_planar(image.size(), second).ok()?, noise))
 }

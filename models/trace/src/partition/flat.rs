@@ -28,10 +28,8 @@ pub(super) struct Noise {
     pub(super) fewest: usize,
     /// Blocks that differ a little, per block that differs much: what is left beside edges. 0 where it was not counted.
     pub(super) ripple: f64,
-    /// Whether it is that of a coder.
-    pub(super) is_coded: bool,
-    /// How often colors are looked for around a pixel, further off each time.
-    pub(super) reaches: usize,
+    /// How the picture is read.
+    pub(super) reading: Reading,
 }
 
 /// Pixels in flat blocks, and the regions that these make.
@@ -49,14 +47,7 @@ pub(super) const NONE: u32 = u32::MAX;
 impl Noise {
     /// Of a picture that is read in some way.
     pub(super) fn of(pixels: &[[f32; 3]], size: [usize; 2], reading: Reading) -> Result<Self, NoPartition> {
-        let Reading { coded, noise, soft } = reading;
-        let reaches = if soft {
-            3
-        } else if coded {
-            2
-        } else {
-            1
-        };
+        let Reading { coded, noise, .. } = reading;
         if coded {
             return Ok(Self {
                 flat: tuning::CODED_STEP,
@@ -65,8 +56,7 @@ impl Noise {
                 contrast: tuning::CODED_CONTRAST,
                 fewest: tuning::CODED_THIN,
                 ripple: 0.0,
-                is_coded: true,
-                reaches,
+                reading,
             });
         }
         if noise > 0.0 {
@@ -78,8 +68,7 @@ impl Noise {
                 contrast: tuning::LEAST_CONTRAST.max(2.0 * f64::from(mixed)),
                 fewest: tuning::CODED_THIN,
                 ripple: 0.0,
-                is_coded: false,
-                reaches,
+                reading,
             });
         }
         // In a clean picture nearly all blocks that are not equal are edges; noise leaves many that differ a little.
@@ -100,16 +89,24 @@ impl Noise {
             contrast: tuning::LEAST_CONTRAST,
             fewest: tuning::LEAST_THIN,
             ripple: little as f64 / much.max(1) as f64,
-            is_coded: false,
-            reaches,
+            reading,
         })
     }
 
     /// Weights of the channels where pixels or regions of one color are compared: color differences of coded pictures, which pass slowly into one
     /// another, are not made less of there.
     pub(super) fn weights(&self) -> [f32; 3] {
-        let color = if self.is_coded { 1.0 / tuning::CODED_COLOR_WEIGHT as f32 } else { 1.0 };
+        let color = if self.reading.coded { 1.0 / tuning::CODED_COLOR_WEIGHT as f32 } else { 1.0 };
         [1.0, color, color]
+    }
+
+    /// How often colors are looked for around a pixel, further off each time.
+    pub(super) fn reaches(&self) -> usize {
+        match self.reading {
+            Reading { soft: true, .. } => 3,
+            Reading { coded: true, .. } => 2,
+            _ => 1,
+        }
     }
 }
 

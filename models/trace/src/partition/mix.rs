@@ -34,9 +34,6 @@ pub(super) struct Mixture {
     pub(super) misfit: f64,
 }
 
-/// Of more colors no three are tried: among so many some explain any pixel, and it takes the third power of their number.
-const MOST_OF_THREE: usize = 16;
-
 /// How far (pixels) from a mixed pixel the colors that it is made of are looked for; and again where these do not explain it, since
 /// coders stain further, and blur further still.
 const REACH: [usize; 3] = [2, tuning::CODED_REACH, tuning::SOFT_REACH];
@@ -60,7 +57,7 @@ pub(super) fn explain(pixels: &[[f32; 3]], size: [usize; 2], flats: &Flats, pale
     let mut open = Vec::new();
     let mut near = Vec::new();
     for i in (0..pixels.len()).filter(|&i| flats.regions[i] == NONE) {
-        let best = REACH[..noise.reaches].iter().find_map(|&reach| {
+        let best = REACH[..noise.reaches()].iter().find_map(|&reach| {
             colors_near(&flat_colors, size, (i, reach), &mut near);
             let best = best_mixture(pixels[i].map(f64::from), &near, &mixed.palette);
             best.filter(|best| best.misfit <= mixed.noise)
@@ -185,7 +182,7 @@ pub(super) fn best_mixture(pixel: Color, colors: &[u16], palette: &[Color]) -> O
             }
         }
     }
-    if (3..=MOST_OF_THREE).contains(&colors.len()) && best.misfit > tuning::LEAST_CONTRAST / 2.0 {
+    if (3..=tuning::MOST_OF_THREE).contains(&colors.len()) && best.misfit > tuning::LEAST_CONTRAST / 2.0 {
         for (k, &a) in colors.iter().enumerate() {
             for (l, &b) in colors[..k].iter().enumerate() {
                 for &c in &colors[..l] {
@@ -273,7 +270,7 @@ pub(super) fn open(
             best_mixture(pixels[i].map(f64::from), near.within(reach, flat_colors, size, i), palette)
                 .is_none_or(|best| best.misfit > f64::from(noise.mixed))
         };
-        is_open[i] = REACH[..noise.reaches].iter().all(&mut is_left);
+        is_open[i] = REACH[..noise.reaches()].iter().all(&mut is_left);
     }
     is_open
 }

@@ -64,13 +64,13 @@ pub struct Partition {
     pub(crate) slivers: Vec<sliver::Sliver>,
     /// The colors; faces name one of them. [`Self::rgb`] makes colors of them.
     pub palette: Vec<Color>,
-    /// Whether it was read as changed by a coder of photographs.
-    pub coded: bool,
-    /// How else it was read.
-    pub(crate) reading: Reading,
+    /// How the picture was read.
+    pub reading: Reading,
     /// Blocks of two by two pixels that differ a little, per block that differs much: what coders and filters leave beside edges. 0 where it was
     /// not counted.
     pub(crate) ripple: f64,
+    /// Standard deviation of the blur of its edges, pixels; 0 where it was not looked for.
+    pub blur: f64,
     /// Most difference of a channel between a pixel and the mixture that explains it.
     pub mix_noise: f64,
     /// Standard deviation of a channel in a pixel of an edge.
@@ -137,12 +137,12 @@ impl Partition {
             red.iter().zip(green).zip(blue).map(|((&red, &green), &blue)| [red, green, blue]).collect();
         let noise = Noise::of(&pixels, size, reading)?;
         let weighted = |pixels: &mut [[f32; 3]]| pixels.iter_mut().for_each(|pixel| *pixel = coded::weighted(*pixel));
-        if noise.is_coded {
+        if reading.coded {
             weighted(&mut pixels);
         }
         let find = |pixels: &[[f32; 3]]| {
             let mut flats = flat::find(pixels, size, &noise);
-            if noise.is_coded {
+            if reading.coded {
                 coded::part(pixels, size, &mut flats, &noise);
                 coded::dissolve(pixels, size, &mut flats);
             }
@@ -157,9 +157,8 @@ impl Partition {
         let finish = |pixels: Vec<[f32; 3]>, flats: &flat::Flats, colors, lines, mut seams: Vec<Seam>| {
             seams.sort_unstable_by_key(|seam| seam.pixel);
             let mixed = mix::explain(&pixels, size, flats, colors, &noise);
-            let Reading { coded, .. } = reading;
             let Noise { ripple, sigma, .. } = noise;
-            Self { coded, reading, ripple, sigma, lines, seams, ..faces::cut(size, pixels, mixed) }
+            Self { reading, ripple, sigma, lines, seams, ..faces::cut(size, pixels, mixed) }
         };
         let mut lines = Vec::new();
         let mut seams = Vec::new();
@@ -172,7 +171,7 @@ impl Partition {
             let found = Found::of(&mut pixels, size, &flats, &colors, &noise, widest);
             if !found.mended.is_empty() {
                 // What a coder leaves along edges is as much as what shows through.
-                if !noise.is_coded {
+                if !reading.coded {
                     seams.extend(&found.mended);
                 }
                 flats = find(&pixels);
@@ -207,7 +206,7 @@ impl Partition {
     #[must_use]
     pub fn rgb(&self, color: Color) -> Color {
         match self.reading.noise {
-            _ if self.coded => coded::as_rgb(color),
+            _ if self.reading.coded => coded::as_rgb(color),
             noise if noise > 0.0 => color.map(|mean| clipped::level(mean, f64::from(noise))),
             _ => color,
         }
@@ -216,7 +215,7 @@ impl Partition {
     /// A color that the picture stores as its palette has it.
     #[must_use]
     pub fn as_palette(&self, rgb: Color) -> Color {
-        if self.coded { coded::weighted(rgb.map(|value| value as f32)).map(f64::from) } else { rgb }
+        if self.reading.coded { coded::weighted(rgb.map(|value| value as f32)).map(f64::from) } else { rgb }
     }
 
     /// Face of a pixel; [`OUTSIDE`] beyond the border.
@@ -253,7 +252,8 @@ impl Found {
         widest: f64,
     ) -> Self {
         let flat = cross::thick(&flats.regions, size[0], &colors.of_region, widest as u16 + 1);
-        let (contrast, white) = (noise.contrast, if noise.is_coded { coded::weighted([1.0; 3]) } else { [1.0; 3] });
+        let (contrast, white) =
+            (noise.contrast, if noise.reading.coded { coded::weighted([1.0; 3]) } else { [1.0; 3] });
         let mut open = mix::open(pixels, size, &flat, &colors.colors, noise);
         let noise = f64::from(noise.mixed);
         let mended = seam::mend(pixels, size, &flat, &mut open, &colors.colors, noise);
