@@ -38,6 +38,7 @@ cases! { HELD:
     crowd_of_200: "crowd of 200",
     flat_16_bits: "flat, 16 bits",
     flat_palette: "flat, palette",
+    flat_blur_15: "flat, blur 1.5 px",
     flat_noise_001: "flat, noise 0.01",
     flat_noise_003: "flat, noise 0.03",
     flat_noise_005: "flat, noise 0.05",
@@ -87,7 +88,6 @@ known_failures! { SHORT:
     twins: "twins", ari 0.8753, right 0, "two crossed bars are one outline";
     occlusion_scaled_down: "occlusion, scaled down", ari 0.9949, right 11,
         "rims along edges are read as objects, or hide some";
-    flat_blur_15: "flat, blur 1.5 px", ari 0.9907, right 13, "corners that the blur rounds";
     flat_blur_08: "flat, blur 0.8 px", ari 0.9865, right 12, "two objects of one color side by side are read as one";
     occlusion_jpeg_50: "occlusion, JPEG 50", ari 0.9597, right 8, "ringing is read as objects, or hides them";
     mds_hr_twins_015: "MDS-HR twins 0.15", ari 0.9734, right 36,

@@ -24,6 +24,7 @@ mod tests;
 
 use alloc::vec::Vec;
 use core::cmp::Ordering;
+use core::f64::consts::FRAC_2_SQRT_PI;
 
 use dvp_core::loss::{ImagePair, Loss as _};
 use dvp_core::render::{Compositing, EdgeLaw, EdgeProfile, PixelLoss};
@@ -50,9 +51,6 @@ const CLEARLY_WORSE_IN_NOISE: f32 = 1.02;
 const FEW: usize = 16;
 /// Share of a picture of which a drawing that leaves more is none.
 const MOSTLY: f64 = 0.5;
-
-/// Softness of the logistic curve, a length in the doubled frame, over its standard deviation: 2 sqrt(3) / pi.
-const LOGISTIC: f64 = 1.102_657_790_843_584_2;
 
 /// Memory of [`fit_picture`], one per thread, kept between pictures.
 #[derive(Debug, Default)]
@@ -153,8 +151,9 @@ fn drawing(
         return settled(fitter, again.unwrap_or(traced), image, scratch);
     }
     let segments = fitter.fit(image, &mut scratch.fit)?;
-    // Edges that are wide were not read as such; what a coder leaves beside them looks like it.
-    let may_be_wide = !traced.coded || segments.scene.edge.law != EdgeLaw::Area;
+    // Edges that are wide were not read as such; what a coder leaves beside them looks like it, unless segments explain it with clear ones.
+    let is_clear = segments.scene.edge.law == EdgeLaw::Area && segments.unexplained <= NOT_FLAT_SHARE;
+    let may_be_wide = !traced.coded || !is_clear;
     let again = if may_be_wide { unspoiled(image, known) } else { None };
     Ok(likeliest(segments, drawn(again.unwrap_or(traced), image, scratch)?, CLEARLY_WORSE))
 }
@@ -221,8 +220,11 @@ fn settled(
 fn drawn(traced: Traced, image: ImageView<'_, f32>, scratch: &mut PictureScratch) -> Result<Fit<f32>, FitError> {
     let Traced { scene, covariances, bits, blur, .. } = traced;
     let (covariance, ambiguity) = doubt_of_poses(&covariances);
+    // Such a profile has the pixel's area in it. The integral of F (1 - F), F the profile, is half the softness of the logistic curve, and the
+    // deviation of a blur over the root of pi.
     let blurred = (blur > 0.0).then(|| {
-        let edge = EdgeProfile::distance(f32::of(LOGISTIC * blur) / f32::of_usize(image.size().unit_px()));
+        let softness = FRAC_2_SQRT_PI * (blur * blur + 1.0 / 12.0).sqrt();
+        let edge = EdgeProfile::distance(f32::of(softness) / f32::of_usize(image.size().unit_px()));
         Scene { edge, ..scene.clone() }
     });
     let mut best: Option<Fit<f32>> = None;

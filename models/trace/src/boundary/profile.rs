@@ -49,17 +49,17 @@ pub fn stained(partition: &Partition, rings: &[Vec<Ring>]) -> Option<f64> {
 
 /// How wide edges are beyond area coverage: standard deviation of a blur, pixels; 0 for area coverage and what is steeper, or where no edge tells.
 ///
-/// *Why*: an edge is the convolution of a step with its profile, and its window the distribution function of that. The second moment of what it shows
-/// of either side on the other one is the variance of the profile: that of area coverage across the window, and that of the blur.
+/// *Why*: an edge is the convolution of a step with its profile, and its window the distribution function F of that. The integral of F (1 - F) is the
+/// standard deviation over the root of pi for a normal distribution, and next to that for area coverage, which is added in quadrature. Second moments
+/// would be exact, but ask most of tails that rounding cuts off.
 #[must_use]
 pub fn blur(partition: &Partition, rings: &[Vec<Ring>]) -> f64 {
     let [mut total, mut count] = [[0.0; 2]; 2];
-    for (step, here, slope) in straight(rings) {
+    for (step, _, slope) in straight(rings) {
         let colors = [step.inner, step.other].map(|face| partition.color(face));
+        let noise2 = partition.sigma.powi(2) / (0..3).map(|c| (colors[0][c] - colors[1][c]).powi(2)).sum::<f64>();
         let across = middle(step.crack.sides()[0]) - middle(step.crack.sides()[1]);
-        // Along the window a slanted edge is wider, and area coverage is a box in each direction.
-        let steepness = 1.0 + slope * slope;
-        let mut variance = steepness / -12.0;
+        let mut spread = 0.0;
         for (side, [x, y]) in step.crack.sides().into_iter().enumerate() {
             let outward = if side == 0 { across } else { across * -1.0 };
             for k in 0..=tuning::SOFT_REACH as isize {
@@ -67,19 +67,29 @@ pub fn blur(partition: &Partition, rings: &[Vec<Ring>]) -> f64 {
                 if partition.face_at(at) != [step.inner, step.other][side] {
                     break;
                 }
-                let pixel = partition.pixels[at[1] * partition.size[0] + at[0]].map(f64::from);
-                let depth = (middle(at) - here.point).dot(outward);
-                variance += 2.0 * depth * coverage(pixel, colors[side], colors[1 - side]);
+                let pixel = at[1] * partition.size[0] + at[0];
+                if partition.shares[pixel] == 1.0 {
+                    break;
+                }
+                let share = coverage(partition.pixels[pixel].map(f64::from), colors[side], colors[1 - side]);
+                // Noise makes the square of a share larger.
+                spread += share * (1.0 - share) + noise2;
             }
         }
         let kind = usize::from(slope.abs() > SLANTED);
-        total[kind] += variance / steepness;
+        // Along the window a slanted edge is wider.
+        total[kind] += spread / (1.0 + slope * slope).sqrt();
         count[kind] += 1.0;
     }
     // What one window shows depends on where in its pixel the edge lies. Slanted edges lie everywhere, so that the mean is right; upright ones lie at
     // one place, which makes the variance wrong by up to a twelfth.
     let kind = usize::from(count[1] >= ENOUGH_SLANTED);
-    if total[kind] > 0.0 { (total[kind] / count[kind]).sqrt() } else { 0.0 }
+    if count[kind] == 0.0 {
+        return 0.0;
+    }
+    // Of area coverage alone it is a sixth.
+    let variance = PI * ((total[kind] / count[kind]).powi(2) - 1.0 / 36.0);
+    variance.max(0.0).sqrt()
 }
 
 /// Steps along straight boundaries with their samples, and how much the boundary moves there per pixel along it.
