@@ -185,12 +185,12 @@ fn spoiled_or_segments(
     if drawn.noise <= f32::of(noise::ROUNDED) {
         return Ok(likeliest(segments, drawn, CLEARLY_WORSE));
     }
-    // Noise hides the profile of edges: what looks like the paper's renderer is a drawing only if that is clearly nearer with as many things. What both
+    // Noise hides the profile of edges: what looks like the paper's renderer is a drawing only if that is clearly nearer without more things. What both
     // leave of a noisy picture is its noise for the most part.
     if is_of_renderer {
         let is_nearer = CLEARLY_WORSE_IN_NOISE * drawn.loss < segments.loss;
-        let are_as_many = drawn.scene.objects.len() == segments.scene.objects.len();
-        return Ok(if is_nearer && are_as_many { drawn } else { segments });
+        let is_more = drawn.scene.objects.len() > segments.scene.objects.len();
+        return Ok(if is_nearer && !is_more { drawn } else { segments });
     }
     Ok(likeliest(segments, drawn, CLEARLY_WORSE_IN_NOISE))
 }
