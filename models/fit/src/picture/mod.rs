@@ -26,6 +26,9 @@ use alloc::vec::Vec;
 use core::cmp::Ordering;
 use core::f64::consts::FRAC_2_SQRT_PI;
 
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
+
 use dvp_core::loss::{ImagePair, Loss as _};
 use dvp_core::render::{Compositing, EdgeLaw, EdgeProfile, PixelLoss};
 use dvp_core::{ImageView, Real as _, Scene};
