@@ -149,16 +149,23 @@ fn drawing(
     scratch: &mut PictureScratch,
 ) -> Result<Fit<f32>, FitError> {
     let is_doubtful = leaves_doubt(&traced);
-    if !is_doubtful || traced.scene.objects.len() > FEW {
-        let again = if is_doubtful { unspoiled(image, known) } else { None };
-        return settled(fitter, again.unwrap_or(traced), image, scratch);
+    let is_coded = traced.coded;
+    let is_few = traced.scene.objects.len() <= FEW;
+    let mut drawn = self::drawn(traced, image, scratch)?;
+    let segments = if is_doubtful && is_few { Some(fitter.fit(image, &mut scratch.fit)?) } else { None };
+    // What a coder leaves beside edges looks as if they were wide, unless segments explain it with clear ones.
+    let is_clear = |fit: &Fit<f32>| fit.scene.edge.law == EdgeLaw::Area && fit.unexplained <= NOT_FLAT_SHARE;
+    let may_be_wide = is_doubtful && !(is_coded && segments.as_ref().is_some_and(is_clear));
+    if may_be_wide && let Some(again) = unspoiled(image, known) {
+        let again = self::drawn(again, image, scratch)?;
+        if is_likelier(&again, &drawn, 1.0, CLEARLY_WORSE) {
+            drawn = again;
+        }
     }
-    let segments = fitter.fit(image, &mut scratch.fit)?;
-    // Edges that are wide were not read as such; what a coder leaves beside them looks like it, unless segments explain it with clear ones.
-    let is_clear = segments.scene.edge.law == EdgeLaw::Area && segments.unexplained <= NOT_FLAT_SHARE;
-    let may_be_wide = !traced.coded || !is_clear;
-    let again = if may_be_wide { unspoiled(image, known) } else { None };
-    Ok(likeliest(segments, drawn(again.unwrap_or(traced), image, scratch)?, CLEARLY_WORSE))
+    match segments {
+        Some(segments) => Ok(likeliest(segments, drawn, CLEARLY_WORSE)),
+        None => settled(fitter, drawn, image, scratch),
+    }
 }
 
 /// The fit of a picture that is no drawing as it is: of what it was before it was spoiled, or of segments.
@@ -173,7 +180,8 @@ fn spoiled_or_segments(
     let is_few = matches!(reason, NoDrawing::Soft { faces, .. } if *faces <= FEW);
     let mut traced = if is_few { None } else { unspoiled(image, known) };
     if let Some(traced) = traced.take_if(|traced| traced.scene.objects.len() > FEW) {
-        return settled(fitter, traced, image, scratch);
+        let drawn = drawn(traced, image, scratch)?;
+        return settled(fitter, drawn, image, scratch);
     }
     let segments = fitter.fit(image, &mut scratch.fit)?;
     let is_of_renderer = is_of_renderer(&segments);
@@ -203,11 +211,10 @@ fn spoiled_or_segments(
 #[inline(never)]
 fn settled(
     fitter: &Fitter<f32>,
-    traced: Traced,
+    drawn: Fit<f32>,
     image: ImageView<'_, f32>,
     scratch: &mut PictureScratch,
 ) -> Result<Fit<f32>, FitError> {
-    let drawn = drawn(traced, image, scratch)?;
     if drawn.unexplained <= MOSTLY {
         return Ok(drawn);
     }
@@ -260,17 +267,22 @@ fn likeliest(segments: Fit<f32>, drawn: Fit<f32>, factor: f32) -> Fit<f32> {
     // Under noise or a blur what follows it is nearer without being right.
     let is_clear = segments.scene.edge.law == EdgeLaw::Area && factor >= CLEARLY_WORSE;
     let as_many = if is_clear { 1.0 } else { factor };
-    let fewer = match drawn.scene.objects.len().cmp(&segments.scene.objects.len()) {
-        Ordering::Less => true,
-        Ordering::Equal => drawn.loss <= as_many * segments.loss,
-        Ordering::Greater => false,
-    };
-    let is_drawing = if segments.scene.edge.law != EdgeLaw::SquaredDistance && fewer {
-        drawn.loss <= factor * segments.loss
-    } else {
+    let is_drawing = if segments.scene.edge.law == EdgeLaw::SquaredDistance {
         factor * drawn.loss < segments.loss
+    } else {
+        is_likelier(&drawn, &segments, as_many, factor)
     };
     if is_drawing { drawn } else { segments }
+}
+
+/// Whether a fit is likelier than another one: with fewer things unless it is clearly farther from the picture (`factor` times), with more if it is
+/// clearly nearer, with as many if it is not farther than `as_many` times.
+fn is_likelier(one: &Fit<f32>, other: &Fit<f32>, as_many: f32, factor: f32) -> bool {
+    match one.scene.objects.len().cmp(&other.scene.objects.len()) {
+        Ordering::Less => one.loss <= factor * other.loss,
+        Ordering::Equal => one.loss <= as_many * other.loss,
+        Ordering::Greater => factor * one.loss < other.loss,
+    }
 }
 
 /// The first of two fits, or the second if that is much nearer.
