@@ -159,7 +159,7 @@ struct Read {
     rings: Vec<Vec<Ring>>,
 }
 
-/// Reads a picture; where edges ring, as changed by a coder if that makes fewer faces with shorter boundaries.
+/// Reads a picture; where edges ring, as changed by a coder if that makes fewer faces with shorter boundaries, and loses less than that.
 #[inline(never)]
 fn read(image: &ImageView<'_, f32>, reading: Reading) -> Result<Read, NoPartition> {
     let of = |reading: Reading| {
@@ -176,8 +176,9 @@ fn read(image: &ImageView<'_, f32>, reading: Reading) -> Result<Read, NoPartitio
     };
     let length = |read: &Read| read.rings.iter().flatten().map(|ring| ring.steps.len()).sum::<usize>() as f64;
     let is_less = |coded: &Read, plain: &Read| {
-        let shorter = length(coded) < (1.0 - tuning::RINGING) * length(plain);
-        shorter && coded.partition.faces.len() < plain.partition.faces.len()
+        let is_shorter = length(coded) < (1.0 - tuning::RINGING) * length(plain);
+        let saved = plain.partition.faces.len().saturating_sub(coded.partition.faces.len());
+        is_shorter && coded.partition.lost_blocks(&plain.partition) < saved
     };
     let plain = of(reading)?;
     if plain.partition.ripple <= tuning::RIPPLED {

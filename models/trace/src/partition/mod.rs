@@ -196,6 +196,21 @@ impl Partition {
         self.palette[self.faces[face as usize].color]
     }
 
+    /// Blocks of two by two pixels that are of one color in another reading of the picture, but of a color here that differs by more than coders make
+    /// of it. Rims beside edges, which are a pixel wide, have none.
+    pub(crate) fn lost_blocks(&self, other: &Self) -> usize {
+        let colors = |of: &Self| of.faces.iter().map(|face| of.rgb(of.palette[face.color])).collect::<Vec<_>>();
+        let [here, there] = [self, other].map(colors);
+        let is_lost = |i: usize| {
+            let [here, there] = [here.get(self.labels[i] as usize), there.get(other.labels[i] as usize)];
+            let differ = |(here, there): (&Color, &Color)| distance(*here, *there) > tuning::CODED_CONTRAST;
+            other.shares[i] >= tuning::PURE_SHARE && here.zip(there).is_some_and(differ)
+        };
+        let [width, height] = self.size;
+        let corners = (1..height).flat_map(|y| (1..width).map(move |x| y * width + x));
+        corners.filter(|&i| [i, i - 1, i - width, i - width - 1].into_iter().all(is_lost)).count()
+    }
+
     /// What a pixel (its index) shows of what is behind two things that lie edge to edge, if it does.
     pub(crate) fn seam(&self, pixel: usize) -> Option<Seam> {
         let at = self.seams.binary_search_by_key(&pixel, |seam| seam.pixel as usize).ok()?;
