@@ -4,6 +4,7 @@ use dvp_core::shape::Ellipse;
 
 use super::*;
 use crate::noise::tests::add_noise;
+use crate::partition::{Partition, Reading};
 
 /// A disk, an upright rectangle and an ellipse that is turned.
 fn drawn() -> Scene<f32> {
@@ -117,4 +118,26 @@ fn ringing_is_no_thing() {
     let traced = trace(&picture.view(), &Known::default()).unwrap();
     assert_eq!(traced.scene.objects.len(), 3, "{:?}", traced.scene.objects);
     assert_found(&picture, 0.1, 0.02);
+}
+
+#[test]
+fn holes_that_a_coder_would_have_hidden_stay() {
+    // Read as coded, a hole of five pixels in a color near that of the ground is lost; the picture has ripple, since one square is faint.
+    let ground = [0.07, 0.76, 0.79];
+    let square = |side: f64, [x, y]: [f64; 2], color: [f32; 3]| object(rectangle(side, side), [x, y], 0.0, color);
+    let picture = paint(&scene(
+        ground,
+        vec![
+            square(12.0, [70.0, 70.0], ground.map(|c| c + 0.016)),
+            square(19.0, [20.5, 20.5], [0.32, 0.64, 0.45]),
+            square(5.0, [20.5, 20.5], ground),
+        ],
+    ));
+    let view = picture.view();
+    let reading = Reading { soft: true, ..Reading::default() };
+    let [plain, coded] = [false, true].map(|coded| Partition::of(&view, reading.with_coded(coded)).unwrap());
+    assert!(plain.ripple > crate::tuning::RIPPLED, "{}", plain.ripple);
+    assert!(coded.faces.len() < plain.faces.len() && coded.lost_blocks(&plain) > 0, "{} faces", coded.faces.len());
+    let traced = trace(&view, &Known::default().with_spoiled(true)).unwrap();
+    assert!(!traced.coded);
 }
