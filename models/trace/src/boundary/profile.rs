@@ -2,7 +2,7 @@
 //!
 //! Window sums are right for any profile, but a drawing with clear edges is only what the picture is if they are. Pictures that were blurred, or
 //! painted by renderers with a profile of their own, are not. Two signs tell: [`stained`] pixels beyond the reach of area coverage, where edges are
-//! wide, and a [`wobble`] of the positions, where they are steeper than a pixel. How wide they are [`blur`] tells.
+//! wide, and a [`wobble`] of the positions, where they are steeper than a pixel. How wide they are, [`blur`] tells.
 
 use alloc::vec::Vec;
 use core::f64::consts::{PI, TAU};

@@ -21,7 +21,7 @@ pub(super) struct DenoiseSettings<T> {
     pub(super) limit: T,
 }
 
-/// Memory of [`denoise`].
+/// Memory of [`denoise_twice`](super::denoise_twice), kept between pictures.
 #[derive(Clone, Debug, Default)]
 pub struct DenoiseScratch<T> {
     weights: Vec<T>,
