@@ -55,6 +55,7 @@ mod tests {
         #[test]
         fn levels_come_back(at in 0.0f64..=1.0, noise in 0.005f64..0.2) {
             let mean = closed(at, noise);
+            // The rule has ten steps in a standard deviation, in one of which the cut lies: 1/10 squared, over 8.
             prop_assert!((level(mean, noise) - at).abs() < 2e-3 * noise, "{} instead of {at}", level(mean, noise));
         }
     }
