@@ -165,11 +165,9 @@ fn read(image: &ImageView<'_, f32>, reading: Reading) -> Result<Read, NoPartitio
     let of = |reading: Reading| {
         let (mut partition, mut faces) = Partition::readings(image, reading)?;
         let mut rings = boundary::rings(&partition);
-        // What a coder leaves beside edges looks like blur.
-        if reading.soft && !reading.coded {
-            let blur = boundary::blur(&partition, &rings);
-            partition.blur = blur;
-            faces.iter_mut().for_each(|faces| faces.blur = blur);
+        if reading.soft {
+            partition.blur = boundary::blur(&partition, &rings);
+            faces.iter_mut().for_each(|faces| faces.blur = partition.blur);
             rings = boundary::rings(&partition);
         }
         Ok(Read { partition, faces, rings })
@@ -224,8 +222,7 @@ fn draw(read: Read, size: ImageSize, known: &Known) -> Result<Traced, NoDrawing>
     }
     let bits = layers.bits();
     let (scene, covariances) = scene::scene(&layers, size, known.matte.is_some(), partition.is_hard);
-    let blur = if known.spoiled && !known.coded { boundary::blur(&partition, &rings) } else { 0.0 };
-    Ok(Traced { scene, covariances, bits, stained, coded: partition.reading.coded, blur })
+    Ok(Traced { scene, covariances, bits, stained, coded: partition.reading.coded, blur: partition.blur })
 }
 
 /// Whether edges have another profile than area coverage: wider, or steeper with stains beyond.

@@ -152,8 +152,8 @@ pub const MOST_OF_THREE: usize = 16;
 /// How far from a pixel of a blurred edge its colors are looked for, and how far its window reaches, pixels: three standard deviations of a blur of
 /// two and a half pixels.
 pub const SOFT_REACH: usize = 8;
-/// Ripple from which on a picture may have gone through a coder or a filter: renderers leave .05 beside edges, coders of photographs and filters
-/// mostly .1 to 2.
+/// Ripple from which on a picture may have gone through a coder or a filter: of 160 drawings, 100 of them of near colors, one flag with fine arms leaves
+/// more, of 160 that went through JPEG or WebP all but a few flags of stripes.
 pub const RIPPLED: f64 = 0.06;
 /// A picture has if that makes its boundaries so much shorter, as a share: what ringing adds.
 pub const RINGING: f64 = 0.02;

@@ -139,7 +139,8 @@ fn straighten(partition: &Partition, ring: &mut Ring) {
 
 /// A blur moves a boundary that is bent inward: by half its variance times the change of the slope, which windows further along tell.
 fn unblur(partition: &Partition, ring: &mut Ring) {
-    if partition.blur <= 0.0 {
+    // What a coder leaves beside edges looks like blur.
+    if partition.blur <= 0.0 || partition.reading.coded {
         return;
     }
     // Far enough that what noise makes of the change of the slope is not more than the blur does.

@@ -3,6 +3,8 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
+use super::runs::runs;
+
 /// How far (pixels) from the corner the fields are asked for their color: beyond what is mixed there.
 const NEAR: usize = 2;
 /// How far they reach at least along their sides: no line that runs across the corner is as wide.
@@ -14,10 +16,6 @@ pub(super) fn sides(colors: &[u16], is_flat: &[bool], [width, height]: [usize; 2
     let flat = |x: usize, y: usize| is_flat[y * width + x].then(|| colors[y * width + x]);
     let corner = |x: usize, y: usize| -> Option<[bool; 2]> {
         let (l, r, t, b) = (x - NEAR, x + NEAR, y - NEAR, y + NEAR);
-        // Nearly all of a picture ends here.
-        if colors[t * width + l] == colors[t * width + r] {
-            return None;
-        }
         let [nw, ne, sw, se] = [flat(l, t)?, flat(r, t)?, flat(l, b)?, flat(r, b)?];
         if ne == se || se == sw || sw == nw {
             return None;
@@ -28,12 +26,15 @@ pub(super) fn sides(colors: &[u16], is_flat: &[bool], [width, height]: [usize; 2
         (rises || falls).then_some([rises, falls])
     };
     for y in FAR..height.saturating_sub(FAR) {
-        let mut x = FAR;
-        while x + FAR < width {
-            let Some([rises, falls]) = corner(x, y).filter(|_| sides[y * width + x] == 0) else {
-                x += 1;
+        // Nearly all of a picture lies where the row above goes on in one color.
+        let upper = runs(&colors[(y - NEAR) * width..][..width]).skip(1);
+        let changes = upper.flat_map(|(_, columns)| columns.start.saturating_sub(NEAR)..columns.start + NEAR);
+        let mut next = FAR;
+        for x in changes {
+            if x < next || x + FAR >= width || sides[y * width + x] != 0 {
                 continue;
-            };
+            }
+            let Some([rises, falls]) = corner(x, y) else { continue };
             // The corner is in the middle of the places that see it.
             let columns = (x..width - FAR).take_while(|&x| corner(x, y).is_some()).count();
             let rows = (y..height - FAR).take_while(|&y| corner(x, y).is_some()).count();
@@ -63,7 +64,7 @@ pub(super) fn sides(colors: &[u16], is_flat: &[bool], [width, height]: [usize; 2
                     sides[i] = if first { 1 } else { 2 };
                 }
             }
-            x += columns;
+            next = x + columns;
         }
     }
     sides

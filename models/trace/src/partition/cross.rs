@@ -40,8 +40,8 @@ pub(super) struct Canvas<'a> {
     pub(super) size: [usize; 2],
     /// Color of every flat pixel; `u16::MAX` elsewhere.
     pub(super) flat: &'a [u16],
-    /// Pixels that no mixture of flat colors nearby explains.
-    pub(super) open: &'a [bool],
+    /// Pixels (ascending) that no mixture of flat colors nearby explains.
+    pub(super) open: &'a [usize],
     /// Most difference of a channel from the mixture that explains a pixel.
     pub(super) noise: f64,
     /// Least difference of a channel between a line and what it lies on.
@@ -83,25 +83,22 @@ impl Canvas<'_> {
     pub(super) fn crosses(&self, along: Along) -> Vec<Vec<Cross>> {
         let [lines, length] = self.extent(along);
         let longest = ((self.widest * core::f64::consts::SQRT_2).ceil() as usize + 2).min(LONGEST);
-        let mut found = vec![Vec::new(); lines];
-        // Pixels come as they lie in memory. A window begins behind a flat pixel.
-        let step = self.index(along, 0, 1);
-        for i in (step..self.flat.len()).filter(|&i| self.flat[i] == u16::MAX && self.flat[i - step] != u16::MAX) {
+        let mut found: Vec<Vec<Cross>> = vec![Vec::new(); lines];
+        for &i in self.open {
             let [x, y] = [i % self.size[0], i / self.size[0]];
-            let (line, start) = match along {
+            let (line, at) = match along {
                 Along::Columns => (x, y),
                 Along::Rows => (y, x),
             };
-            if start == 0 {
-                continue;
-            }
-            let mut rest = (start..length.min(start + longest + 1)).map(|at| self.index(along, line, at));
-            let count = rest.clone().take_while(|&i| self.flat[i] == u16::MAX).count();
-            if let Some(end) = rest.nth(count)
-                && (start..start + count).any(|at| self.open[self.index(along, line, at)])
-            {
-                let sides = [self.flat[i - step], self.flat[end]];
-                found[line].push(Cross { line, run: [start, start + count], sides, colors: 0 });
+            let flat = |at: usize| self.flat[self.index(along, line, at)];
+            // A window begins behind a flat pixel, and ends before one.
+            let before = (at.saturating_sub(longest)..at).rev().find(|&at| flat(at) != u16::MAX);
+            let behind = (at + 1..length).take(longest).find(|&at| flat(at) != u16::MAX);
+            let Some((before, end)) = before.zip(behind) else { continue };
+            let start = before + 1;
+            // Open pixels come in the order of a picture, so that those of one window follow one another in its line.
+            if end - start <= longest && found[line].last().is_none_or(|last| last.run[0] != start) {
+                found[line].push(Cross { line, run: [start, end], sides: [before, end].map(flat), colors: 0 });
             }
         }
         found

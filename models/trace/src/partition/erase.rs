@@ -20,8 +20,8 @@ use crate::tuning;
 pub(super) struct Eraser<'a> {
     pub(super) pixels: &'a mut [[f32; 3]],
     pub(super) size: [usize; 2],
-    /// Pixels that say nothing but the lines over them.
-    pub(super) open: &'a [bool],
+    /// Pixels (ascending) that say nothing but the lines over them.
+    pub(super) open: &'a [usize],
     /// Pixels that no line covers, any more or from the start.
     pub(super) known: Vec<bool>,
     pub(super) palette: &'a [Color],
@@ -170,7 +170,7 @@ impl Eraser<'_> {
                 let i = y * self.size[0] + x;
                 let pixel = Vec2::new(x as f64 + 0.5, y as f64 + 0.5);
                 let foot = from.lerp(to, segment.nearest(pixel).share);
-                if self.open[i] && !self.known[i] && (pixel - foot).length() < reach {
+                if !self.known[i] && (pixel - foot).length() < reach && self.open.binary_search(&i).is_ok() {
                     holes.push(i);
                 }
             }

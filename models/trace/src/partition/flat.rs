@@ -26,8 +26,6 @@ pub(super) struct Noise {
     pub(super) contrast: f64,
     /// Fewest pixels that do.
     pub(super) fewest: usize,
-    /// Blocks that differ a little, per block that differs much: what is left beside edges. 0 where it was not counted.
-    pub(super) ripple: f64,
     /// How the picture is read.
     pub(super) reading: Reading,
 }
@@ -39,6 +37,8 @@ pub(super) struct Flats {
     pub(super) regions: Vec<u32>,
     /// Mean color and pixels of every region.
     pub(super) means: Vec<([f64; 3], usize)>,
+    /// Blocks that differ by more than what is equal in a clean picture, but no more than what is in a coded one; and those that differ by more.
+    unequal: [usize; 2],
 }
 
 /// Marks pixels that are in no flat block.
@@ -46,51 +46,43 @@ pub(super) const NONE: u32 = u32::MAX;
 
 impl Noise {
     /// Of a picture that is read in some way.
-    pub(super) fn of(pixels: &[[f32; 3]], size: [usize; 2], reading: Reading) -> Result<Self, NoPartition> {
+    pub(super) fn of(reading: Reading) -> Self {
         let Reading { coded, noise, .. } = reading;
-        if coded {
-            return Ok(Self {
-                flat: tuning::CODED_STEP,
-                mixed: tuning::CODED_MIX,
-                sigma: tuning::CODED_SIGMA,
-                contrast: tuning::CODED_CONTRAST,
-                fewest: tuning::CODED_THIN,
-                ripple: 0.0,
-                reading,
-            });
-        }
-        if noise > 0.0 {
-            let mixed = tuning::CLEAN_MIX + tuning::NOISY_MIX * noise;
-            return Ok(Self {
-                flat: tuning::CLEAN_STEP + tuning::NOISY_STEP * noise,
-                mixed,
-                sigma: tuning::ROUNDING.hypot(tuning::NOISY_SIGMA * f64::from(noise)),
-                contrast: tuning::LEAST_CONTRAST.max(2.0 * f64::from(mixed)),
-                fewest: tuning::CODED_THIN,
-                ripple: 0.0,
-                reading,
-            });
-        }
-        // In a clean picture nearly all blocks that are not equal are edges; noise leaves many that differ a little.
-        let [mut little, mut much] = [0usize; 2];
-        ranges(pixels, size, [1.0; 3], |ranges| {
-            let more_than = |step: f32| ranges.iter().filter(|&&range| range > step).count();
-            let [some, most] = [tuning::CLEAN_STEP, tuning::CODED_STEP].map(more_than);
-            little += some - most;
-            much += most;
-        });
-        if little > tuning::NOISY_BLOCKS * much {
-            return Err(NoPartition::Noisy);
-        }
-        Ok(Self {
+        let clean = Self {
             flat: tuning::CLEAN_STEP,
             mixed: tuning::CLEAN_MIX,
             sigma: tuning::ROUNDING,
             contrast: tuning::LEAST_CONTRAST,
             fewest: tuning::LEAST_THIN,
-            ripple: little as f64 / much.max(1) as f64,
             reading,
-        })
+        };
+        if coded {
+            return Self {
+                flat: tuning::CODED_STEP,
+                mixed: tuning::CODED_MIX,
+                sigma: tuning::CODED_SIGMA,
+                contrast: tuning::CODED_CONTRAST,
+                fewest: tuning::CODED_THIN,
+                ..clean
+            };
+        }
+        if noise > 0.0 {
+            let mixed = tuning::CLEAN_MIX + tuning::NOISY_MIX * noise;
+            return Self {
+                flat: tuning::CLEAN_STEP + tuning::NOISY_STEP * noise,
+                mixed,
+                sigma: tuning::ROUNDING.hypot(tuning::NOISY_SIGMA * f64::from(noise)),
+                contrast: tuning::LEAST_CONTRAST.max(2.0 * f64::from(mixed)),
+                fewest: tuning::CODED_THIN,
+                ..clean
+            };
+        }
+        clean
+    }
+
+    /// Whether nothing is known to have changed the flat parts of the picture.
+    pub(super) fn is_clean(&self) -> bool {
+        !self.reading.coded && self.reading.noise <= 0.0
     }
 
     /// Weights of the channels where pixels or regions of one color are compared: color differences of coded pictures, which pass slowly into one
@@ -114,6 +106,21 @@ impl Flats {
     /// How many pixels are in flat blocks.
     pub(super) fn pure_count(&self) -> usize {
         self.means.iter().map(|&(_, count)| count).sum()
+    }
+
+    /// How many blocks differ a little, or values turn back by a little, whichever is less, per block that differs much, in a clean picture: what coders
+    /// and filters leave beside edges. Near colors leave such blocks, fine details such values.
+    ///
+    /// # Errors
+    /// If it is not clean: nearly all blocks that are not equal are edges in such a picture, and noise leaves many that differ a little.
+    pub(super) fn ripple(&self, pixels: &[[f32; 3]], size: [usize; 2]) -> Result<f64, NoPartition> {
+        let [little, much] = self.unequal;
+        if little > tuning::NOISY_BLOCKS * much {
+            return Err(NoPartition::Noisy);
+        }
+        let per_much = |count: usize| count as f64 / much.max(1) as f64;
+        let blocks = per_much(little);
+        Ok(if blocks > tuning::RIPPLED { blocks.min(per_much(turns(pixels, size) / 3)) } else { blocks })
     }
 
     /// Numbers the regions anew, those that are not kept left out.
@@ -153,6 +160,44 @@ fn ranges(pixels: &[[f32; 3]], size: [usize; 2], weights: [f32; 3], mut row: imp
     }
 }
 
+/// How often a channel turns back by a little, along a row or a column. Edges go one way, whatever their colors and slopes are, and thin things go
+/// there and back by their contrast; what coders and filters leave swings.
+fn turns(pixels: &[[f32; 3]], [width, _]: [usize; 2]) -> usize {
+    let turns_back = |before: f32, at: f32, after: f32| {
+        let (from, to) = (at - before, at - after);
+        let least = if from.abs() < to.abs() { from.abs() } else { to.abs() };
+        u32::from((from * to > 0.0) & (least > tuning::CLEAN_STEP) & (least <= tuning::CODED_STEP))
+    };
+    let count = |before: &[f32], at: &[f32], after: &[f32]| {
+        before.iter().zip(at).zip(after).map(|((&before, &at), &after)| turns_back(before, at, after)).sum::<u32>()
+            as usize
+    };
+    let rows = |skipped| pixels.chunks_exact(width).map(<[_]>::as_flattened).skip(skipped);
+    let along = rows(0).map(|row| row.get(6..).map_or(0, |after| count(row, &row[3..], after)));
+    let across = rows(0).zip(rows(1)).zip(rows(2)).map(|((above, at), below)| count(above, at, below));
+    along.chain(across).sum()
+}
+
+/// Whether one of the blocks that a pixel (its index) is in is flat.
+pub(super) fn is_flat_at(pixels: &[[f32; 3]], [width, height]: [usize; 2], noise: &Noise, pixel: usize) -> bool {
+    let (x, y) = (pixel % width, pixel / width);
+    let weights = noise.weights();
+    let is_flat = |first: usize| {
+        let block = [first, first + 1, first + width, first + width + 1].map(|i| pixels[i]);
+        (0..3).all(|c| {
+            let values = block.map(|pixel| pixel[c]);
+            let [low, high] =
+                [values.into_iter().fold(values[0], f32::min), values.into_iter().fold(values[0], f32::max)];
+            weights[c] * (high - low) <= noise.flat
+        })
+    };
+    let rows = y.saturating_sub(1)..(y + 1).min(height.saturating_sub(1));
+    rows.flat_map(|row| {
+        (x.saturating_sub(1)..(x + 1).min(width.saturating_sub(1))).map(move |column| row * width + column)
+    })
+    .any(is_flat)
+}
+
 /// Finds the flat blocks of a picture. Blocks that share a pixel are of one region: runs of blocks are joined with those above that they touch.
 pub(super) fn find(pixels: &[[f32; 3]], size: [usize; 2], noise: &Noise) -> Flats {
     let [width, _] = size;
@@ -161,9 +206,13 @@ pub(super) fn find(pixels: &[[f32; 3]], size: [usize; 2], noise: &Noise) -> Flat
     let mut sets = DisjointSets::default();
     let [mut above, mut row]: [Vec<(Range<usize>, u32)>; 2] = [Vec::new(), Vec::new()];
     let mut is_flat = vec![false; width.saturating_sub(1)];
+    let mut unequal = [0; 2];
     let mut first = 0;
     ranges(pixels, size, noise.weights(), |ranges| {
         is_flat.iter_mut().zip(ranges).for_each(|(is_flat, &range)| *is_flat = range <= noise.flat);
+        let more_than = |step: f32| ranges.iter().map(|&range| u32::from(range > step)).sum::<u32>() as usize;
+        let [some, most] = [tuning::CLEAN_STEP, tuning::CODED_STEP].map(more_than);
+        unequal = [unequal[0] + some - most, unequal[1] + most];
         core::mem::swap(&mut above, &mut row);
         row.clear();
         let mut next = 0;
@@ -205,7 +254,7 @@ pub(super) fn find(pixels: &[[f32; 3]], size: [usize; 2], noise: &Noise) -> Flat
     for (sum, count) in &mut means {
         *sum = sum.map(|total| total / *count as f64);
     }
-    Flats { regions, means }
+    Flats { regions, means, unequal }
 }
 
 /// An index into pixels: pictures have fewer than 2^32 of them.

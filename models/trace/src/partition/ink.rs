@@ -29,8 +29,7 @@ pub(super) fn colors(canvas: &Canvas<'_>, crosses: &mut [Vec<Vec<Cross>>; 2], pa
     for (k, &color) in palette.iter().enumerate() {
         windows.iter_mut().for_each(|window| window.try_color(canvas, (k, color), palette));
     }
-    let opens: Vec<Color> =
-        (0..canvas.pixels.len()).filter(|&i| canvas.open[i]).map(|i| canvas.pixels[i].map(f64::from)).collect();
+    let opens: Vec<Color> = canvas.open.iter().map(|&i| canvas.pixels[i].map(f64::from)).collect();
     let mut rest: Vec<usize> = (0..windows.len()).filter(|&k| windows[k].cross.colors == 0).collect();
     for _ in 0..tuning::THIN_TRIES {
         if rest.len() < tuning::THIN_LEAST_LENGTH || colors.len() == MOST {

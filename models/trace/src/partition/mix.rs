@@ -255,24 +255,23 @@ impl Near {
     }
 }
 
-/// The pixels that no mixture of flat colors nearby explains.
+/// The pixels, ascending, that no mixture of flat colors nearby explains.
 pub(super) fn open(
     pixels: &[[f32; 3]],
     size: [usize; 2],
     flat_colors: &[u16],
     palette: &[Color],
     noise: &Noise,
-) -> Vec<bool> {
+) -> Vec<usize> {
     let mut near = Near::default();
-    let mut is_open = vec![false; pixels.len()];
-    for i in (0..pixels.len()).filter(|&i| flat_colors[i] == u16::MAX) {
+    let is_open = |&i: &usize| -> bool {
         let mut is_left = |&reach: &usize| {
             best_mixture(pixels[i].map(f64::from), near.within(reach, flat_colors, size, i), palette)
                 .is_none_or(|best| best.misfit > f64::from(noise.mixed))
         };
-        is_open[i] = REACH[..noise.reaches()].iter().all(&mut is_left);
-    }
-    is_open
+        flat_colors[i] == u16::MAX && REACH[..noise.reaches()].iter().all(&mut is_left)
+    };
+    (0..pixels.len()).filter(is_open).collect()
 }
 
 fn colors_near(flat_colors: &[u16], [width, height]: [usize; 2], (i, reach): (usize, usize), near: &mut Vec<u16>) {

@@ -66,8 +66,8 @@ pub struct Partition {
     pub palette: Vec<Color>,
     /// How the picture was read.
     pub reading: Reading,
-    /// Blocks of two by two pixels that differ a little, per block that differs much: what coders and filters leave beside edges. 0 where it was
-    /// not counted.
+    /// Blocks of two by two pixels that differ a little, or values that turn back by a little, whichever is less, per block that differs much:
+    /// what coders and filters leave beside edges. 0 where it was not counted.
     pub(crate) ripple: f64,
     /// Standard deviation of the blur of its edges, pixels; 0 where it was not looked for.
     pub blur: f64,
@@ -135,7 +135,7 @@ impl Partition {
         let [red, green, blue] = [0, 1, 2].map(|c| image.channel(c));
         let mut pixels: Vec<[f32; 3]> =
             red.iter().zip(green).zip(blue).map(|((&red, &green), &blue)| [red, green, blue]).collect();
-        let noise = Noise::of(&pixels, size, reading)?;
+        let noise = Noise::of(reading);
         let weighted = |pixels: &mut [[f32; 3]]| pixels.iter_mut().for_each(|pixel| *pixel = coded::weighted(*pixel));
         if reading.coded {
             weighted(&mut pixels);
@@ -149,6 +149,7 @@ impl Partition {
             flats
         };
         let mut flats = find(&pixels);
+        let ripple = if noise.is_clean() { flats.ripple(&pixels, size)? } else { 0.0 };
         let share = flats.pure_count() as f64 / pixels.len() as f64;
         if share < tuning::LEAST_FLAT {
             return Err(NoPartition::NotFlat { flat: share });
@@ -157,8 +158,7 @@ impl Partition {
         let finish = |pixels: Vec<[f32; 3]>, flats: &flat::Flats, colors, lines, mut seams: Vec<Seam>| {
             seams.sort_unstable_by_key(|seam| seam.pixel);
             let mixed = mix::explain(&pixels, size, flats, colors, &noise);
-            let Noise { ripple, sigma, .. } = noise;
-            Self { reading, ripple, sigma, lines, seams, ..faces::cut(size, pixels, mixed) }
+            Self { reading, ripple, sigma: noise.sigma, lines, seams, ..faces::cut(size, pixels, mixed) }
         };
         let mut lines = Vec::new();
         let mut seams = Vec::new();
@@ -174,8 +174,10 @@ impl Partition {
                 if !reading.coded {
                     seams.extend(&found.mended);
                 }
-                flats = find(&pixels);
-                colors = palette::Palette::of(&flats, &noise)?;
+                if found.mended.iter().any(|seam| flat::is_flat_at(&pixels, size, &noise, seam.pixel as usize)) {
+                    flats = find(&pixels);
+                    colors = palette::Palette::of(&flats, &noise)?;
+                }
             }
             if widest > tuning::THIN_WIDTH && !found.lines.is_empty() {
                 as_faces = Some(finish(pixels.clone(), &flats, colors.clone(), lines.clone(), seams.clone()));
@@ -244,9 +246,9 @@ impl Partition {
 /// Lines in a picture, and what is known of the pixels that they leave.
 struct Found {
     lines: Vec<(ThinLine, chain::Chain)>,
-    /// Pixels that no mixture of flat colors nearby explains, and those that are flat.
-    open: Vec<bool>,
-    known: Vec<bool>,
+    /// Pixels (ascending) that no mixture of flat colors nearby explains, and the colors of those that are flat.
+    open: Vec<usize>,
+    flat: Vec<u16>,
     /// Colors of flat pixels when the lines were found.
     palette: Vec<Color>,
     /// Pixels that were seams, which are others than before.
@@ -279,13 +281,13 @@ impl Found {
         if widest > tuning::THIN_WIDTH {
             lines = thin::crossing_lines(lines, ground);
         }
-        let known = flat.iter().map(|&color| color != u16::MAX).collect();
-        Self { lines, open, known, palette: colors.colors.clone(), mended, noise, contrast }
+        Self { lines, open, flat, palette: colors.colors.clone(), mended, noise, contrast }
     }
 
     /// Takes the lines out of the picture.
     fn erase(self, pixels: &mut [[f32; 3]], size: [usize; 2]) -> impl Iterator<Item = ThinLine> {
-        let Self { mut lines, open, known, palette, noise, contrast, .. } = self;
+        let Self { mut lines, open, flat, palette, noise, contrast, .. } = self;
+        let known = flat.iter().map(|&color| color != u16::MAX).collect();
         let mut eraser = erase::Eraser { pixels, size, open: &open, known, palette: &palette, noise, contrast };
         eraser.erase(&mut lines);
         lines.into_iter().map(|(line, _)| line)

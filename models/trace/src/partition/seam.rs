@@ -25,21 +25,18 @@ pub(crate) struct Seam {
     pub(crate) behind: u16,
 }
 
-/// Mends the pixels of `open` that are seams; they are open no more. Which those were.
+/// Mends the pixels of `open` (ascending) that are seams; they are open no more. Which those were.
 pub(super) fn mend(
     pixels: &mut [[f32; 3]],
     size: [usize; 2],
     flat: &[u16],
-    open: &mut [bool],
+    open: &mut Vec<usize>,
     palette: &[Color],
     noise: f64,
 ) -> Vec<Seam> {
     let mut mended = Vec::new();
     let mut near = Near::default();
-    for i in 0..pixels.len() {
-        if !open[i] {
-            continue;
-        }
+    open.retain(|&i| {
         let colors = near.around(flat, size, i);
         let pixel = pixels[i].map(f64::from);
         let mut best = (noise, None);
@@ -57,12 +54,11 @@ pub(super) fn mend(
                 }
             }
         }
-        if let (_, Some((front, other, behind, share))) = best {
-            pixels[i] = core::array::from_fn(|c| (share * front[c] + (1.0 - share) * other[c]) as f32);
-            open[i] = false;
-            mended.push(Seam { pixel: index(i), front, behind });
-        }
-    }
+        let (_, Some((front, other, behind, share))) = best else { return true };
+        pixels[i] = core::array::from_fn(|c| (share * front[c] + (1.0 - share) * other[c]) as f32);
+        mended.push(Seam { pixel: index(i), front, behind });
+        false
+    });
     mended
 }
 
