@@ -39,8 +39,8 @@ impl Eraser<'_> {
         }
     }
 
-    /// Takes out lines, which end where they are seen to.
-    pub(super) fn erase(&mut self, lines: &mut [(ThinLine, Chain)]) {
+    /// Takes out lines, which end where they are seen to. The pixels that say nothing of what was under the line, and are now as what is nearest.
+    pub(super) fn erase(&mut self, lines: &mut [(ThinLine, Chain)]) -> Vec<usize> {
         let mut ends = Vec::new();
         for (line, chain) in lines.iter_mut().filter(|(_, chain)| !chain.is_closed) {
             let [first, second, .., before, last] = &chain.marks[..] else { continue };
@@ -72,7 +72,11 @@ impl Eraser<'_> {
         for (end, width) in ends {
             self.around(end, end, width, &mut holes);
         }
-        self.fill_holes(holes);
+        holes.retain(|&i| !self.known[i]);
+        holes.sort_unstable();
+        holes.dedup();
+        self.fill_holes(holes.clone());
+        holes
     }
 
     /// Lets two colors meet at `center` in a window.
@@ -85,12 +89,12 @@ impl Eraser<'_> {
         }
     }
 
-    /// Takes out what of a line lies beyond its last window, `tip`, over what is of no flat color: the edge of what the line crosses. Pixels that it is
-    /// longer.
+    /// Takes out what of a line lies beyond its last window, `tip`, over what is of no flat color: the edge of what the line crosses, or where both
+    /// the line and what lies on its sides end. Pixels that it is longer.
     fn beyond(&mut self, tip: &Mark, inner: &Mark, color: Color) -> f64 {
         let step = tip.cross.line as f64 - inner.cross.line as f64;
         let slope = (tip.point - inner.point).dot(tip.axis()) / step;
-        if tip.along != inner.along || tip.cross.sides[0] != tip.cross.sides[1] || step.abs() != 1.0 {
+        if tip.along != inner.along || step.abs() != 1.0 {
             return 0.0;
         }
         let [lines, length] = match tip.along {
@@ -108,22 +112,71 @@ impl Eraser<'_> {
             let (line, run) = (line as usize, run.map(|at| at as usize));
             let pixel = |at: usize| self.pixels[self.index(tip.along, line, at)].map(f64::from);
             let sides = [pixel(run[0] - 1), pixel(run[1])];
-            // The edge is the same on both sides of the line, and not of its color.
-            if distance(sides[0], sides[1]) > self.noise || distance(sides[0], color) < self.contrast {
-                break;
-            }
-            let covered: f64 =
-                (run[0]..run[1]).map(|at| coverage(pixel(at), sides[0], color).clamp(0.0, 1.0)).sum::<f64>()
-                    / tip.width;
-            let is_whole = covered > 1.0 - tuning::THIN_TOLERANCE;
             let center = tip.point.dot(tip.axis()) + slope * away;
-            self.fill(tip.along, line, run, center, sides);
+            let covered = if tip.cross.sides[0] == tip.cross.sides[1] {
+                // The edge is the same on both sides of the line, and not of its color.
+                if distance(sides[0], sides[1]) > self.noise || distance(sides[0], color) < self.contrast {
+                    break;
+                }
+                let share = |at: usize| coverage(pixel(at), sides[0], color).clamp(0.0, 1.0);
+                let covered = (run[0]..run[1]).map(share).sum::<f64>() / tip.width;
+                self.fill(tip.along, line, run, center, sides);
+                covered
+            } else {
+                let Some((covered, under)) = self.hidden(tip, color, line, center) else { break };
+                for (at, under) in under {
+                    let i = self.index(tip.along, line, at);
+                    self.pixels[i] = under.map(|value| value as f32);
+                    self.known[i] = true;
+                }
+                covered
+            };
+            let is_whole = covered > 1.0 - tuning::THIN_TOLERANCE;
             longer += if is_whole { 1.0 } else { covered };
             if !is_whole {
                 break;
             }
         }
         longer
+    }
+
+    /// Share of a line that is seen in a window beyond its last one, where something of the color of one of its sides hides it and them in part, and
+    /// what is under the line there, pixel by pixel; none if that is not what is seen.
+    fn hidden(&self, tip: &Mark, color: Color, line: usize, center: f64) -> Option<(f64, Vec<(usize, Color)>)> {
+        let sides = tip.cross.sides.map(|side| self.palette[side as usize]);
+        let [low, high] = [center - 0.5 * tip.width, center + 0.5 * tip.width];
+        let length = if tip.along == Along::Columns { self.size[1] } else { self.size[0] };
+        let window = (low.floor() as usize).checked_sub(1)?..high.ceil() as usize + 1;
+        if window.end > length {
+            return None;
+        }
+        let of_side = |side: Color| {
+            let [mut seen, mut all] = [0.0; 2];
+            let mut under = Vec::new();
+            for at in window.clone() {
+                let within = |from: f64, to: f64| (to.min(at as f64 + 1.0) - from.max(at as f64)).clamp(0.0, 1.0);
+                let [of_first, of_line] = [within(at as f64, low), within(low, high)];
+                let mixed = |first: f64, line: f64| -> Color {
+                    core::array::from_fn(|c| first * sides[0][c] + line * color[c] + (1.0 - first - line) * sides[1][c])
+                };
+                let pixel = self.pixels[self.index(tip.along, line, at)].map(f64::from);
+                let whole = mixed(of_first, of_line);
+                let share = coverage(pixel, side, whole).clamp(0.0, 1.0);
+                let behind = |of: Color| -> Color { core::array::from_fn(|c| side[c] + share * (of[c] - side[c])) };
+                if distance(pixel, behind(whole)) > self.noise {
+                    return None;
+                }
+                seen += share * of_line;
+                all += of_line;
+                under.push((at, behind(mixed(within(at as f64, center), 0.0))));
+            }
+            Some((seen / all, under))
+        };
+        sides
+            .into_iter()
+            .filter_map(of_side)
+            .max_by(|a, b| a.0.total_cmp(&b.0))
+            .filter(|&(covered, _)| covered > self.noise)
     }
 
     /// The windows that are missing between two: what borders on them goes on under the line.
@@ -180,9 +233,6 @@ impl Eraser<'_> {
     /// What is left under corners and ends is as what is nearest.
     fn fill_holes(&mut self, mut holes: Vec<usize>) {
         let [width, height] = self.size;
-        holes.retain(|&i| !self.known[i]);
-        holes.sort_unstable();
-        holes.dedup();
         loop {
             let near = |i: usize| {
                 let (x, y) = (i % width, i / width);

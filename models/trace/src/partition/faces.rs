@@ -77,6 +77,7 @@ fn partition(size: [usize; 2], pixels: Vec<[f32; 3]>, mixed: Mixed, labels: Vec<
         faces,
         lines: Vec::new(),
         seams: Vec::new(),
+        guessed: Vec::new(),
         slivers: Vec::new(),
         palette,
         reading: Reading::default(),

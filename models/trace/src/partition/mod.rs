@@ -58,6 +58,8 @@ pub struct Partition {
     pub faces: Vec<Face>,
     /// Lines that were taken out before the cut.
     pub lines: Vec<ThinLine>,
+    /// Pixels under lines that were taken out which say nothing of what lies there, and are as what is nearest.
+    pub(crate) guessed: Vec<usize>,
     /// Pixels (ascending) where two things that lie edge to edge let through what is behind both; none of pictures that went through a coder.
     pub(crate) seams: Vec<Seam>,
     /// Lines that are faces.
@@ -163,6 +165,7 @@ impl Partition {
         let mut lines = Vec::new();
         let mut seams = Vec::new();
         let mut as_faces = None;
+        let mut guessed = Vec::new();
         for widest in [tuning::THIN_WIDTH, tuning::CROSSING_WIDTH] {
             // Lines that cross have two colors, and lie on a third.
             if widest > tuning::THIN_WIDTH && colors.colors.len() < 3 {
@@ -184,12 +187,14 @@ impl Partition {
             }
             if !found.lines.is_empty() {
                 // Wide lines may pass under thin ones.
-                lines.splice(0..0, found.erase(&mut pixels, size));
+                let (erased, holes) = found.erase(&mut pixels, size);
+                lines.splice(0..0, erased);
+                guessed.extend(holes);
                 flats = find(&pixels);
                 colors = palette::Palette::of(&flats, &noise)?;
             }
         }
-        Ok((finish(pixels, &flats, colors, lines, seams), as_faces))
+        Ok((Self { guessed, ..finish(pixels, &flats, colors, lines, seams) }, as_faces))
     }
 
     /// Color of a face.
@@ -284,12 +289,12 @@ impl Found {
         Self { lines, open, flat, palette: colors.colors.clone(), mended, noise, contrast }
     }
 
-    /// Takes the lines out of the picture.
-    fn erase(self, pixels: &mut [[f32; 3]], size: [usize; 2]) -> impl Iterator<Item = ThinLine> {
+    /// Takes the lines out of the picture: them, and the pixels under which it says nothing.
+    fn erase(self, pixels: &mut [[f32; 3]], size: [usize; 2]) -> (impl Iterator<Item = ThinLine>, Vec<usize>) {
         let Self { mut lines, open, flat, palette, noise, contrast, .. } = self;
         let known = flat.iter().map(|&color| color != u16::MAX).collect();
         let mut eraser = erase::Eraser { pixels, size, open: &open, known, palette: &palette, noise, contrast };
-        eraser.erase(&mut lines);
-        lines.into_iter().map(|(line, _)| line)
+        let guessed = eraser.erase(&mut lines);
+        (lines.into_iter().map(|(line, _)| line), guessed)
     }
 }

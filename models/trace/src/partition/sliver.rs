@@ -19,6 +19,9 @@ use crate::sample::Sample;
 use crate::stroke::ThinSample;
 use crate::tuning;
 
+/// Share of a pixel that may be of anything.
+const UNSEEN: f32 = 0.5;
+
 /// A part of a face that is thinner than two pixels, both sides of whose boundary the same windows tell.
 #[derive(Clone, Debug)]
 pub(crate) struct Sliver {
@@ -41,6 +44,8 @@ impl Partition {
                 cut.lines.push(line.clone());
             }
         }
+        // Beside the ends of a sliver lies what hides it.
+        cut.guessed.iter().for_each(|&i| cut.shares[i] = cut.shares[i].min(UNSEEN));
         (!cut.slivers.is_empty()).then_some(cut)
     }
 
@@ -153,26 +158,30 @@ impl Partition {
     /// The pixels that a line covers, those in which most of it lies where it covers no center, with its share.
     fn covered(&self, line: &ThinLine) -> BTreeMap<usize, f32> {
         let windows = &line.chain.samples;
+        // Windows, and how much of each the line covers.
         let mut all = Vec::new();
         for pair in windows.windows(2) {
-            all.push(pair[0]);
+            all.push((pair[0], 1.0));
             let steps = (pair[1].point - pair[0].point).length().round();
             if pair[0].axis == pair[1].axis && steps > 1.0 && steps <= tuning::SLIVER_GAP {
                 let between = |k: usize| pair[0].point.lerp(pair[1].point, k as f64 / steps);
-                all.extend((1..steps as usize).map(|k| ThinSample { point: between(k), ..pair[0] }));
+                all.extend((1..steps as usize).map(|k| (ThinSample { point: between(k), ..pair[0] }, 1.0)));
             }
         }
-        all.extend(windows.last());
-        // Windows at its ends that it covers in part only.
+        all.extend(windows.last().map(|last| (*last, 1.0)));
+        // Windows at its ends, the last of which it may cover in part.
         for (k, tip) in [windows.first(), windows.last()].into_iter().enumerate() {
             let inner = if k == 0 { windows.get(1) } else { windows.get(windows.len().wrapping_sub(2)) };
             let (Some(tip), Some(inner)) = (tip, inner) else { continue };
             let out = (tip.point - inner.point).normalized().unwrap_or_default();
-            let count = line.chain.ends[k].ceil() as usize;
-            all.extend((1..=count).map(|n| ThinSample { point: tip.point + out * n as f64, ..*tip }));
+            let longer = line.chain.ends[k];
+            let beyond = |n: usize| {
+                (ThinSample { point: tip.point + out * n as f64, ..*tip }, (longer + 1.0 - n as f64).min(1.0))
+            };
+            all.extend((1..=longer.ceil() as usize).map(beyond));
         }
         let mut pixels = BTreeMap::new();
-        for window in all {
+        for (window, covered) in all {
             let along = window.axis.perp();
             let middle = window.point.dot(window.axis);
             let [low, high] = [middle - 0.5 * window.width, middle + 0.5 * window.width];
@@ -183,7 +192,7 @@ impl Partition {
                 let [x, y] = pixel(along * window.point.dot(along) + window.axis * (at + 0.5));
                 if x < self.size[0] && y < self.size[1] {
                     let share = (high.min(at + 1.0) - low.max(at)).clamp(0.0, 1.0);
-                    pixels.insert(y * self.size[0] + x, share as f32);
+                    pixels.insert(y * self.size[0] + x, (covered * share) as f32);
                 }
                 at += 1.0;
             }
