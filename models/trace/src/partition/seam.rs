@@ -34,32 +34,55 @@ pub(super) fn mend(
     palette: &[Color],
     noise: f64,
 ) -> Vec<Seam> {
-    let mut mended = Vec::new();
     let mut near = Near::default();
-    open.retain(|&i| {
-        let colors = near.around(flat, size, i);
-        let pixel = pixels[i].map(f64::from);
-        let mut best = (noise, None);
-        for (k, &a) in colors.iter().enumerate() {
-            for &b in &colors[..k] {
-                for behind in (0..palette.len().min(BEHIND) as u16).filter(|&behind| behind != a && behind != b) {
-                    for [front, other] in [[a, b], [b, a]].map(|pair| pair.map(|color| palette[color as usize])) {
-                        let Some((share, misfit)) = seam(pixel, front, other, palette[behind as usize]) else {
-                            continue;
-                        };
-                        if misfit < best.0 {
-                            best = (misfit, Some((front, other, behind, share)));
-                        }
+    let seams: Vec<_> =
+        open.iter().map(|&i| best(pixels[i].map(f64::from), near.around(flat, size, i), palette, noise)).collect();
+    // Along pixels that are no seams lies what is none, though some three colors explain it: a line that shows in two pixels, mostly in one. Single ones
+    // are where seams meet.
+    let at = |[x, y]: [usize; 2]| {
+        if x < size[0] && y < size[1] { open.binary_search(&(y * size[0] + x)).ok() } else { None }
+    };
+    let is_beside_line = |i: usize| {
+        let place = [i % size[0], i / size[0]];
+        let moved =
+            |[x, y]: [usize; 2], [right, down]: [isize; 2]| [x.wrapping_add_signed(right), y.wrapping_add_signed(down)];
+        [[1, 0], [-1, 0], [0, 1], [0, -1]].into_iter().any(|across: [isize; 2]| {
+            let along = [across[1], across[0]];
+            let is_along = |k: isize| {
+                let here = moved(place, along.map(|step| k * step));
+                at(here).is_some() && at(moved(here, across)).is_some_and(|k| seams[k].is_none())
+            };
+            is_along(0) && (is_along(1) || is_along(-1))
+        })
+    };
+    let mut mended = Vec::new();
+    for (&i, seam) in open.iter().zip(&seams).filter(|&(&i, _)| !is_beside_line(i)) {
+        if let &Some((front, other, behind, share)) = seam {
+            pixels[i] = core::array::from_fn(|c| (share * front[c] + (1.0 - share) * other[c]) as f32);
+            mended.push(Seam { pixel: index(i), front, behind });
+        }
+    }
+    open.retain(|&i| mended.binary_search_by_key(&index(i), |seam| seam.pixel).is_err());
+    mended
+}
+
+/// What a pixel is a seam of, if two of some colors nearby and what is behind them explain it: the front thing, the other one, what shows through, and
+/// the coverage by the front thing.
+fn best(pixel: Color, colors: &[u16], palette: &[Color], noise: f64) -> Option<(Color, Color, u16, f64)> {
+    let mut best = (noise, None);
+    for (k, &a) in colors.iter().enumerate() {
+        for &b in &colors[..k] {
+            for behind in (0..palette.len().min(BEHIND) as u16).filter(|&behind| behind != a && behind != b) {
+                for [front, other] in [[a, b], [b, a]].map(|pair| pair.map(|color| palette[color as usize])) {
+                    let Some((share, misfit)) = seam(pixel, front, other, palette[behind as usize]) else { continue };
+                    if misfit < best.0 {
+                        best = (misfit, Some((front, other, behind, share)));
                     }
                 }
             }
         }
-        let (_, Some((front, other, behind, share))) = best else { return true };
-        pixels[i] = core::array::from_fn(|c| (share * front[c] + (1.0 - share) * other[c]) as f32);
-        mended.push(Seam { pixel: index(i), front, behind });
-        false
-    });
-    mended
+    }
+    best.1
 }
 
 /// Coverage by the front thing, and what is left, the most that a channel differs.

@@ -1,5 +1,6 @@
 //! Things painted edge to edge: what is behind both shows through along their seam, so neither goes on behind the other.
 
+use alloc::vec;
 use alloc::vec::Vec;
 
 use super::{RED, WHITE, error, found, object, paint, rectangle, scene};
@@ -39,4 +40,21 @@ fn seams_are_painted_as_they_were() {
     // Without white that shows through the seam it is 4e-4.
     let error = error(&picture, &found);
     assert!(error < 2e-4, "{error}");
+}
+
+#[test]
+fn a_line_along_an_edge_is_no_seam() {
+    // The frame of a chart ends where its fields do. Of what shows in two pixels one alone may look like white and blue with a little orange between.
+    let field = |[top, bottom]: [f64; 2], color| {
+        object(rectangle(40.7, bottom - top), [50.35, 0.5 * (top + bottom)], 0.0, color)
+    };
+    let [orange, blue] =
+        [[221.0, 132.0, 82.0], [76.0, 114.0, 176.0]].map(|color| color.map(|value: f32| value / 255.0));
+    let frame = object(rectangle(0.47, 80.0), [70.88, 48.0], 0.0, [0.0; 3]);
+    let picture = paint(&scene(WHITE, vec![field([8.0, 45.3], orange), field([45.3, 88.0], blue), frame]));
+    let found = found(&picture);
+    assert_eq!(found.objects.len(), 3, "{:?}", found.objects);
+    // Where the fields end is hidden under the line: a tenth of a pixel along its 80 pixels is 5e-4.
+    let error = error(&picture, &found);
+    assert!(error < 6e-4, "{error}");
 }
