@@ -159,7 +159,7 @@ struct Read {
     rings: Vec<Vec<Ring>>,
 }
 
-/// Reads a picture; where edges ring, as changed by a coder if that makes fewer faces with shorter boundaries, and loses less than that.
+/// Reads a picture; where edges ring or are wide, as changed by a coder if that makes fewer faces with shorter boundaries, and loses less than that.
 #[inline(never)]
 fn read(image: &ImageView<'_, f32>, reading: Reading) -> Result<Read, NoPartition> {
     let of = |reading: Reading| {
@@ -179,7 +179,8 @@ fn read(image: &ImageView<'_, f32>, reading: Reading) -> Result<Read, NoPartitio
         is_shorter && coded.partition.lost_blocks(&plain.partition) < saved
     };
     let plain = of(reading)?;
-    if plain.partition.ripple <= tuning::RIPPLED {
+    // Ramps of a blur are no things either.
+    if plain.partition.ripple <= tuning::RIPPLED && plain.partition.blur <= tuning::WIDE_BLUR {
         return Ok(plain);
     }
     let coded = of(reading.with_coded(true));

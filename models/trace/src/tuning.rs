@@ -155,6 +155,8 @@ pub const SOFT_REACH: usize = 8;
 /// Ripple from which on a picture may have gone through a coder or a filter: of 160 drawings, 100 of them of near colors, one flag with fine arms leaves
 /// more, of 160 that went through JPEG or WebP all but a few flags of stripes.
 pub const RIPPLED: f64 = 0.06;
+/// Blur (standard deviation, pixels) from which on its ramps may be taken for things: clean pictures show less than a tenth of it.
+pub const WIDE_BLUR: f64 = 0.5;
 /// A picture has if that makes its boundaries so much shorter, as a share: what ringing adds.
 pub const RINGING: f64 = 0.02;
 /// Share of another color in a pixel beyond an edge from which on the edge is not one of area coverage: 8 bits cannot show less at
