@@ -146,6 +146,11 @@ pub enum FitError {
         /// Index into the planar data.
         index: usize,
     },
+    /// A pixel is so far from \[0, 1\] (a million, which half floats do not reach) that sums of squares may be infinite.
+    TooLarge {
+        /// Index into the planar data.
+        index: usize,
+    },
     /// A prototype of the bank is no shape.
     Prototype {
         /// Its index.
@@ -183,11 +188,26 @@ pub enum FitError {
     Compare(LossError),
 }
 
-/// Refuses an image with NaN or infinity: a view may be made of an image that was written to since it was checked.
-pub(crate) fn check_finite<T: Real>(image: &ImageView<'_, T>) -> Result<(), FitError> {
-    match ImageView::new(image.size(), image.data()) {
-        Err(ImageError::NotFinite { index }) => Err(FitError::NotFinite { index }),
-        _ => Ok(()),
+/// Largest value of a channel, either side of 0: what half floats hold, and more.
+const MOST_VALUE: f64 = 1e6;
+/// Values that are looked at together.
+const CHUNK: usize = 64;
+
+/// Refuses an image with NaN or infinity, since a view may be made of an image that was written to after it was checked, or with values whose squares
+/// have no sum.
+pub(crate) fn check_values<T: Real>(image: &ImageView<'_, T>) -> Result<(), FitError> {
+    if let Err(ImageError::NotFinite { index }) = ImageView::new(image.size(), image.data()) {
+        return Err(FitError::NotFinite { index });
+    }
+    let is_small = |value: &T| value.abs() <= T::of(MOST_VALUE);
+    // All of a chunk, without a way out between: that is done many at a time.
+    let are_small = |chunk: &[T]| chunk.iter().fold(true, |all, value| all & is_small(value));
+    match image.data().chunks(CHUNK).position(|chunk| !are_small(chunk)) {
+        Some(chunk) => {
+            let within = image.data()[chunk * CHUNK..].iter().position(|value| !is_small(value)).unwrap_or(0);
+            Err(FitError::TooLarge { index: chunk * CHUNK + within })
+        }
+        None => Ok(()),
     }
 }
 
@@ -195,6 +215,10 @@ impl core::fmt::Display for FitError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
             Self::NotFinite { index } => write!(f, "image value {index} is NaN or infinite; replace it before the fit"),
+            Self::TooLarge { index } => write!(
+                f,
+                "image value {index} is beyond a million; images are in [0, 1] by convention, scale this one before the fit"
+            ),
             Self::Prototype { index, source } => write!(f, "prototype {index} of the bank: {source}"),
             Self::FlatPrototype { index } => write!(f, "prototype {index} of the bank encloses no area; remove it"),
             Self::FlatObject { index } => write!(f, "object {index} of the start encloses no area; remove it"),

@@ -34,7 +34,7 @@ use crate::free::foot::EdgeLanes;
 use crate::free::grow::GrowScratch;
 use crate::free::start::StartScratch;
 use crate::joint::JointScratch;
-use crate::options::check_finite;
+use crate::options::check_values;
 use crate::pose::search::{Candidate, Prototype};
 use crate::residual::Residual;
 use crate::segment::{EdgeKind, EdgeSample, Evidence, Segmentation};
@@ -149,7 +149,7 @@ impl<T: Real> Fitter<T> {
     /// [`FitError::NotFinite`] for an image with NaN or infinity.
     #[inline(never)]
     pub fn fit(&self, image: ImageView<'_, T>, scratch: &mut FitScratch<T>) -> Result<Fit<T>, FitError> {
-        check_finite(&image)?;
+        check_values(&image)?;
         scratch.forget();
         scratch.subsampling = Subsampling::of(&image);
         let subsampled = match scratch.subsampling {

@@ -9,8 +9,9 @@ use dvp_core::{Drawing, Image, ImageSize, Object, Pose, Scene};
 use super::shown::Shown;
 use super::subsample::Subsampling;
 use super::{FitScratch, Fitter};
+use crate::picture::{Known, PictureScratch, fit_picture};
 use crate::residual::Residual;
-use crate::{Bank, FitOptions, StopReason};
+use crate::{Bank, FitError, FitOptions, StopReason};
 
 /// A disk of 24 vertices, scene units.
 fn disk([x, y]: [f64; 2], radius: f64) -> Vec<[f64; 2]> {
@@ -230,4 +231,23 @@ fn what_no_objects_explain_becomes_one_flat_color() {
     // Outlines of its arms, filled where they run into one another, miss more of it than gray does.
     let fit = Fitter::new(FitOptions::default()).unwrap().fit(spiral().view(), &mut FitScratch::default()).unwrap();
     assert_eq!(fit.stop, StopReason::NoBetterThanFlat, "{} objects", fit.scene.objects.len());
+}
+
+#[test]
+fn values_whose_squares_have_no_sum_are_refused() {
+    let size = ImageSize::new(7, 30).unwrap();
+    let picture = |value: f32| {
+        let data = (0..3 * size.pixels()).map(|i| if i % 7 < 3 { value } else { 0.7 });
+        Image::from_planar(size, data.collect()).unwrap()
+    };
+    let fitter = Fitter::new(FitOptions::default()).unwrap();
+    for value in [1.4978256e38, -1e38, 1.1e6] {
+        let image = picture(value);
+        let refused = Err(FitError::TooLarge { index: 0 });
+        assert_eq!(fitter.fit(image.view(), &mut FitScratch::default()).map(|fit| fit.loss), refused);
+        let fit = fit_picture(&fitter, image.view(), &Known::default(), &mut PictureScratch::default());
+        assert_eq!(fit.map(|fit| fit.loss), refused);
+    }
+    let fit = fitter.fit(picture(65504.0).view(), &mut FitScratch::default()).unwrap();
+    assert!(fit.loss.is_finite() && !fit.bits.is_nan(), "{fit:?}");
 }

@@ -34,6 +34,7 @@ use dvp_core::render::{Compositing, EdgeLaw, EdgeProfile, PixelLoss};
 use dvp_core::{ImageView, Real as _, Scene};
 use dvp_trace::{NoDrawing, PoseCovariance, Traced, noise};
 
+use crate::options::check_values;
 use crate::paint::Canvas;
 use crate::prototypes::Decoder;
 use crate::tuning::NOT_FLAT_SHARE;
@@ -102,6 +103,7 @@ pub fn fit_picture(
     known: &Known,
     scratch: &mut PictureScratch,
 ) -> Result<Fit<f32>, FitError> {
+    check_values(&image)?;
     let fit = drawing_or_segments(fitter, image, known, scratch)?;
     let fit = match known.matte {
         Some(matte) => cut_openings(fit, image, matte, &mut scratch.canvas)?,

@@ -13,7 +13,7 @@ use dvp_trace::noise::noise_level;
 
 use crate::joint::{JointProblem, continue_sigma};
 use crate::marginal_gain::marginal_gains;
-use crate::options::check_finite;
+use crate::options::check_values;
 use crate::pose::search::Prototype;
 use crate::price::scene_bits;
 use crate::residual::Residual;
@@ -115,7 +115,7 @@ impl Refine {
     }
 
     fn check<T: Real>(&self, image: &ImageView<'_, T>) -> Result<(), FitError> {
-        check_finite(image)?;
+        check_values(image)?;
         if self.factors.is_empty() || self.factors.iter().any(|factor| !(factor.is_finite() && *factor > 0.0)) {
             return Err(FitError::Setting { what: "factors", must: "at least one, each finite and above 0" });
         }
