@@ -3,7 +3,6 @@
 use alloc::string::String;
 use alloc::vec::Vec;
 
-use dvp_core::image::ImageError;
 use dvp_core::loss::LossError;
 use dvp_core::render::{Compositing, EdgeProfile, RenderError};
 use dvp_core::shape::{Efd, ShapeError};
@@ -190,23 +189,18 @@ pub enum FitError {
 
 /// Largest value of a channel, either side of 0: what half floats hold, and more.
 const MOST_VALUE: f64 = 1e6;
-/// Values that are looked at together.
-const CHUNK: usize = 64;
 
 /// Refuses an image with NaN or infinity, since a view may be made of an image that was written to after it was checked, or with values whose squares
 /// have no sum.
 pub(crate) fn check_values<T: Real>(image: &ImageView<'_, T>) -> Result<(), FitError> {
-    if let Err(ImageError::NotFinite { index }) = ImageView::new(image.size(), image.data()) {
-        return Err(FitError::NotFinite { index });
-    }
     let is_small = |value: &T| value.abs() <= T::of(MOST_VALUE);
-    // All of a chunk, without a way out between: that is done many at a time.
-    let are_small = |chunk: &[T]| chunk.iter().fold(true, |all, value| all & is_small(value));
-    match image.data().chunks(CHUNK).position(|chunk| !are_small(chunk)) {
-        Some(chunk) => {
-            let within = image.data()[chunk * CHUNK..].iter().position(|value| !is_small(value)).unwrap_or(0);
-            Err(FitError::TooLarge { index: chunk * CHUNK + within })
-        }
+    // All of them first, without a way out between: that is done many at a time.
+    if image.data().iter().fold(true, |all, value| all & is_small(value)) {
+        return Ok(());
+    }
+    match image.data().iter().position(|value| !is_small(value)) {
+        Some(index) if image.data()[index].is_finite() => Err(FitError::TooLarge { index }),
+        Some(index) => Err(FitError::NotFinite { index }),
         None => Ok(()),
     }
 }

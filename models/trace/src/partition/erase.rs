@@ -170,13 +170,11 @@ impl Eraser<'_> {
                 all += of_line;
                 under.push((at, behind(mixed(within(at as f64, center), 0.0))));
             }
-            Some((seen / all, under))
+            let covered = seen / all;
+            // What is seen of it must be more than noise.
+            (covered * distance(side, color) > self.noise).then_some((covered, under))
         };
-        sides
-            .into_iter()
-            .filter_map(of_side)
-            .max_by(|a, b| a.0.total_cmp(&b.0))
-            .filter(|&(covered, _)| covered > self.noise)
+        sides.into_iter().filter_map(of_side).max_by(|a, b| a.0.total_cmp(&b.0))
     }
 
     /// The windows that are missing between two: what borders on them goes on under the line.
