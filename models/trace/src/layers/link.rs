@@ -48,10 +48,10 @@ pub(super) fn relinked(
     let Some(tips) = tips else { return Vec::new() };
     let price = |from: usize, to: usize| tips[from][1].price(&tips[to][0], &is_seen);
     let prices: Vec<f64> = (0..count * count).map(|k| price(k / count, k % count)).collect();
-    let price = |next: &[usize]| next.iter().enumerate().map(|(from, to)| prices[from * count + to]).sum::<f64>();
+    let price = |from: usize, to: usize| prices[from * count + to];
     let mut ways = if count <= MOST_PERMUTED { permutations(count) } else { vec![swapped(next.clone(), price)] };
     ways.retain(|way| *way != next);
-    sort::ascending(&mut ways, |way| price(way));
+    sort::ascending(&mut ways, |way| way.iter().enumerate().map(|(from, &to)| price(from, to)).sum::<f64>());
     ways.truncate(most);
     ways.iter().map(|way| closed.iter().map(|&ring| ring.clone()).chain(followed(way, &runs)).collect()).collect()
 }
@@ -76,19 +76,17 @@ fn permutations(count: usize) -> Vec<Vec<usize>> {
     all
 }
 
-/// What follows each stretch, with two exchanged again and again as long as that costs less.
-fn swapped(mut next: Vec<usize>, price: impl Fn(&[usize]) -> f64) -> Vec<usize> {
+/// What follows each stretch, with two exchanged again and again as long as that costs less. `price`: of a link from one stretch to another.
+fn swapped(mut next: Vec<usize>, price: impl Fn(usize, usize) -> f64) -> Vec<usize> {
     loop {
-        let now = price(&next);
-        let mut best = (now - 1e-6, 0, 0);
+        let mut best = (-1e-6, 0, 0);
         for a in 0..next.len() {
             for b in 0..a {
-                next.swap(a, b);
-                let then = price(&next);
-                if then < best.0 {
-                    best = (then, a, b);
+                let before = price(a, next[a]) + price(b, next[b]);
+                let change = price(a, next[b]) + price(b, next[a]) - before;
+                if change < best.0 {
+                    best = (change, a, b);
                 }
-                next.swap(a, b);
             }
         }
         let (_, a, b) = best;

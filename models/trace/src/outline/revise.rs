@@ -89,17 +89,29 @@ impl Reviser<'_> {
 
     /// The one of `others` with the shortest description, if that is shorter than that of `part`.
     fn shorter(&self, part: &Chain, others: impl IntoIterator<Item = Chain>) -> Option<Chain> {
-        let others = others.into_iter().filter_map(|other| self.bits(other));
-        let (best, bits) = others.min_by(|a, b| a.1.total_cmp(&b.1))?;
-        let (_, limit) = self.bits(part.clone())?;
-        (bits < limit - tuning::OUTLINE_PIECE_BITS).then_some(best)
+        let mut others = others.into_iter().peekable();
+        others.peek()?;
+        let (_, limit) = self.bits(part.clone(), f64::INFINITY)?;
+        let mut best = (None, limit - tuning::OUTLINE_PIECE_BITS);
+        for other in others {
+            if let Some((chain, bits)) = self.bits(other, best.1) {
+                best = (Some(chain), bits);
+            }
+        }
+        best.0
     }
 
-    fn bits(&self, chain: Chain) -> Option<(Chain, f64)> {
-        let tied = tie(Fitted::of(chain, self.track, self.ruler, &[])?, self.track, self.ruler);
-        let pieces = tuning::OUTLINE_PIECE_BITS * as_f64(tied.fitted.chain.curves.len());
+    /// The chain as the samples want it, and its bits; none if they are not fewer than `most`.
+    fn bits(&self, chain: Chain, most: f64) -> Option<(Chain, f64)> {
+        let fitted = Fitted::of(chain, self.track, self.ruler, &[])?;
+        let pieces = tuning::OUTLINE_PIECE_BITS * as_f64(fitted.chain.curves.len());
+        // Ties spare numbers, but make no chain come nearer.
+        if fitted.misfit(self.ruler) + pieces >= most {
+            return None;
+        }
+        let tied = tie(fitted, self.track, self.ruler);
         let bits = tied.fitted.misfit(self.ruler) + tied.number_bits + pieces;
-        Some((tied.fitted.chain, bits))
+        (bits < most).then_some((tied.fitted.chain, bits))
     }
 
     /// A line or an arc in place of a curve of more numbers.
