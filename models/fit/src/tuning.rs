@@ -15,8 +15,6 @@ pub(crate) const CODED_NOISE: f64 = 0.03;
 /// A picture with more regions than this is not fitted as clean if most of its soft pixels lie between no two regions. It bounds the time: a
 /// picture of 139 bands took 27 s instead of 0.3 s without it.
 pub(crate) const MOST_CLEAN_REGIONS: usize = 64;
-/// Compression it was if less than this share of the soft pixels is still soft when it is averaged away.
-pub(crate) const STILL_SOFT_SHARE: f64 = 0.8;
 /// Compression blurs edges by up to about this much (scale of a logistic curve, px).
 pub(crate) const COMPRESSED_BLUR_PX: f64 = 1.0;
 /// A picture of which flat objects leave a larger share of the variance is not flat.

@@ -18,7 +18,7 @@ use crate::colors::{is_rounded, round_color};
 use crate::segment::{EdgeKind, NoisyOptions, SegmentOptions};
 use crate::tuning::{
     CODED_NOISE, COMPRESSED_BLUR_PX, COMPRESSED_NOISE, FINE_ZONE, MANY_REGIONS, MISSED_SHARE, MOST_CLEAN_REGIONS,
-    NOT_FLAT_SHARE, QUIET_NOISE, STILL_SOFT_SHARE, TEXTURE_NOISE,
+    NOT_FLAT_SHARE, QUIET_NOISE, TEXTURE_NOISE,
 };
 use crate::{Fit, FitError, StopReason};
 
@@ -85,7 +85,7 @@ impl<T: Real> Fitter<T> {
         scratch: &mut FitScratch<T>,
     ) -> Result<Fit<T>, FitError> {
         scratch.code = BlockCode::of(&image);
-        let (soft, regions) = (scratch.segmentation.soft_count(), scratch.segmentation.region_count());
+        let regions = scratch.segmentation.region_count();
         let options = NoisyOptions {
             noise: T::of(COMPRESSED_NOISE),
             compressed: true,
@@ -94,8 +94,6 @@ impl<T: Real> Fitter<T> {
             boundary: self.options.prices.boundary,
         };
         let readable = scratch.segmentation.read_noisy(&image, options);
-        // What was soft in between edges is flat now: that was no edge.
-        let surely = T::of_usize(scratch.segmentation.soft_count()) < T::of(STILL_SOFT_SHARE) * T::of_usize(soft);
         let mut freed = self.fit_noisy(image, readable, scratch)?;
         if scratch.code.is_some() {
             // Faint objects are averaged away with the rest; the coder tells whether they are there.
@@ -106,7 +104,7 @@ impl<T: Real> Fitter<T> {
                 freed = finer;
             }
         }
-        if surely || scratch.code.is_some() || sharpened || regions > MOST_CLEAN_REGIONS {
+        if scratch.code.is_some() || sharpened || regions > MOST_CLEAN_REGIONS {
             return Ok(freed);
         }
         let readable = scratch.segmentation.read(&image, &SegmentOptions::default());

@@ -87,11 +87,6 @@ impl<T: Real> Segmentation<T> {
         self.reading.borders.clear();
     }
 
-    /// Number of soft pixels.
-    pub(crate) fn soft_count(&self) -> usize {
-        self.soft.len()
-    }
-
     /// Number of regions.
     pub(crate) fn region_count(&self) -> usize {
         self.regions.len()
