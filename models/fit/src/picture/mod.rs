@@ -11,6 +11,7 @@
 //! | `ground` | [`Ground`]: the color that transparent pictures are put over |
 //! | `most` | fewer objects than a drawing has |
 //! | `openings` | [`cut_openings`]: what shows nothing in a transparent picture |
+//! | `squares` | pictures that were enlarged by repeating pixels, and sprites |
 //!
 //! *Units*: scene units, the shorter side of the picture is 1. Works in f32, as images come. Proved by the tests beside it, and by
 //! those of the command, which calls it.
@@ -19,6 +20,7 @@ mod bank;
 mod ground;
 mod most;
 mod openings;
+mod squares;
 #[cfg(test)]
 mod tests;
 
@@ -31,13 +33,13 @@ use num_traits::Float as _;
 
 use dvp_core::loss::{ImagePair, Loss as _};
 use dvp_core::render::{Compositing, EdgeLaw, EdgeProfile, PixelLoss};
-use dvp_core::{ImageView, Real as _, Scene};
+use dvp_core::{Image, ImageView, Real as _, Scene};
 use dvp_trace::{NoDrawing, PoseCovariance, Traced, noise};
 
 use crate::options::check_values;
 use crate::paint::Canvas;
 use crate::prototypes::Decoder;
-use crate::tuning::NOT_FLAT_SHARE;
+use crate::tuning::{NOT_FLAT_SHARE, UNEXPLAINED_SHARE};
 use crate::{Ambiguity, Fit, FitError, FitOptions, FitScratch, Fitter, StopReason};
 
 pub use dvp_trace::Known;
@@ -45,6 +47,7 @@ pub use ground::Ground;
 pub use openings::cut_openings;
 
 use most::at_most;
+use squares::Squares;
 
 /// Where two fits are of different kinds, the likelier one is taken, unless it misses the picture by so many times as much as the other one:
 /// ringing is read as faces, which come nearer to it but are none, and outlines that are free come nearer than shapes that are known.
@@ -77,6 +80,9 @@ pub struct PictureScratch {
 /// A transparent picture comes over its matte ([`Ground`]), and [`Known::matte`] says which color that is; of an opaque one it
 /// is none.
 ///
+/// What was enlarged by repeating pixels is read at the size that it was drawn: [`Fit::loss`] and all else that the fit says of pixels is of that
+/// picture. So is a sprite, whose pixels are squares of one color, with each of them enlarged.
+///
 /// Drawings keep all their objects, however many, unless fewer than the default of [`FitOptions::max_objects`] are asked for.
 ///
 /// # Errors
@@ -104,7 +110,12 @@ pub fn fit_picture(
     scratch: &mut PictureScratch,
 ) -> Result<Fit<f32>, FitError> {
     check_values(&image)?;
+    // Who says how objects mix asks for a scene of the renderer, and no square has its edges.
+    let small = if fitter.options().compositing.is_some() { None } else { squares::reduced(&image) };
+    let image = small.as_ref().map_or(image, Image::view);
     let fit = drawing_or_segments(fitter, image, known, scratch)?;
+    let mut enlarged = None;
+    let (fit, image) = or_squares(fit, image, small.is_some(), &mut enlarged, (fitter, known), scratch)?;
     let fit = match known.matte {
         Some(matte) => cut_openings(fit, image, matte, &mut scratch.canvas)?,
         None => fit,
@@ -114,6 +125,41 @@ pub fn fit_picture(
         return at_most(fit, most, image, &mut scratch.canvas);
     }
     Ok(fit)
+}
+
+/// The fit of a picture, or of its squares, which are put into `enlarged`, with what it is a fit of: if the scene that was found misses more than it
+/// should, and squares are shorter than it is with what it misses. Of pixels that somebody repeated (`are_repeated`) it should miss none, and as few
+/// things are enough. What noise leaves does not count; and shapes that are known are no squares.
+#[inline(never)]
+fn or_squares<'a>(
+    fit: Fit<f32>,
+    image: ImageView<'a, f32>,
+    are_repeated: bool,
+    enlarged: &'a mut Option<Image<f32>>,
+    (fitter, known): (&Fitter<f32>, &Known),
+    scratch: &mut PictureScratch,
+) -> Result<(Fit<f32>, ImageView<'a, f32>), FitError> {
+    let options = fitter.options();
+    let is_explained = !are_repeated && fit.unexplained <= UNEXPLAINED_SHARE;
+    if is_explained || fit.noise > f32::of(noise::ROUNDED) || options.bank.is_some() || options.compositing.is_some() {
+        return Ok((fit, image));
+    }
+    if !squares::may_be(image.size()) {
+        return Ok((fit, image));
+    }
+    let painted = scratch.canvas.paint(&fit.scene, image.size())?.0.view();
+    let Some(squares) = Squares::of(&image, &painted) else { return Ok((fit, image)) };
+    let (things, are_shorter) = (fit.scene.objects.len(), squares.bits < fit.bits + squares.missed_bits);
+    // Every color but the background's is one thing at least.
+    if !are_shorter && !(are_repeated && squares.colors <= things + 1) {
+        return Ok((fit, image));
+    }
+    let Some(large) = squares::enlarged(&image) else { return Ok((fit, image)) };
+    let large = enlarged.insert(large).view();
+    let of_squares = drawing_or_segments(fitter, large, known, scratch)?;
+    let is_better = of_squares.unexplained < fit.unexplained;
+    let is_taken = is_better && (are_shorter || of_squares.scene.objects.len() <= things);
+    Ok(if is_taken { (of_squares, large) } else { (fit, image) })
 }
 
 /// The nearer of the two fits, openings and all.

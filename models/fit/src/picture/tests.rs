@@ -9,6 +9,8 @@ use dvp_core::render::Compositing;
 use dvp_core::shape::{AnyShape, Circle, Rectangle};
 use dvp_core::{Efd, Image, ImageSize, Object, Pose, Scene};
 
+use proptest::prelude::*;
+
 use super::*;
 use crate::FitOptions;
 
@@ -210,4 +212,93 @@ fn a_drawing_under_noise_is_a_drawing() {
     let found = fit(&image, &Known::default(), FitOptions::default());
     assert_disk_and_rectangle(&found);
     assert!((found.noise / 0.03 - 1.0).abs() < 0.1, "{}", found.noise);
+}
+
+/// Every pixel `times` x `times` times.
+fn repeated(image: &Image<f32>, times: usize) -> Image<f32> {
+    let (width, height) = (image.size().width() * times, image.size().height() * times);
+    let of_channel = |c: usize| {
+        let channel = image.view().channel(c).to_vec();
+        (0..width * height).map(move |i| channel[i / width / times * (width / times) + i % width / times])
+    };
+    let size = ImageSize::new(width, height).unwrap();
+    Image::from_planar(size, (0..3).flat_map(of_channel).collect()).unwrap()
+}
+
+#[test]
+fn a_picture_whose_pixels_are_repeated_is_read_at_the_size_that_it_was_drawn() {
+    let image = disk_and_rectangle(EdgeProfile::area());
+    let small = fit(&image, &Known::default(), FitOptions::default());
+    let large = fit(&repeated(&image, 3), &Known::default(), FitOptions::default());
+    assert_disk_and_rectangle(&large);
+    assert_eq!(large.scene, small.scene);
+}
+
+#[test]
+fn pixels_of_a_sprite_are_squares() {
+    // A creature, 16 x 16 pixels, whose eyes and feelers are one pixel wide. Read as coverage, half of it is gone.
+    const ROWS: [&str; 16] = [
+        "................",
+        "..#..........#..",
+        "...#........#...",
+        "....########....",
+        "...##########...",
+        "..##o######o##..",
+        "..############..",
+        ".###.######.###.",
+        ".#.##########.#.",
+        ".#.#.######.#.#.",
+        "...#.#....#.#...",
+        "....##....##....",
+        "................",
+        "..o..........o..",
+        ".ooo........ooo.",
+        "................",
+    ];
+    let color = |at: u8| match at {
+        b'#' => [0.1, 0.5, 0.2],
+        b'o' => [0.9, 0.3, 0.1],
+        _ => [0.95, 0.95, 1.0],
+    };
+    let pixels: Vec<f32> = ROWS.iter().flat_map(|row| row.bytes()).flat_map(color).collect();
+    let sprite = Image::from_interleaved(ImageSize::new(16, 16).unwrap(), &pixels).unwrap();
+    let outlines = super::drawing_or_segments(
+        &Fitter::new(FitOptions::default()).unwrap(),
+        sprite.view(),
+        &Known::default(),
+        &mut PictureScratch::default(),
+    );
+    assert!(outlines.unwrap().unexplained > UNEXPLAINED_SHARE);
+    let of_squares = fit(&sprite, &Known::default(), FitOptions::default());
+    for times in [1, 4] {
+        let shown = repeated(&sprite, times);
+        let painted = Canvas::default().paint(&of_squares.scene, shown.size()).unwrap().0.clone();
+        let missed = painted.data().iter().zip(shown.data()).filter(|(a, b)| (*a - *b).abs() > 0.1).count();
+        assert_eq!(missed, 0, "of {} values, {times} times", shown.data().len());
+        assert_eq!(fit(&shown, &Known::default(), FitOptions::default()).scene, of_squares.scene);
+    }
+    // The body, two eyes, two hands or feet, each of them one thing.
+    assert_eq!(of_squares.scene.objects.len(), 5, "{:?}", of_squares.scene.objects);
+}
+
+proptest! {
+    #[test]
+    fn what_is_repeated_is_found_by_what_differs(
+        (width, height, times) in (16_usize..40, 16_usize..40, 1_usize..5),
+        marks in proptest::collection::vec((0_usize..1600, 0.0_f32..1.0), 1..40),
+    ) {
+        let size = ImageSize::new(width, height).unwrap();
+        let mut image = Image::zeros(size);
+        for (at, value) in marks {
+            let count = image.data().len();
+            image.data_mut()[at % count] = value;
+        }
+        let large = repeated(&image, times);
+        let small = squares::reduced(&large.view());
+        // What was repeated has no more pixels than before, and says the same.
+        let small = small.unwrap_or_else(|| large.clone());
+        prop_assert!(small.size().pixels() <= image.size().pixels());
+        let back = large.size().width() / small.size().width();
+        prop_assert_eq!(repeated(&small, back), large);
+    }
 }
