@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What a program makes of every picture of all sets, recorded, and two records held against each other.
 
-    baseline.py record OUT.json --dvp EXE [--sets val,fresh,pictures,holes,circles,charts,real,spoiled] [--quick]
+    baseline.py record OUT.json --dvp EXE [--sets val,fresh,pictures,holes,circles,charts,real,spoiled,sprites] [--quick]
                 [--seed N --count N]                   # other generated scenes, to look at
     baseline.py compare BEFORE.json AFTER.json     # exit code 1 if a picture got worse
     baseline.py show RECORD.json                   # tables of means, as markdown
@@ -16,8 +16,9 @@
 | charts | charts.py, 128, 256 and 512 px | marks, SVG |
 | real | ../shared/real at 128, 256, 512 px and as 400 px JPEG, peers at 256 px | SVG |
 | spoiled | every 8th of `real` at 256 px with noise, blur, scaling, sharpening, or from coders of photographs (spoiled.py) | the picture before |
+| sprites | sprites.py, as drawn, 4 and 8 times enlarged | their squares |
 
-**Nobody debugs on `fresh`, `holes`, `circles`, `charts`, `real` and `spoiled`**: who looks at their pictures while changing the fit makes the
+**Nobody debugs on `fresh`, `holes`, `circles`, `charts`, `real`, `spoiled` and `sprites`**: who looks at their pictures while changing the fit makes the
 figures worthless. What is missing is skipped, which is said and recorded.
 
 Pictures are made once and stay in --work (target/baseline), so that two records are about the same pictures; compare checks it. One

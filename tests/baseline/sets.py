@@ -18,6 +18,7 @@ from PIL import Image
 import charts
 import measure
 from spoiled import spoiled
+from sprites import sprites
 
 # Seed and number of the generated scenes. Nobody debugs on them: whoever wants pictures to look at takes another seed (--seed).
 FRESH_SEED = 915_402_117
@@ -296,4 +297,5 @@ def read_whole(path, side, count):
     return wide.reshape(wide.shape[0], count, side).transpose(1, 0, 2)
 
 
-ALL = dict(val=val, fresh=fresh, pictures=pictures, holes=holes, circles=circles, charts=chart_sets, real=real, spoiled=spoiled)
+ALL = dict(val=val, fresh=fresh, pictures=pictures, holes=holes, circles=circles, charts=chart_sets, real=real, spoiled=spoiled,
+           sprites=sprites)

@@ -48,6 +48,7 @@ KINDS = {
     "blur 0.7 px, noise 0.02": lambda picture, stem: noisy(blurred(picture, 0.7), 0.02, stem),
     "twice enlarged, bilinear": lambda picture, stem: enlarged(picture, Image.BILINEAR),
     "twice enlarged, bicubic": lambda picture, stem: enlarged(picture, Image.BICUBIC),
+    "twice enlarged, pixels repeated": lambda picture, stem: enlarged(picture, Image.NEAREST),
     "sharpened": lambda picture, stem: picture.filter(ImageFilter.UnsharpMask(1, 80, 0)),
     "JPEG 80 saved as PNG": lambda picture, stem: coded(picture, "JPEG", 80),
     "WebP 80 saved as PNG": lambda picture, stem: coded(picture, "WEBP", 80),
