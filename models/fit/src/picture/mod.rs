@@ -151,7 +151,8 @@ fn or_squares<'a>(
     let Some(squares) = Squares::of(&image, &painted) else { return Ok((fit, image)) };
     let (things, are_shorter) = (fit.scene.objects.len(), squares.bits < fit.bits + squares.missed_bits);
     // Every color but the background's is one thing at least.
-    if !are_shorter && !(are_repeated && squares.colors <= things + 1) {
+    let may_be_as_few = are_repeated && squares.colors <= things + 1;
+    if !(are_shorter || may_be_as_few) {
         return Ok((fit, image));
     }
     let Some(large) = squares::enlarged(&image) else { return Ok((fit, image)) };

@@ -31,7 +31,7 @@ pub(super) fn reduced(image: &ImageView<'_, f32>) -> Option<Image<f32>> {
     let size = image.size();
     let shorter = size.width().min(size.height());
     let common = repetition(image);
-    let times = (2..=common).rev().find(|k| common % k == 0 && shorter / k >= LEAST_SIDE)?;
+    let times = (2..=common).rev().find(|k| common.is_multiple_of(*k) && shorter / k >= LEAST_SIDE)?;
     resampled(image, [size.width() / times, size.height() / times], |at| at * times)
 }
 
