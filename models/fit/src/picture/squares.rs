@@ -9,6 +9,9 @@
 
 use alloc::vec::Vec;
 
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
+
 use dvp_core::{Image, ImageSize, ImageView, Real as _};
 
 use crate::tuning::VISIBLE_ERROR;
