@@ -148,8 +148,8 @@ fn or_squares<'a>(
         return Ok((fit, image));
     }
     let painted = scratch.canvas.paint(&fit.scene, image.size())?.0.view();
-    let Some(squares) = Squares::of(&image, &painted) else { return Ok((fit, image)) };
-    let (things, are_shorter) = (fit.scene.objects.len(), squares.bits < fit.bits + squares.missed_bits);
+    let Some(squares) = Squares::of(&image, &painted, are_repeated) else { return Ok((fit, image)) };
+    let (things, are_shorter) = (fit.scene.objects.len(), squares.bits < fit.bits + squares.wrong_bits);
     // Every color but the background's is one thing at least.
     let may_be_as_few = are_repeated && squares.colors <= things + 1;
     if !(are_shorter || may_be_as_few) {

@@ -26,6 +26,8 @@ const MOST_PATCHES: usize = 1000;
 const MOST_COLORS: usize = 64;
 /// How often pixels of sprites are repeated. From 5 on squares keep their corners, and up to 7 those that touch in a corner are told to be one thing.
 const REPEATED: usize = 6;
+/// A pixel off by more, as a share of the scale, is wrong: less is a share of an edge, where edges are smooth.
+const WRONG: f32 = 0.25;
 /// Bits of a color of 8 bits per channel.
 const COLOR_BITS: f64 = 24.0;
 
@@ -55,13 +57,13 @@ pub(super) struct Squares {
     pub(super) colors: usize,
     /// Bits of the squares: a step straight on, to the left or to the right for every side between two colors, the color of every patch, and the palette.
     pub(super) bits: f64,
-    /// Bits of the pixels that the scene visibly misses: where they are, and their colors.
-    pub(super) missed_bits: f64,
+    /// Bits of the pixels that the scene gets wrong: where they are, and their colors.
+    pub(super) wrong_bits: f64,
 }
 
 impl Squares {
-    /// Of a picture and of its scene, painted; none if nothing is missed, or of more patches or colors than sprites have.
-    pub(super) fn of(image: &ImageView<'_, f32>, painted: &ImageView<'_, f32>) -> Option<Self> {
+    /// Of a picture and of its scene, painted; where pixels are repeated, what is visibly off is wrong. None if nothing is visibly missed, or of more patches or colors than sprites have.
+    pub(super) fn of(image: &ImageView<'_, f32>, painted: &ImageView<'_, f32>, are_repeated: bool) -> Option<Self> {
         let (pixels, width) = (image.size().pixels(), image.size().width());
         let mut palette: Vec<[u32; 3]> = (0..pixels).map(|i| image.pixel(i).map(f32::to_bits)).collect();
         let (mut sides, mut patches) = (0_usize, 1_usize);
@@ -74,20 +76,24 @@ impl Squares {
         }
         palette.sort_unstable();
         palette.dedup();
-        let misses = |i: &usize| {
-            let (there, shown) = (image.pixel(*i), painted.pixel(*i));
-            (0..3).any(|c| (there[c] - shown[c]).abs() > f32::of(VISIBLE_ERROR))
+        let is_off = |i: usize, by: f32| {
+            let (there, shown) = (image.pixel(i), painted.pixel(i));
+            (0..3).any(|c| (there[c] - shown[c]).abs() > by)
         };
-        let (colors, missed) = (palette.len(), (0..pixels).filter(misses).count());
-        if missed == 0 || patches > MOST_PATCHES || colors > MOST_COLORS {
+        let colors = palette.len();
+        let visible = f32::of(VISIBLE_ERROR);
+        let is_exact = !(0..pixels).any(|i| is_off(i, visible));
+        if is_exact || patches > MOST_PATCHES || colors > MOST_COLORS {
             return None;
         }
         let color_bits = f64::of_usize(colors).log2();
         let bits = f64::of_usize(sides) * 3.0_f64.log2()
             + f64::of_usize(patches) * color_bits
             + f64::of_usize(colors) * COLOR_BITS;
-        let missed_bits = f64::of_usize(missed) * (f64::of_usize(pixels).log2() + color_bits);
-        Some(Self { colors, bits, missed_bits })
+        let most_off = if are_repeated { visible } else { WRONG };
+        let wrong = (0..pixels).filter(|&i| is_off(i, most_off)).count();
+        let wrong_bits = f64::of_usize(wrong) * (f64::of_usize(pixels).log2() + color_bits);
+        Some(Self { colors, bits, wrong_bits })
     }
 }
 
