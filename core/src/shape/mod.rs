@@ -64,7 +64,7 @@ pub use outline::{Flattening, OUTLINE_TOLERANCE, Outline, Rings};
 pub use outline_op::{MixOp, OutlineOp};
 pub use resolve::FillRule;
 pub use stroke::{Cap, Join, Stroke};
-pub use symmetry::{REFERENCE_SYMMETRY_HARMONICS, REFERENCE_SYMMETRY_THRESHOLD, SYMMETRY_TOLERANCE, Symmetry};
+pub use symmetry::{REFERENCE_SYMMETRY_HARMONICS, REFERENCE_SYMMETRY_THRESHOLD, SYMMETRY_TOLERANCE, Symmetry, gcd};
 
 /// Vertices of an outline in the reference system: 64 parameters t = i / 63, both end points included.
 pub const REFERENCE_VERTICES: usize = 64;

@@ -67,6 +67,7 @@ impl<T: Real> Efd<T> {
 }
 
 /// Greatest common divisor; gcd(0, n) = n.
-fn gcd(a: usize, b: usize) -> usize {
+#[must_use]
+pub fn gcd(a: usize, b: usize) -> usize {
     if b == 0 { a } else { gcd(b, a % b) }
 }

@@ -141,10 +141,8 @@ fn or_squares<'a>(
 ) -> Result<(Fit<f32>, ImageView<'a, f32>), FitError> {
     let options = fitter.options();
     let is_explained = !are_repeated && fit.unexplained <= UNEXPLAINED_SHARE;
-    if is_explained || fit.noise > f32::of(noise::ROUNDED) || options.bank.is_some() || options.compositing.is_some() {
-        return Ok((fit, image));
-    }
-    if !squares::may_be(image.size()) {
+    let is_known = options.bank.is_some() || options.compositing.is_some();
+    if is_explained || is_known || fit.noise > f32::of(noise::ROUNDED) || !squares::may_be(image.size()) {
         return Ok((fit, image));
     }
     let painted = scratch.canvas.paint(&fit.scene, image.size())?.0.view();

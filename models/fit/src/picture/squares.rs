@@ -12,6 +12,7 @@ use alloc::vec::Vec;
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
+use dvp_core::shape::gcd;
 use dvp_core::{Image, ImageSize, ImageView, Real as _};
 
 use crate::tuning::VISIBLE_ERROR;
@@ -62,7 +63,8 @@ pub(super) struct Squares {
 }
 
 impl Squares {
-    /// Of a picture and of its scene, painted; where pixels are repeated, what is visibly off is wrong. None if nothing is visibly missed, or of more patches or colors than sprites have.
+    /// Of a picture and of its scene, painted; where pixels are repeated, what is visibly off is wrong. None if nothing is visibly missed, or of more
+    /// patches or colors than sprites have.
     pub(super) fn of(image: &ImageView<'_, f32>, painted: &ImageView<'_, f32>, are_repeated: bool) -> Option<Self> {
         let (pixels, width) = (image.size().pixels(), image.size().width());
         let mut palette: Vec<[u32; 3]> = (0..pixels).map(|i| image.pixel(i).map(f32::to_bits)).collect();
@@ -100,19 +102,19 @@ impl Squares {
 /// The largest number of pixels, both ways, that every square of one color in the picture is a multiple of.
 fn repetition(image: &ImageView<'_, f32>) -> usize {
     let (width, height) = (image.size().width(), image.size().height());
-    let mut common = greatest_common_divisor(width, height);
+    let mut common = gcd(width, height);
     for y in 0..height {
         let rows = (0..3).map(|c| &image.channel(c)[y * width..][..width]);
         let above = (0..3).map(|c| &image.channel(c)[y.saturating_sub(1) * width..][..width]);
         let is_new = rows.clone().zip(above).any(|(row, above)| row != above);
         if is_new {
-            common = greatest_common_divisor(common, y);
+            common = gcd(common, y);
         }
         if is_new || y == 0 {
             for row in rows {
                 for (before, pair) in row.windows(2).enumerate() {
                     if pair[0].to_bits() != pair[1].to_bits() {
-                        common = greatest_common_divisor(common, before + 1);
+                        common = gcd(common, before + 1);
                     }
                 }
             }
@@ -122,13 +124,6 @@ fn repetition(image: &ImageView<'_, f32>) -> usize {
         }
     }
     common
-}
-
-fn greatest_common_divisor(mut a: usize, mut b: usize) -> usize {
-    while b > 0 {
-        (a, b) = (b, a % b);
-    }
-    a
 }
 
 /// A picture of `size` (columns, rows) whose pixels are those at `from` (column or row).

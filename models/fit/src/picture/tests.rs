@@ -281,6 +281,29 @@ fn pixels_of_a_sprite_are_squares() {
     assert_eq!(of_squares.scene.objects.len(), 5, "{:?}", of_squares.scene.objects);
 }
 
+#[test]
+fn smooth_edges_that_are_off_by_a_share_are_not_wrong_unless_their_pixels_are_repeated() {
+    // A square whose left edge covers a half of its pixels, and a scene that has a third there; another one without the square.
+    let edge = |share: f32| {
+        move |column, row| {
+            if in_square(13, 36)(column, row) {
+                [0.0; 3]
+            } else if in_square(12, 36)(column, row) {
+                [1.0 - share; 3]
+            } else {
+                [1.0; 3]
+            }
+        }
+    };
+    let (image, scene) = (picture(edge(0.5)), picture(edge(0.34)));
+    let wrong_bits = |painted: &Image<f32>, are_repeated| {
+        Squares::of(&image.view(), &painted.view(), are_repeated).unwrap().wrong_bits
+    };
+    assert_eq!(wrong_bits(&scene, false), 0.0);
+    assert!(wrong_bits(&scene, true) > 24.0 && wrong_bits(&picture(|_, _| [1.0; 3]), false) > 24.0 * 24.0);
+    assert!(Squares::of(&image.view(), &image.view(), true).is_none(), "nothing is missed");
+}
+
 proptest! {
     #[test]
     fn what_is_repeated_is_found_by_what_differs(
