@@ -19,6 +19,17 @@ pub struct Sample {
     pub axis: Vec2<f64>,
     /// Standard deviation of the position along `axis`, pixels.
     pub sigma: f64,
+    /// Whether the window has no mixed pixel in a picture whose edges mix them: the boundary goes along the whole of a crack there, and no corner
+    /// lies in the window.
+    pub is_exact: bool,
+}
+
+impl Sample {
+    /// A position along an axis with its standard deviation, pixels.
+    #[must_use]
+    pub fn new(point: Vec2<f64>, axis: Vec2<f64>, sigma: f64) -> Self {
+        Self { point, axis, sigma, is_exact: false }
+    }
 }
 
 /// The samples along a closed boundary, in order: the object lies on the side to which +x is turned into +y, that is to the

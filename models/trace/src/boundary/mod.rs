@@ -30,6 +30,8 @@ pub struct Step {
     pub other: u32,
     /// What the window across the crack tells.
     pub sample: Option<Sample>,
+    /// Whether the boundary leads across it on the whole, there: it is of a side too short to tell where that goes on.
+    pub is_across: bool,
 }
 
 /// A closed boundary of a face, with the face on its right hand.
@@ -62,7 +64,7 @@ pub fn rings(partition: &Partition) -> Vec<Vec<Ring>> {
         for sample in
             rings.iter_mut().flatten().flat_map(|ring| &mut ring.steps).filter_map(|step| step.sample.as_mut())
         {
-            sample.sigma = sample.sigma.max(uneven);
+            (sample.sigma, sample.is_exact) = (sample.sigma.max(uneven), false);
         }
     }
     rings

@@ -70,7 +70,7 @@ fn walk(first: Crack, inside: impl Fn([usize; 2]) -> bool + Copy, partition: &Pa
     let mut crack = first;
     loop {
         let [inner, other] = crack.sides().map(|at| partition.face_at(at));
-        ring.steps.push(Step { crack, inner, other, sample: None });
+        ring.steps.push(Step { crack, inner, other, sample: None, is_across: false });
         let ([x, y], [to_x, to_y]) = (crack.start, crack.end());
         ring.area += 0.5 * (x as f64 * to_y as f64 - to_x as f64 * y as f64);
         // The pixel on the right hand is to the upper left or lower right of the corner ahead where the walk is vertical.

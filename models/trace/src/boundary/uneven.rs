@@ -23,7 +23,10 @@ pub(super) fn unevenness(partition: &Partition, rings: &[Vec<Ring>]) -> f64 {
         };
         let positions: Vec<Option<f64>> = ring.steps.iter().map(position).collect();
         off.extend(
-            (0..positions.len()).filter_map(|k| Some(profile::fourth_difference(five(ring, &positions, k)?).abs())),
+            (0..positions.len())
+                .filter_map(|k| five(ring, &positions, k))
+                .filter(|&at| !(partition.has_exact_edges() && is_corner(at)))
+                .map(|at| profile::fourth_difference(at).abs()),
         );
     }
     if off.len() < tuning::UNEVEN_LEAST {
@@ -46,5 +49,11 @@ fn five(ring: &Ring, positions: &[Option<f64>], first: usize) -> Option<[f64; 5]
     let slope = 0.1 * (at[3] - at[1] + 2.0 * (at[4] - at[0]));
     let mean = at.iter().sum::<f64>() / 5.0;
     let is_straight = (0..5).all(|k| (at[k] - mean - slope * (k as f64 - 2.0)).abs() < tuning::UNEVEN_BENT);
-    (is_straight && (tuning::UNEVEN_SLOPES[0]..tuning::UNEVEN_SLOPES[1]).contains(&slope.abs())).then_some(at)
+    let is_slanted = (tuning::UNEVEN_SLOPES[0]..tuning::UNEVEN_SLOPES[1]).contains(&slope.abs());
+    (is_straight && is_slanted).then_some(at)
+}
+
+/// Whether positions are on whole pixels, with one step between them: no line that is off, but two things, or sides of one, a pixel from one another.
+fn is_corner(at: [f64; 5]) -> bool {
+    at.iter().all(|at| at.fract() == 0.0) && at.windows(2).filter(|pair| pair[0] != pair[1]).count() == 1
 }

@@ -38,9 +38,10 @@ pub(super) fn read(partition: &Partition, ring: &mut Ring) {
     for k in 0..n {
         let is_flat = along[0].abs() >= along[1].abs();
         let is_column = matches!(ring.steps[k].crack.heading, Heading::PlusX | Heading::MinusX);
-        if is_flat == is_column {
-            ring.steps[k].sample = sample(partition, &ring.steps[k]);
-        }
+        // What goes along a crack is flat there, or steep, whatever is beside it.
+        ring.steps[k].is_across = is_flat != is_column;
+        ring.steps[k].sample =
+            sample(partition, &ring.steps[k]).filter(|sample| is_flat == is_column || sample.is_exact);
         let ([x, y], [gone_x, gone_y]) =
             (unit(&ring.steps[(k + AROUND + 1) % n]), unit(&ring.steps[(k + n - AROUND) % n]));
         along = [along[0] + x - gone_x, along[1] + y - gone_y];
@@ -75,8 +76,10 @@ pub(super) fn sample(partition: &Partition, step: &Step) -> Option<Sample> {
         Heading::PlusY => (Vec2::new(x - inward, y), Vec2::new(1.0, 0.0)),
         Heading::MinusY => (Vec2::new(x + inward, y), Vec2::new(1.0, 0.0)),
     };
-    let variance = (missing.1 + surplus.1 + 1) as f64 * rounding * rounding;
-    Some(Sample { point, axis, sigma: variance.sqrt() })
+    let mixed = missing.1 + surplus.1;
+    let variance = (mixed + 1) as f64 * rounding * rounding;
+    let is_exact = mixed == 0 && rounding <= tuning::RENDERER_SIGMA && partition.has_exact_edges();
+    Some(Sample { point, axis, sigma: variance.sqrt(), is_exact })
 }
 
 /// Coverage by the other side, summed from the pixel `at` (the one opposite is `from`) to the first pure pixel of `face`, and how many

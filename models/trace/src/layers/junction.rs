@@ -86,7 +86,12 @@ fn misfit_across(ring: &Ring, k: usize, at: Vec2<f64>, count: usize) -> Option<f
     let n = ring.steps.len();
     let side = |offsets: &mut dyn Iterator<Item = usize>, other: u32| {
         let steps = offsets.take_while(|&j| ring.steps[j].other == other).take(2 * count);
-        let samples: Vec<Sample> = steps.filter_map(|j| ring.steps[j].sample).take(count).collect();
+        let samples: Vec<Sample> = steps
+            .map(|j| &ring.steps[j])
+            .filter(|step| !step.is_across)
+            .filter_map(|step| step.sample)
+            .take(count)
+            .collect();
         // Windows across the junction itself see three faces.
         samples.into_iter().filter(|sample| (sample.point - at).length() > tuning::JUNCTION_BLUR).collect::<Vec<_>>()
     };

@@ -89,6 +89,6 @@ impl Border {
         } else {
             (Vec2::new(0.0, 2.0 * (width + height) - place), level)
         };
-        Sample { point, axis, sigma: tuning::BORDER_SIGMA }
+        Sample::new(point, axis, tuning::BORDER_SIGMA)
     }
 }

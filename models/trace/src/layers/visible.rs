@@ -82,6 +82,7 @@ fn read(
         // Where a boundary is flat half of the steps have samples, at 45 degrees; else more. A longer stretch without is unread.
         unread = if step.sample.is_some() { 0 } else { unread + 1 };
         match step.sample {
+            Some(sample) if sample.is_exact => push(&mut run, moved(sample, step, hidden[at])),
             _ if known.get(at) == Some(&Known::Crack) => push(&mut run, of_crack(step, tuning::CRACK_SIGMA)),
             Some(sample) => push(&mut run, moved(sample, step, hidden[at])),
             None if known.get(at) == Some(&Known::Filled) => push(&mut run, of_crack(step, tuning::CRACK_SIGMA)),
@@ -114,7 +115,7 @@ fn moved(sample: Sample, step: &Step, hidden: Option<Hidden>) -> Sample {
         Heading::MinusX => Vec2::new(0.0, 1.0),
         Heading::MinusY => Vec2::new(-1.0, 0.0),
     };
-    Sample { point: sample.point + outward * shift, sigma: sample.sigma.max(0.5 * shift.abs()), ..sample }
+    Sample::new(sample.point + outward * shift, sample.axis, sample.sigma.max(0.5 * shift.abs()))
 }
 
 /// Leaves out a sample that does not lead on: where columns give way to rows, two windows read the same stretch.
@@ -133,5 +134,5 @@ fn push(run: &mut Vec<Sample>, sample: Sample) {
 fn of_crack(step: &Step, sigma: f64) -> Sample {
     let [from, to] = [step.crack.start, step.crack.end()];
     let axis = if from[0] == to[0] { Vec2::new(1.0, 0.0) } else { Vec2::new(0.0, 1.0) };
-    Sample { point: Ring::middle(step.crack), axis, sigma }
+    Sample::new(Ring::middle(step.crack), axis, sigma)
 }

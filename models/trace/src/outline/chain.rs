@@ -129,9 +129,9 @@ impl Chain {
 }
 
 impl Sample {
-    /// Whether the window of the sample holds a corner: then it tells of both sides.
+    /// Whether the window of the sample may hold a corner: then it tells of both sides.
     pub(super) fn holds(&self, corner: Vec2<f64>) -> bool {
         let offset = self.point - corner;
-        offset.cross(self.axis).abs() < 0.55 && offset.dot(self.axis).abs() < 2.0
+        !self.is_exact && offset.cross(self.axis).abs() < 0.55 && offset.dot(self.axis).abs() < 2.0
     }
 }

@@ -11,7 +11,11 @@ use super::moments::Moments;
 use super::nodes::Nodes;
 use super::track::Track;
 use crate::ruler::Ruler;
+use crate::sample::Sample;
 use crate::tuning;
+
+/// What leaving out a sample costs, bits, that nothing can have spoiled: more than any piece.
+const EXACT_BITS: f64 = 1e3;
 
 /// What explains a stretch of samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -106,11 +110,11 @@ impl<'a> Programme<'a> {
     fn start(&self, node: usize) -> (f64, usize) {
         let place = self.nodes.places[node];
         if place <= tuning::OUTLINE_SPOILED {
-            return (bits_left_out(place), 0);
+            return (self.bits_left_out(0..place), 0);
         }
         let near = (0..=node).rev().take_while(|&other| place - self.nodes.places[other] <= tuning::OUTLINE_SPOILED);
         let options =
-            near.map(|other| (self.ends[other].bits + bits_left_out(place - self.nodes.places[other]), other));
+            near.map(|other| (self.ends[other].bits + self.bits_left_out(self.nodes.places[other]..place), other));
         options.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((f64::INFINITY, node))
     }
 
@@ -134,7 +138,8 @@ impl<'a> Programme<'a> {
                 moments.add(self.track.point(done) - origin, self.track.weights[done]);
                 done += 1;
             }
-            if place - first < 2 {
+            // One window tells no direction, unless the boundary goes along a crack there.
+            if place - first < 2 && !self.track.samples[first].is_exact {
                 continue;
             }
             let line = self.prices.line + self.ruler.misfit(moments.line_chi2());
@@ -184,6 +189,12 @@ impl<'a> Programme<'a> {
         }
     }
 
+    /// Bits of samples that nothing explains: beside a corner, which no window holds along which the boundary is exact.
+    fn bits_left_out(&self, samples: Range<usize>) -> f64 {
+        let bits = |sample: &Sample| if sample.is_exact { EXACT_BITS } else { tuning::OUTLINE_SPOILED_BITS };
+        self.track.samples[samples].iter().map(bits).sum()
+    }
+
     fn offer(&mut self, node: usize, best: Best) {
         if best.bits < self.ends[node].bits {
             self.ends[node] = best;
@@ -204,11 +215,4 @@ impl<'a> Programme<'a> {
         spans.reverse();
         spans
     }
-}
-
-/// Bits of samples that nothing explains.
-fn bits_left_out(count: usize) -> f64 {
-    #[expect(clippy::cast_precision_loss, reason = "at most a few")]
-    let count = count as f64;
-    count * tuning::OUTLINE_SPOILED_BITS
 }

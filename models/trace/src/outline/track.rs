@@ -162,5 +162,5 @@ impl Track {
 fn usable(sample: &Sample) -> Option<Sample> {
     let axis = sample.axis.normalized().filter(|axis| axis.is_finite())?;
     let good = sample.point.is_finite() && sample.sigma.is_finite() && sample.sigma >= 0.0;
-    good.then(|| Sample { point: sample.point, axis, sigma: sample.sigma.hypot(tuning::RENDERER_SIGMA) })
+    good.then(|| Sample { axis, sigma: sample.sigma.hypot(tuning::RENDERER_SIGMA), ..*sample })
 }

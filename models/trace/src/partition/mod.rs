@@ -127,6 +127,11 @@ impl Partition {
         Ok(Self::readings(image, reading)?.0)
     }
 
+    /// Whether pixels beside an edge that show no mixture have the edge exactly between them.
+    pub(crate) fn has_exact_edges(&self) -> bool {
+        !(self.is_hard || self.reading.coded || self.reading.soft || self.reading.noise > 0.0)
+    }
+
     /// The ways to cut a picture into faces: lines that cross taken out of it, and, if there are such with pixels of their own, as faces.
     ///
     /// # Errors

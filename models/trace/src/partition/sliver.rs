@@ -240,7 +240,7 @@ impl Sliver {
         let window = self.windows.iter().filter(is_here).min_by(|a, b| off(a).abs().total_cmp(&off(b).abs()))?;
         let side = if off(window) > 0.0 { -0.5 } else { 0.5 };
         let point = window.point + axis * (side * window.width);
-        ((point - middle).dot(axis).abs() < tuning::SLIVER_NEAR).then_some(Sample { point, axis, sigma: window.sigma })
+        ((point - middle).dot(axis).abs() < tuning::SLIVER_NEAR).then_some(Sample::new(point, axis, window.sigma))
     }
 }
 

@@ -206,7 +206,7 @@ impl Sides<'_> {
         let from = self.border.marks.get(mark)?;
         let sigma = 0.5 * from.sigma.hypot(self.border.marks.get(hit.mark)?.sigma);
         let point = from.point + from.inward * (0.5 * hit.distance);
-        Some(Sample { point, axis: from.inward, sigma })
+        Some(Sample::new(point, from.inward, sigma))
     }
 
     /// What each end of a branch leads to: the stretches that follow each other on the boundary end at the same node.

@@ -156,11 +156,12 @@ fn link(border: &Border, branches: &[Branch], node: &Node, passage: Passage, wid
     let mut bend: Vec<Sample> = Vec::new();
     let mut is_corner = !passage.is_straight;
     if node.ends.len() == 2 {
-        bend.extend(outer.iter().filter_map(|&mark| border.marks.get(mark)).map(|mark| Sample {
-            point: mark.point + mark.inward * (0.5 * width),
-            axis: mark.inward,
-            sigma: mark.sigma,
-        }));
+        bend.extend(
+            outer
+                .iter()
+                .filter_map(|&mark| border.marks.get(mark))
+                .map(|mark| Sample::new(mark.point + mark.inward * (0.5 * width), mark.inward, mark.sigma)),
+        );
         if let (true, Some(corner)) = (is_corner, meeting([from, out], [to, back])) {
             // The pen has been in a corner, but cuts past it in a bend, by the more the rounder that is.
             let steps = bend.iter().zip(bend.iter().skip(1));

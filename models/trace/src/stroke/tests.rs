@@ -48,10 +48,8 @@ fn samples_of(shapes: &[&dyn dvp_core::Shape<f64>], sigma: f64, seed: u64) -> Ve
             let (low, high) = (start.min(end).ceil() as i64, start.max(end).ceil() as i64);
             let mut places: Vec<_> = (low..high).map(|k| (k as f64 - start) / (end - start)).collect();
             places.sort_by(f64::total_cmp);
-            run.extend(places.into_iter().map(|share| Sample {
-                point: from.lerp(to, share) + axis * (sigma * noise.normal()),
-                axis,
-                sigma: sigma.max(0.005),
+            run.extend(places.into_iter().map(|share| {
+                Sample::new(from.lerp(to, share) + axis * (sigma * noise.normal()), axis, sigma.max(0.005))
             }));
         }
         rings.push(RingSamples { runs: vec![run], closed: true });

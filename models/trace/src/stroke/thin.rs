@@ -45,8 +45,7 @@ pub fn fit_thin(chain: &ThinChain, ruler: &Ruler) -> Option<(Stroke<f64>, f64)> 
     if thin.len() < 3 {
         return None;
     }
-    let mut samples: Vec<_> =
-        thin.iter().map(|thin| Sample { point: thin.point, axis: thin.axis, sigma: thin.sigma }).collect();
+    let mut samples: Vec<_> = thin.iter().map(|thin| Sample::new(thin.point, thin.axis, thin.sigma)).collect();
     let (mut ring, misfit) = if chain.is_closed {
         let area: f64 =
             (0..samples.len()).map(|k| samples[k].point.cross(samples[(k + 1) % samples.len()].point)).sum();

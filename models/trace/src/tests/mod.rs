@@ -1,6 +1,7 @@
 //! From pictures to drawings and back: what is painted by exact coverage is found again.
 
 mod edges;
+mod grid;
 mod hard;
 mod known;
 mod lines;

@@ -78,7 +78,7 @@ fn assert_corners(found: &PathRing<f64>, wanted: &[[f64; 2]], most: f64) {
 
 #[test]
 fn too_few_samples_say_nothing() {
-    let sample = Sample { point: Vec2::new(1.0, 2.0), axis: Vec2::new(1.0, 0.0), sigma: 0.02 };
+    let sample = Sample::new(Vec2::new(1.0, 2.0), Vec2::new(1.0, 0.0), 0.02);
     let broken = Sample { point: Vec2::new(f64::NAN, 0.0), ..sample };
     let samples =
         vec![sample, sample, broken, Sample { sigma: f64::NAN, ..sample }, Sample { axis: Vec2::default(), ..sample }];
@@ -224,7 +224,7 @@ proptest! {
         closed: bool,
     ) {
         let sample = |&(x, y, angle, sigma): &(f64, f64, f64, f64)| {
-            Sample { point: Vec2::new(x, y), axis: Vec2::from_angle(angle), sigma }
+            Sample::new(Vec2::new(x, y), Vec2::from_angle(angle), sigma)
         };
         let run: Vec<Sample> = points.iter().map(sample).collect();
         if let Some(open) = fit_open(&run, &RULER) {

@@ -100,7 +100,7 @@ pub(super) fn samples_of(pieces: &[Piece<f64>], closed: bool, noise: f64, sigma:
             if flat { point.y = sum.1 / sum.0 } else { point.x = sum.1 / sum.0 }
         }
         let axis = if flat { Vec2::new(0.0, 1.0) } else { Vec2::new(1.0, 0.0) };
-        samples.push(Sample { point: point + axis * (noise * random.normal()), axis, sigma });
+        samples.push(Sample::new(point + axis * (noise * random.normal()), axis, sigma));
     }
     samples
 }

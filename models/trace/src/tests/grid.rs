@@ -1,0 +1,55 @@
+//! Pictures of upright things on whole pixels: no pixel is mixed, and every crack is known exactly.
+
+use super::edges::hard;
+use super::*;
+
+const CYAN: [f32; 3] = [0.0, 1.0, 1.0];
+
+/// A picture on black: cells of `side` pixels of a color, their upper left corners in pixels.
+fn cells(side: f64, cells: &[(f64, f64, [f32; 3])]) -> Image<f32> {
+    hard(|[x, y]| {
+        let is_in = |&&(left, top, _): &&(f64, f64, [f32; 3])| {
+            (left..left + side).contains(&x) && (top..top + side).contains(&y)
+        };
+        cells.iter().rev().find(is_in).map_or([0.0; 3], |&(_, _, color)| color)
+    })
+}
+
+/// Asserts that so many things are found, each pixel in its color: one that is wrong is an error of 3e-5 at least.
+fn is_exact(picture: &Image<f32>, objects: usize) {
+    let found = found(picture);
+    assert_eq!(found.objects.len(), objects, "{:?}", found.objects);
+    assert!(error(picture, &found) < 3e-5, "{}: {:?}", error(picture, &found), found.objects);
+}
+
+#[test]
+fn sides_shorter_than_a_window_reaches_keep_their_corners() {
+    // A stem of five pixels on another one, three pixels to the right.
+    let stem = |left: f64, top: f64| (left, top, RED);
+    for beside in [2.0, 3.0, 4.0] {
+        let picture = cells(
+            5.0,
+            &[stem(15.0, 40.0), stem(20.0, 40.0), stem(25.0, 40.0), stem(20.0, 45.0), stem(20.0 + beside, 50.0)],
+        );
+        is_exact(&picture, 1);
+    }
+}
+
+#[test]
+fn things_that_are_one_pixel_off_one_another_are_not_uneven() {
+    let l = |left: f64, top: f64, color| [(left, top, color), (left, top + 5.0, color), (left + 5.0, top + 5.0, color)];
+    let column = |left: f64, top: f64| [0.0, 1.0, 2.0, 3.0].map(|k| (left, top + 5.0 * k, [1.0, 0.0, 1.0]));
+    // A column, and beside it two pieces that begin one pixel from where it does and from one another.
+    let all = [&l(31.0, 30.0, BLUE)[..], &column(30.0, 40.0), &l(35.0, 47.0, RED)].concat();
+    is_exact(&cells(5.0, &all), 3);
+}
+
+#[test]
+fn a_thing_beside_another_one_is_no_part_of_what_may_end_there() {
+    // Two pieces of one color touch a third one: the upper one with all of its lower side, the other one with a part of its left one.
+    let piece = |cells: &[[f64; 2]], color| cells.iter().map(|&[x, y]| (x, y, color)).collect::<Vec<_>>();
+    let upper = piece(&[[28.0, 20.0], [33.0, 20.0], [38.0, 20.0], [28.0, 25.0]], CYAN);
+    let third = piece(&[[27.0, 30.0], [32.0, 30.0], [22.0, 35.0], [27.0, 35.0]], [1.0, 0.0, 1.0]);
+    let right = piece(&[[37.0, 26.0], [37.0, 31.0], [42.0, 31.0], [47.0, 31.0]], CYAN);
+    is_exact(&cells(5.0, &[upper, third, right].concat()), 3);
+}
