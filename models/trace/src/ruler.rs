@@ -9,9 +9,6 @@ use num_traits::Float as _;
 
 use crate::tuning;
 
-/// Bits of a color of 8 bits per channel.
-const COLOR_BITS: f64 = 24.0;
-
 /// The price of misfits and numbers in one picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ruler {
@@ -31,10 +28,5 @@ impl Ruler {
     pub fn number(&self, sigma: f64) -> f64 {
         let places = self.extent / ((2.0 * core::f64::consts::PI).sqrt() * sigma.max(tuning::RENDERER_SIGMA * 0.1));
         places.max(1.0).log2()
-    }
-    /// Bits of a pixel of its own: where it is, and its color.
-    #[must_use]
-    pub fn pixel(&self) -> f64 {
-        COLOR_BITS + 2.0 * self.extent.max(1.0).log2()
     }
 }

@@ -46,6 +46,8 @@ const MOST_IDLE: usize = 3;
 const REACH: usize = 2;
 /// Step of differences, pixels.
 const STEP: f64 = 1e-4;
+/// What a pixel on the wrong side costs, bits, beside its place: its color is told.
+const WRONG_BITS: f64 = 24.0;
 
 /// Moves the outlines of layers so that the middle of every pixel shows the layer that it shows in the picture, where that can be.
 pub fn meet(layers: &mut Layers, partition: &Partition) {
@@ -115,7 +117,7 @@ impl Facts {
             return 0.0;
         }
         self.approach(&mut found, &mut state);
-        let wrong_bits = ruler.pixel();
+        let wrong_bits = WRONG_BITS + 2.0 * ruler.extent.max(1.0).log2();
         // Bits of new pieces, in the best outlines and in those at hand.
         let (mut bits, mut spent) = (0.0, 0.0);
         let (mut trial, mut then) = (found.clone(), state.clone());

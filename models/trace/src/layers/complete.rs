@@ -262,7 +262,7 @@ impl Completion<'_> {
         &self,
         outlines: &[Outline],
         wanted: impl Fn(u32) -> Option<bool>,
-    ) -> Result<usize, Vec<[usize; 2]>> {
+    ) -> Result<(), Vec<[usize; 2]>> {
         let polygons: Vec<Vec<[f64; 2]>> = outlines.iter().filter_map(raster::polygon).collect();
         if polygons.is_empty() { Err(Vec::new()) } else { raster::check(self.partition, &polygons, wanted) }
     }

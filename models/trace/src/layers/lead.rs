@@ -49,21 +49,15 @@ impl Completion<'_> {
         let is_seen = |at: Vec2<f64>| self.pure_face(at).is_some_and(|face| wanted(face).is_some());
         let most = if group.len() > 1 { MOST_LINKED } else { 1 };
         let linked = link::relinked(&samples, is_seen, most).into_iter().map(|samples| self.framed(&samples));
-        let agreed = |completed: Completed| {
-            let wrong = self.check(&completed.outlines, wanted).ok()?;
-            Some(self.with_wrong(completed, wrong))
-        };
-        let mut found = shortest(linked.filter_map(agreed));
-        let mut walked = self.fit(&samples);
+        let agrees = |completed: &Completed| self.check(&completed.outlines, wanted).is_ok();
+        let mut found = shortest(linked.filter(agrees));
+        let walked = self.fit(&samples);
         let pixels = match self.check(&walked.outlines, wanted) {
-            Ok(wrong) => {
-                walked = self.with_wrong(walked, wrong);
-                return found.filter(|linked| linked.bits <= walked.bits).unwrap_or(walked);
-            }
+            Ok(()) => return found.filter(|linked| linked.bits <= walked.bits).unwrap_or(walked),
             Err(pixels) => pixels,
         };
         let bordered = sheet::bordered(&samples, self.partition.size, is_seen).map(|bordered| self.fit(&bordered));
-        found = shortest(found.into_iter().chain(bordered.and_then(agreed)));
+        found = shortest(found.into_iter().chain(bordered.filter(agrees)));
         let mut walks = Vec::new();
         let mut wrong = vec![Wrong { completed: walked, pixels: pixels.clone() }];
         // What is hidden goes along what hides it. Where that leads nowhere, cracks tell the boundary first, and what is hidden may go anywhere still;
@@ -105,22 +99,13 @@ impl Completion<'_> {
             }
             let completed = self.fit(&walk::samples(&walks));
             match self.check(&completed.outlines, wanted) {
-                Ok(missed) => {
-                    let found = Some(self.with_wrong(completed, missed));
-                    return Some(Led { walks, found, wrong });
-                }
+                Ok(()) => return Some(Led { walks, found: Some(completed), wrong }),
                 Err(still) => pixels.clone_from(&still),
             }
             wrong.push(Wrong { completed, pixels: pixels.clone() });
             is_filled = fills && walk::fill(&mut walks, &pixels);
         }
         Some(Led { walks, found: None, wrong })
-    }
-
-    /// Outlines that agree, with what the few pixels cost that they get wrong.
-    fn with_wrong(&self, completed: Completed, wrong: usize) -> Completed {
-        let each = if self.partition.has_exact_edges() { self.ruler.pixel() } else { 0.0 };
-        Completed { bits: completed.bits + wrong as f64 * each, ..completed }
     }
 
     /// The cheapest of outlines of which none agrees, with what their wrong pixels cost, and of polygons through the samples themselves.

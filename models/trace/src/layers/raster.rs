@@ -28,13 +28,13 @@ pub(super) fn is_nothing(outline: &Outline) -> bool {
 }
 
 /// Whether what polygons (pixels, even-odd) cover is what they should cover, but for few pixels: of all pixels that are `wanted`
-/// (Some(true)), and of every face that is not (Some(false)), however small it is. Mixed pixels count for nothing. How many are
-/// wrong, or, of too many, which pixels [column, row].
+/// (Some(true)), and of every face that is not (Some(false)), however small it is. Mixed pixels count for nothing. Else the pixels
+/// [column, row] that are wrong.
 pub(super) fn check(
     partition: &Partition,
     polygons: &[Vec<[f64; 2]>],
     wanted: impl Fn(u32) -> Option<bool>,
-) -> Result<usize, Vec<[usize; 2]>> {
+) -> Result<(), Vec<[usize; 2]>> {
     let width = partition.size[0];
     // Of every face once: pixels are many.
     let wanted: Vec<Option<bool>> = (0..partition.faces.len() as u32).map(wanted).collect();
@@ -79,7 +79,7 @@ pub(super) fn check(
     let area = own(partition, &wanted).map(|face| face.area).sum::<usize>();
     let agrees =
         few(missed, area) && hidden.iter().all(|(&face, &count)| few(count, partition.faces[face as usize].area));
-    if agrees { Ok(wrong.len()) } else { Err(wrong) }
+    if agrees { Ok(()) } else { Err(wrong) }
 }
 
 /// Where the middle of each row meets polygons.

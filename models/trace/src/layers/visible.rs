@@ -82,7 +82,6 @@ fn read(
         // Where a boundary is flat half of the steps have samples, at 45 degrees; else more. A longer stretch without is unread.
         unread = if step.sample.is_some() { 0 } else { unread + 1 };
         match step.sample {
-            Some(sample) if sample.is_exact => push(&mut run, moved(sample, step, hidden[at])),
             _ if known.get(at) == Some(&Known::Crack) => push(&mut run, of_crack(step, tuning::CRACK_SIGMA)),
             Some(sample) => push(&mut run, moved(sample, step, hidden[at])),
             None if known.get(at) == Some(&Known::Filled) => push(&mut run, of_crack(step, tuning::CRACK_SIGMA)),

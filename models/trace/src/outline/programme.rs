@@ -138,8 +138,7 @@ impl<'a> Programme<'a> {
                 moments.add(self.track.point(done) - origin, self.track.weights[done]);
                 done += 1;
             }
-            // One window tells no direction, unless the boundary goes along a crack there.
-            if place - first < 2 && !self.track.samples[first].is_exact {
+            if place - first < 2 {
                 continue;
             }
             let line = self.prices.line + self.ruler.misfit(moments.line_chi2());
