@@ -142,12 +142,7 @@ impl Group {
         if has_pen && !completed.agrees {
             return None;
         }
-        // What no outline through both explains is one thing in two outlines, unless one of them is a thing by itself, where edges are exact.
-        let is_shorter = has_pen || completed.agrees && completed.bits < apart.bits - tuning::LEAST_SAVED;
-        let is_exact = completion.partition.has_exact_edges();
-        if !is_shorter && !are_whole && is_exact && [self, other].iter().any(|group| group.is_whole(completion)) {
-            return None;
-        }
+        // What no outline through both explains is one thing in two outlines.
         let joined = if has_pen || completed.agrees && completed.bits <= apart.bits { completed } else { apart };
         let saved = alone - joined.bits;
         (saved > tuning::LEAST_SAVED).then_some((saved, Self { faces, completed: joined }))

@@ -3,8 +3,6 @@
 use super::edges::hard;
 use super::*;
 
-const CYAN: [f32; 3] = [0.0, 1.0, 1.0];
-
 /// A picture on black: cells of `side` pixels of a color, their upper left corners in pixels.
 fn cells(side: f64, cells: &[(f64, f64, [f32; 3])]) -> Image<f32> {
     hard(|[x, y]| {
@@ -42,14 +40,4 @@ fn things_that_are_one_pixel_off_one_another_are_not_uneven() {
     // A column, and beside it two pieces that begin one pixel from where it does and from one another.
     let all = [&l(31.0, 30.0, BLUE)[..], &column(30.0, 40.0), &l(35.0, 47.0, RED)].concat();
     is_exact(&cells(5.0, &all), 3);
-}
-
-#[test]
-fn a_thing_beside_another_one_is_no_part_of_what_may_end_there() {
-    // Two pieces of one color touch a third one: the upper one with all of its lower side, the other one with a part of its left one.
-    let piece = |cells: &[[f64; 2]], color| cells.iter().map(|&[x, y]| (x, y, color)).collect::<Vec<_>>();
-    let upper = piece(&[[28.0, 20.0], [33.0, 20.0], [38.0, 20.0], [28.0, 25.0]], CYAN);
-    let third = piece(&[[27.0, 30.0], [32.0, 30.0], [22.0, 35.0], [27.0, 35.0]], [1.0, 0.0, 1.0]);
-    let right = piece(&[[37.0, 26.0], [37.0, 31.0], [42.0, 31.0], [47.0, 31.0]], CYAN);
-    is_exact(&cells(5.0, &[upper, third, right].concat()), 3);
 }
