@@ -249,6 +249,11 @@ pub const MOST_HARD: f64 = 0.05;
 /// Steps of one pixel per place along edges from which on edges without mixed pixels are stairs: an edge that is one pixel off over 66 has as many.
 /// With fewer everything is upright and on whole pixels, and known as well as any edge.
 pub const LEAST_STAIRS: f64 = 0.015;
+/// Steps of one pixel that follow each other along a boundary whose edges mix elsewhere, without its being slanted there: things side by side that begin a
+/// pixel from one another make one or two.
+pub const MOST_STAIRS: usize = 2;
+/// Most pixels, on the mean, from one of such steps to the next: flatter slopes have one on a side.
+pub const STAIRS_APART: usize = 12;
 /// Most faces of one color behind the same that are joined pair by pair: more take too long, and are all one thing or none.
 pub const MOST_PAIRED: usize = 5;
 /// Share of stained pixels that is supposed where no edge is long and straight enough to tell: what leaves a doubt.

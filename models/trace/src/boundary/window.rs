@@ -5,6 +5,8 @@
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
+use alloc::vec::Vec;
+
 use dvp_core::Vec2;
 use dvp_core::contour::Heading;
 
@@ -46,8 +48,37 @@ pub(super) fn read(partition: &Partition, ring: &mut Ring) {
             (unit(&ring.steps[(k + AROUND + 1) % n]), unit(&ring.steps[(k + n - AROUND) % n]));
         along = [along[0] + x - gone_x, along[1] + y - gone_y];
     }
+    doubt_stairs(ring);
     straighten(partition, ring);
     unblur(partition, ring);
+}
+
+/// Where a boundary turns again and again by one pixel, it is slanted and without mixtures: its windows tell no more than cracks do.
+fn doubt_stairs(ring: &mut Ring) {
+    let n = ring.steps.len();
+    let is_stair = |k: usize| {
+        let [before, here, behind] = [k + n - 1, k, k + 1].map(|k| ring.steps[k % n].crack.heading);
+        before == behind && before != here && ring.steps[k].sample.is_some_and(|sample| sample.is_exact)
+    };
+    let stairs: Vec<usize> = (0..n).filter(|&k| is_stair(k)).collect();
+    // So many in a row, and how far it is from the first of them to the last, all around.
+    let most = tuning::MOST_STAIRS;
+    for (first, &start) in stairs.iter().enumerate() {
+        let last = first + most;
+        let end = stairs[last % stairs.len()] + if last < stairs.len() { 0 } else { n };
+        if last - first >= stairs.len() || end - start > tuning::STAIRS_APART * most {
+            continue;
+        }
+        let apart = tuning::STAIRS_APART;
+        for k in start + n - apart.min(n)..end + n + apart {
+            let step = &mut ring.steps[k % n];
+            if let Some(sample) = step.sample.take_if(|sample| sample.is_exact)
+                && !step.is_across
+            {
+                step.sample = Some(Sample::new(sample.point, sample.axis, tuning::CRACK_SIGMA));
+            }
+        }
+    }
 }
 
 /// The mean position of the boundary across one crack; none where a third color shows in the window, or the border is met.
@@ -119,9 +150,9 @@ fn sum(
 /// Up to the fourth differences the position is the mean less a 24th of the second and plus 3/640 of the fourth difference. Where columns give
 /// way to rows the windows beyond are read for this alone.
 fn straighten(partition: &Partition, ring: &mut Ring) {
-    let raw: alloc::vec::Vec<Option<Sample>> = ring.steps.iter().map(|step| step.sample).collect();
+    let raw: Vec<Option<Sample>> = ring.steps.iter().map(|step| step.sample).collect();
     let read = |k: usize| raw[k].or_else(|| sample(partition, &ring.steps[k]));
-    let mut corrected = alloc::vec::Vec::new();
+    let mut corrected = Vec::new();
     for (k, here) in raw.iter().enumerate().filter_map(|(k, here)| Some((k, (*here)?))) {
         let at =
             |neighbor: Option<usize>| neighbor.and_then(&read).map(|other| (other.point - here.point).dot(here.axis));
@@ -160,7 +191,7 @@ fn unblur(partition: &Partition, ring: &mut Ring) {
         let by = -0.5 * (partition.blur / apart as f64).powi(2) * bend;
         Some(Sample { point: here.point + here.axis * by, ..here })
     };
-    let moved: alloc::vec::Vec<_> = (0..ring.steps.len()).map(moved).collect();
+    let moved: Vec<_> = (0..ring.steps.len()).map(moved).collect();
     for (step, moved) in ring.steps.iter_mut().zip(moved) {
         step.sample = moved;
     }

@@ -41,3 +41,23 @@ fn things_that_are_one_pixel_off_one_another_are_not_uneven() {
     let all = [&l(31.0, 30.0, BLUE)[..], &column(30.0, 40.0), &l(35.0, 47.0, RED)].concat();
     is_exact(&cells(5.0, &all), 3);
 }
+
+#[test]
+fn stairs_beside_smooth_edges_are_slanted() {
+    // A square that a renderer without smooth edges drew over a smooth disk.
+    let disk = paint(&scene(WHITE, vec![object(circle(20.0), [30.0, 32.0], 0.0, BLUE)]));
+    let is_in = |[x, y]: [f64; 2]| {
+        let at = dvp_core::Vec2::new(x - 64.0, y - 62.0).turned(dvp_core::Vec2::from_angle(-0.3));
+        at.x.abs() < 16.0 && at.y.abs() < 16.0
+    };
+    let square = hard(|at| if is_in(at) { RED } else { WHITE });
+    let pixels = disk.data().iter().zip(square.data());
+    let picture = Image::from_planar(size(), pixels.map(|(&disk, &square)| disk.min(square)).collect()).unwrap();
+    let found = found(&picture);
+    let [_, square] = &found.objects[..] else { panic!("{:?}", found.objects) };
+    let corners = match &square.shape {
+        AnyShape::Path(path) => path.rings.iter().map(|ring| ring.points.len()).sum(),
+        _ => 4,
+    };
+    assert!(corners < 12, "{corners}: {square:?}");
+}
