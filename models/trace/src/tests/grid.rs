@@ -2,6 +2,7 @@
 
 use super::edges::hard;
 use super::*;
+use crate::partition::{Partition, Reading};
 
 /// A picture on black: cells of `side` pixels of a color, their upper left corners in pixels.
 fn cells(side: f64, cells: &[(f64, f64, [f32; 3])]) -> Image<f32> {
@@ -22,7 +23,7 @@ fn is_exact(picture: &Image<f32>, objects: usize) {
 
 #[test]
 fn sides_shorter_than_a_window_reaches_keep_their_corners() {
-    // A stem of five pixels on another one, three pixels to the right.
+    // A stem of five pixels on another one, a few pixels to the right.
     let stem = |left: f64, top: f64| (left, top, RED);
     for beside in [2.0, 3.0, 4.0] {
         let picture = cells(
@@ -35,11 +36,18 @@ fn sides_shorter_than_a_window_reaches_keep_their_corners() {
 
 #[test]
 fn things_that_are_one_pixel_off_one_another_are_not_uneven() {
-    let l = |left: f64, top: f64, color| [(left, top, color), (left, top + 5.0, color), (left + 5.0, top + 5.0, color)];
-    let column = |left: f64, top: f64| [0.0, 1.0, 2.0, 3.0].map(|k| (left, top + 5.0 * k, [1.0, 0.0, 1.0]));
-    // A column, and beside it two pieces that begin one pixel from where it does and from one another.
-    let all = [&l(31.0, 30.0, BLUE)[..], &column(30.0, 40.0), &l(35.0, 47.0, RED)].concat();
-    is_exact(&cells(5.0, &all), 3);
+    // A piece on a column, a pixel to the right of it, and another one beside the column: their boundaries step from one to the other.
+    let piece = |cells: &[[f64; 2]], color| cells.iter().map(|&[x, y]| (x, y, color)).collect::<Vec<_>>();
+    let upper = piece(&[[31.0, 35.0], [36.0, 35.0], [41.0, 35.0], [36.0, 40.0]], BLUE);
+    let column = piece(&[[35.0, 45.0], [35.0, 50.0], [35.0, 55.0], [35.0, 60.0]], [1.0, 0.0, 1.0]);
+    let beside = piece(&[[40.0, 52.0], [40.0, 57.0], [45.0, 57.0], [50.0, 57.0]], RED);
+    let picture = cells(5.0, &[upper, column, beside].concat());
+    let partition = Partition::of(&picture.view(), Reading::default()).unwrap();
+    let rings = crate::boundary::rings(&partition);
+    let samples = rings.iter().flatten().flat_map(|ring| &ring.steps).filter_map(|step| step.sample);
+    let widest = samples.map(|sample| sample.sigma).fold(0.0, f64::max);
+    assert!(widest < 0.01, "{widest}");
+    assert_eq!(found(&picture).objects.len(), 3);
 }
 
 #[test]
