@@ -155,7 +155,8 @@ pub fn trace(image: &ImageView<'_, f32>, known: &Known) -> Result<Traced, NoDraw
 /// A picture as faces, in one way or two.
 struct Read {
     partition: Partition,
-    faces: Option<Partition>,
+    /// Other ways to cut it.
+    others: Vec<Partition>,
     rings: Vec<Vec<Ring>>,
 }
 
@@ -163,14 +164,14 @@ struct Read {
 #[inline(never)]
 fn read(image: &ImageView<'_, f32>, reading: Reading) -> Result<Read, NoPartition> {
     let of = |reading: Reading| {
-        let (mut partition, mut faces) = Partition::readings(image, reading)?;
+        let (mut partition, mut others) = Partition::readings(image, reading)?;
         let mut rings = boundary::rings(&partition);
         if reading.soft {
             partition.blur = boundary::blur(&partition, &rings);
-            faces.iter_mut().for_each(|faces| faces.blur = partition.blur);
+            others.iter_mut().for_each(|other| other.blur = partition.blur);
             rings = boundary::rings(&partition);
         }
-        Ok(Read { partition, faces, rings })
+        Ok(Read { partition, others, rings })
     };
     let length = |read: &Read| read.rings.iter().flatten().map(|ring| ring.steps.len()).sum::<usize>() as f64;
     let is_less = |coded: &Read, plain: &Read| {
@@ -190,7 +191,7 @@ fn read(image: &ImageView<'_, f32>, reading: Reading) -> Result<Read, NoPartitio
 /// The drawing of faces.
 #[inline(never)]
 fn draw(read: Read, size: ImageSize, known: &Known) -> Result<Traced, NoDrawing> {
-    let Read { partition, faces, rings } = read;
+    let Read { partition, others, rings } = read;
     let stained = match partition.reading.coded {
         // Coders stain what is beside an edge, whatever its profile is: in large pictures one of their own is seen as blur, small ones leave a doubt,
         // and so do those that only look as if there had been a coder.
@@ -207,13 +208,15 @@ fn draw(read: Read, size: ImageSize, known: &Known) -> Result<Traced, NoDrawing>
     let stained = if wobble < -tuning::SURE_WOBBLE { stained.max(tuning::UNKNOWN_STAINED) } else { stained };
     let matte = known.matte.map(|matte| matte.map(f64::from));
     let mut layers = layers::layers(&partition, &rings, matte);
-    // What slivers are, and lines that cross, the shorter description tells.
-    let others = [Some(&partition), faces.as_ref()].into_iter().flatten().filter_map(Partition::with_slivers);
+    // What slivers are, lines that cross, and gaps, the shorter description tells.
+    let with_slivers = core::iter::once(&partition).chain(&others).filter_map(Partition::with_slivers);
     let mut read = &partition;
-    let others: Vec<Partition> = others.chain(faces.clone()).collect();
+    let others: Vec<Partition> = with_slivers.collect::<Vec<_>>().into_iter().chain(others).collect();
     for other in &others {
         let of_other = layers::layers(other, &boundary::rings(other), matte);
-        if of_other.bits_of_things() < layers.bits_of_things() {
+        // Stairs say less, and cost less, than edges that are known: they are the last thing to believe.
+        let key = |read: &Partition, layers: &layers::Layers| (read.is_hard, layers.bits_of_things());
+        if key(other, &of_other) < key(read, &layers) {
             (layers, read) = (of_other, other);
         }
     }
@@ -222,7 +225,7 @@ fn draw(read: Read, size: ImageSize, known: &Known) -> Result<Traced, NoDrawing>
         centers::meet(&mut layers, read);
     }
     let bits = layers.bits();
-    let (scene, covariances) = scene::scene(&layers, size, known.matte.is_some(), partition.is_hard);
+    let (scene, covariances) = scene::scene(&layers, size, known.matte.is_some(), read.is_hard);
     Ok(Traced { scene, covariances, bits, stained, coded: partition.reading.coded, blur: partition.blur })
 }
 

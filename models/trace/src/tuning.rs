@@ -243,6 +243,10 @@ pub const PURE_SHARE: f32 = 0.9;
 /// Most pixels of a face without a flat one that may be a mixture of what lies further off than beside it: a wedge between two edges at
 /// a sharp angle ends in so many.
 pub const MOST_SPECK: usize = 6;
+/// Least width, pixels, of a line that may be a gap through which what lies behind shows: narrower ones have no pixel of their own.
+pub const GAP_LEAST: f64 = 0.95;
+/// Pixels beyond the end of a line within which it leads to what lies behind all: what is mixed at the edge of things, and one more.
+pub const GAP_REACH: usize = 3;
 /// Share of the places along edges that may have mixed pixels in a picture of hard edges: upright ones on whole pixels have none either,
 /// but hardly a whole picture is made of them alone.
 pub const MOST_HARD: f64 = 0.05;

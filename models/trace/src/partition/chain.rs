@@ -95,6 +95,11 @@ impl Chain {
         [least, most]
     }
 
+    /// The first and the last point, each with the direction out of the line there.
+    pub(super) fn ends(&self) -> [[Vec2<f64>; 2]; 2] {
+        [self.tip(false), self.tip(true)]
+    }
+
     /// The first or last point, and the direction out of the line there.
     fn tip(&self, at_finish: bool) -> [Vec2<f64>; 2] {
         let n = self.marks.len();

@@ -3,7 +3,9 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
+use super::mix::Mixed;
 use super::runs::runs;
+use crate::tuning;
 
 /// How far (pixels) from the corner the fields are asked for their color: beyond what is mixed there.
 const NEAR: usize = 2;
@@ -11,7 +13,8 @@ const NEAR: usize = 2;
 const FAR: usize = 6;
 
 /// Side of the corner, 1 or 2, of the pixels around one; 0 of all others. Pixels of one color that are on different sides are no neighbors.
-pub(super) fn sides(colors: &[u16], is_flat: &[bool], [width, height]: [usize; 2]) -> Vec<u8> {
+pub(super) fn sides(mixed: &Mixed, [width, height]: [usize; 2]) -> Vec<u8> {
+    let Mixed { colors, shares, is_flat, .. } = mixed;
     let mut sides = vec![0; colors.len()];
     let flat = |x: usize, y: usize| is_flat[y * width + x].then(|| colors[y * width + x]);
     let corner = |x: usize, y: usize| -> Option<[bool; 2]> {
@@ -42,10 +45,14 @@ pub(super) fn sides(colors: &[u16], is_flat: &[bool], [width, height]: [usize; 2
             let (ne, nw) = (colors[(y - NEAR) * width + x + NEAR], colors[(y - NEAR) * width + x - NEAR]);
             let [columns_near, rows_near] = [(cx, width), (cy, height)]
                 .map(|(middle, side)| middle.saturating_sub(NEAR + 1)..(middle + NEAR + 2).min(side));
-            // Fields that nothing of their color joins are apart as they are.
+            // Fields that nothing of their color joins are apart as they are; what pixels of their color alone join, side by side, is one thing.
             let meet = |from: [usize; 2], to| {
-                let is_own = |[px, py]: [usize; 2]| colors[py * width + px] == colors[from[1] * width + from[0]];
-                meet(from, to, |at| columns_near.contains(&at[0]) && rows_near.contains(&at[1]) && is_own(at))
+                let is_own = |[px, py]: [usize; 2]| {
+                    let is_near = columns_near.contains(&px) && rows_near.contains(&py);
+                    is_near && colors[py * width + px] == colors[from[1] * width + from[0]]
+                };
+                let is_pure = |at: [usize; 2]| is_own(at) && shares[at[1] * width + at[0]] >= tuning::PURE_SHARE;
+                leads(from, to, is_own, true) && !leads(from, to, is_pure, false)
             };
             let [rises, falls] = [
                 rises && meet([x + NEAR, y - NEAR], [x - NEAR, y + NEAR]),
@@ -70,13 +77,16 @@ pub(super) fn sides(colors: &[u16], is_flat: &[bool], [width, height]: [usize; 2
     sides
 }
 
-/// Whether steps to the eight pixels around lead from one pixel to another where these are `open`; both may lie beyond.
-fn meet(from: [usize; 2], to: [usize; 2], open: impl Fn([usize; 2]) -> bool) -> bool {
+/// Whether steps to the pixels beside one, or also to those at its corners, lead from one pixel to another where these are `open`; both may lie beyond.
+fn leads(from: [usize; 2], to: [usize; 2], open: impl Fn([usize; 2]) -> bool, at_corners: bool) -> bool {
     let mut seen = vec![from];
     let mut next = 0;
     while let Some(&[x, y]) = seen.get(next) {
         next += 1;
         for at in (y.saturating_sub(1)..=y + 1).flat_map(|v| (x.saturating_sub(1)..=x + 1).map(move |u| [u, v])) {
+            if !at_corners && at[0] != x && at[1] != y {
+                continue;
+            }
             if at == to {
                 return true;
             }

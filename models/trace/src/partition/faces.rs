@@ -90,20 +90,37 @@ fn partition(size: [usize; 2], pixels: Vec<[f32; 3]>, mixed: Mixed, labels: Vec<
     }
 }
 
-/// Cracks, one pixel long, that a boundary turns into and back from: steps of the stairs that hard edges are where they are slanted. Upright
-/// shapes on whole pixels have none, however many corners they have.
+/// Cracks, one pixel long, that a boundary turns into and back from, with another one, to the same side, where it turns next: steps of the stairs that
+/// hard edges are where they are slanted. Upright shapes on whole pixels have none, however many corners they have, and things side by side that begin
+/// a pixel from one another have single ones.
 fn steps(labels: &[u32], [width, height]: [usize; 2]) -> usize {
-    // Pixels (first, second) on both sides of a crack, in a picture whose rows are `across` pixels apart, and `along` it.
-    let is_step = |first: usize, along: usize, across: usize| {
-        let second = first + across;
-        let [before, behind] = [first - along, first + along].map(|i| [labels[i], labels[i + across]]);
-        let (one, other) = ([labels[first]; 2], [labels[second]; 2]);
-        one != other && (before == one && behind == other || before == other && behind == one)
+    // In a picture, or in one turned over its diagonal, of so many columns and rows: pixels that a crack has on its left.
+    let count = |[columns, rows]: [usize; 2], label: &dyn Fn(usize, usize) -> u32| {
+        // The sides of an upright crack (its left pixel) that is a step: what is left of it, what is right, and whether the boundary is lower on its right.
+        let step = |x: usize, y: usize| {
+            if x + 1 >= columns || y == 0 || y + 1 >= rows {
+                return None;
+            }
+            let row = |y: usize| [label(x, y), label(x + 1, y)];
+            let ([left, right], above, below) = (row(y), row(y - 1), row(y + 1));
+            let falls = [above, below] == [[right; 2], [left; 2]];
+            let rises = [above, below] == [[left; 2], [right; 2]];
+            (left != right && (falls || rises)).then_some((left, right, falls))
+        };
+        let is_followed = |x: usize, y: usize| {
+            let Some((left, right, falls)) = step(x, y) else { return false };
+            // The boundary goes on to the right between this row and the one that has the left side's label.
+            let beyond = if falls { y + 1 } else { y - 1 };
+            let goes_on = |&x: &usize| label(x, y) == right && label(x, beyond) == left;
+            let last = (x + 1..columns).take_while(goes_on).last();
+            last.is_some_and(|last| step(last, beyond) == Some((left, right, falls)))
+        };
+        (1..rows.saturating_sub(1))
+            .flat_map(|y| (1..columns).map(move |x| (x - 1, y)))
+            .filter(|&(x, y)| is_followed(x, y))
+            .count()
     };
-    let inner = |side: usize| 1..side.saturating_sub(1);
-    let upright = inner(height).flat_map(|y| (1..width).map(move |x| y * width + x - 1));
-    let level = (1..height).flat_map(|y| inner(width).map(move |x| (y - 1) * width + x));
-    upright.filter(|&i| is_step(i, width, 1)).count() + level.filter(|&i| is_step(i, 1, width)).count()
+    count([width, height], &|x, y| labels[y * width + x]) + count([height, width], &|x, y| labels[x * width + y])
 }
 
 /// Whether, of four pixels around a corner whose diagonals are of two colors, the diagonal from upper left to lower right is
@@ -115,7 +132,7 @@ fn falling_joins(shares: &[f32], [nw, ne, sw, se]: [usize; 4]) -> bool {
 /// Numbers the faces: runs of pixels side by side, joined with those of the row above.
 fn label([width, height]: [usize; 2], mixed: &Mixed) -> (Vec<u32>, Vec<Face>) {
     let colors = &mixed.colors;
-    let sides = super::checker::sides(colors, &mixed.is_flat, [width, height]);
+    let sides = super::checker::sides(mixed, [width, height]);
     let same = |i: usize, j: usize| colors[i] == colors[j] && (sides[i] == sides[j] || sides[i] == 0 || sides[j] == 0);
     let mut sets = DisjointSets::default();
     let mut labels = vec![NONE; colors.len()];

@@ -26,7 +26,7 @@ mod thin;
 
 use alloc::vec::Vec;
 
-use dvp_core::ImageView;
+use dvp_core::{ImageView, Vec2};
 
 use crate::tuning;
 
@@ -132,12 +132,13 @@ impl Partition {
         !(self.is_hard || self.reading.coded || self.reading.soft || self.reading.noise > 0.0)
     }
 
-    /// The ways to cut a picture into faces: lines that cross taken out of it, and, if there are such with pixels of their own, as faces.
+    /// The ways to cut a picture into faces: lines that cross taken out of it, and, if there are such with pixels of their own, as faces; and lines
+    /// that what lies behind may show through as gaps.
     ///
     /// # Errors
     /// As [`Self::of`].
     #[inline(never)]
-    pub fn readings(image: &ImageView<'_, f32>, reading: Reading) -> Result<(Self, Option<Self>), NoPartition> {
+    pub fn readings(image: &ImageView<'_, f32>, reading: Reading) -> Result<(Self, Vec<Self>), NoPartition> {
         let size = [image.size().width(), image.size().height()];
         let [red, green, blue] = [0, 1, 2].map(|c| image.channel(c));
         let mut pixels: Vec<[f32; 3]> =
@@ -169,7 +170,7 @@ impl Partition {
         };
         let mut lines = Vec::new();
         let mut seams = Vec::new();
-        let mut as_faces = None;
+        let mut others = Vec::new();
         let mut guessed = Vec::new();
         for widest in [tuning::THIN_WIDTH, tuning::CROSSING_WIDTH] {
             // Lines that cross have two colors, and lie on a third.
@@ -188,7 +189,17 @@ impl Partition {
                 }
             }
             if widest > tuning::THIN_WIDTH && !found.lines.is_empty() {
-                as_faces = Some(finish(pixels.clone(), &flats, colors.clone(), lines.clone(), seams.clone()));
+                others.push(finish(pixels.clone(), &flats, colors.clone(), lines.clone(), seams.clone()));
+            }
+            if widest == tuning::THIN_WIDTH
+                && let Some(rest) = found.without_gaps(size)
+            {
+                let mut pixels = pixels.clone();
+                let (lines, guessed) = rest.erase(&mut pixels, size);
+                let lines: Vec<ThinLine> = lines.collect();
+                let flats = find(&pixels);
+                let colors = palette::Palette::of(&flats, &noise)?;
+                others.push(Self { guessed, ..finish(pixels, &flats, colors, lines, seams.clone()) });
             }
             if !found.lines.is_empty() {
                 // Wide lines may pass under thin ones.
@@ -199,7 +210,7 @@ impl Partition {
                 colors = palette::Palette::of(&flats, &noise)?;
             }
         }
-        Ok((Self { guessed, ..finish(pixels, &flats, colors, lines, seams) }, as_faces))
+        Ok((Self { guessed, ..finish(pixels, &flats, colors, lines, seams) }, others))
     }
 
     /// Color of a face.
@@ -254,6 +265,7 @@ impl Partition {
 }
 
 /// Lines in a picture, and what is known of the pixels that they leave.
+#[derive(Clone)]
 struct Found {
     lines: Vec<(ThinLine, chain::Chain)>,
     /// Pixels (ascending) that no mixture of flat colors nearby explains, and the colors of those that are flat.
@@ -292,6 +304,23 @@ impl Found {
             lines = thin::crossing_lines(lines, ground);
         }
         Self { lines, open, flat, palette: colors.colors.clone(), mended, noise, contrast }
+    }
+
+    /// The same without lines that may be gaps between things, through which what lies behind all shows: they lead to it, and are as wide as a pixel. None if
+    /// there is no such line.
+    fn without_gaps(&self, size: [usize; 2]) -> Option<Self> {
+        let is_gap = |(line, chain): &(ThinLine, chain::Chain)| {
+            let leads_out = |[tip, out]: [Vec2<f64>; 2]| {
+                (1..=tuning::GAP_REACH).any(|k| {
+                    let [x, y] = (tip + out * k as f64).to_array().map(|at| at.max(0.0) as usize);
+                    x < size[0] && y < size[1] && self.flat[y * size[0] + x] == 0
+                })
+            };
+            let is_ground = palette::distance(self.palette[0], line.color) <= self.noise;
+            is_ground && !chain.is_closed && chain.width >= tuning::GAP_LEAST && chain.ends().into_iter().any(leads_out)
+        };
+        let lines: Vec<_> = self.lines.iter().filter(|line| !is_gap(line)).cloned().collect();
+        (lines.len() < self.lines.len()).then(|| Self { lines, ..self.clone() })
     }
 
     /// Takes the lines out of the picture: them, and the pixels under which it says nothing.

@@ -69,3 +69,35 @@ fn stairs_beside_smooth_edges_are_slanted() {
     };
     assert!(corners < 12, "{corners}: {square:?}");
 }
+
+#[test]
+fn gaps_between_things_of_a_color_are_no_lines() {
+    // An angle over a bar, a pixel apart: a line in the color of the background over one thing would explain them, too.
+    let angle = [(40.0, 30.0, RED), (40.0, 35.0, RED), (45.0, 35.0, RED), (50.0, 35.0, RED)];
+    let bar = [(36.0, 41.0, RED), (41.0, 41.0, RED), (46.0, 41.0, RED), (51.0, 41.0, RED)];
+    let picture = cells(5.0, &[angle, bar].concat());
+    is_exact(&picture, 2);
+    let strokes = found(&picture).objects.iter().filter(|object| matches!(object.shape, AnyShape::Stroke(_))).count();
+    assert_eq!(strokes, 0);
+}
+
+#[test]
+fn things_that_pass_one_another_leave_the_background_whole() {
+    // The corners of two pieces are three pixels apart: near enough for fields that meet, but for the way between them.
+    let left = [(20.0, 60.0, RED), (20.0, 65.0, RED), (25.0, 65.0, RED), (20.0, 70.0, RED)];
+    let right = [(28.0, 53.0, BLUE), (33.0, 53.0, BLUE), (38.0, 53.0, BLUE), (33.0, 58.0, BLUE)];
+    let picture = cells(5.0, &[left, right].concat());
+    let partition = Partition::of(&picture.view(), Reading::default()).unwrap();
+    assert_eq!(partition.faces.len(), 3);
+    is_exact(&picture, 2);
+}
+
+#[test]
+fn single_steps_make_no_stairs() {
+    // A piece that goes on a pixel further down: its outline steps twice, but not on one side.
+    let column = |left: f64, top: f64, color| [0.0, 5.0, 10.0].map(|down| (left, top + down, color));
+    let picture = cells(5.0, &[column(20.0, 20.0, RED), column(25.0, 21.0, RED)].concat());
+    let partition = Partition::of(&picture.view(), Reading::default()).unwrap();
+    assert!(!partition.is_hard);
+    assert_eq!(found(&picture).objects.len(), 1);
+}
