@@ -86,6 +86,11 @@ impl Form {
         Ok(Self { spectrum })
     }
 
+    /// The form of descriptors that run from +x to +y, with the starting point and the speed that they have.
+    pub(super) fn as_it_runs(efd: &Efd<f64>) -> Self {
+        Self { spectrum: spectrum_of(&efd.resized(MAX_HARMONICS)) }
+    }
+
     /// Descriptors of the outline as it stands, with as many harmonics as hold all but `tolerance` (root mean square).
     #[must_use]
     pub fn efd(&self, tolerance: f64) -> Efd<f64> {

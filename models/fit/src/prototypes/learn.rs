@@ -32,7 +32,7 @@ const OUTLIER: f64 = 2.0;
 /// Standard errors of a mean within which a symmetry counts as evident.
 const EVIDENT: f64 = 4.0;
 /// An outline this close to a symmetry (root mean square, radii) has it, however small its standard error.
-const SYMMETRIC: f64 = 0.01;
+pub(super) const SYMMETRIC: f64 = 0.01;
 /// Misfit of a mean's own truncation, radii.
 const TRUNCATION: f64 = 2e-3;
 

@@ -10,6 +10,8 @@ use num_traits::Float;
 
 use super::MAX_HARMONICS;
 use super::decode::WholeObject;
+use super::form::Form;
+use super::learn::SYMMETRIC;
 use crate::fitter::FitScratch;
 use crate::free::basis::Basis;
 use crate::free::foot::{EdgeLanes, foot};
@@ -36,6 +38,9 @@ const FEW_SAMPLES: usize = 500;
 const WIDTHS: [f64; 3] = [4.0, 1.5, 1.5];
 /// The same where pixels are not mixed, which tell edges to half a pixel.
 const HARD_WIDTHS: [f64; 3] = [12.0, 8.0, 8.0];
+/// How far inside or outside of an outline the middle of a pixel is wanted, px: first as far as an edge between two pixels is on the mean, then so
+/// little that those near it have a say. Where an outline is right, as many on either side are.
+const MARGINS_PX: [f64; 3] = [0.5, 0.3, 0.2];
 /// How far an edge between two pixels may be off (standard deviation, px): it is anywhere between their middles.
 const STEP_PX: f64 = 0.29;
 /// A prototype whose first harmonic is turned by more (radians) stands as it was learned.
@@ -122,18 +127,19 @@ impl<T: Real> Pool<T> {
         if count > 0.0 { sum / count } else { f64::INFINITY }
     }
 
-    /// Takes what an object that is seen whole shows of its shape: its outline passes half-way between pixels, to half a pixel.
+    /// Takes what an object that is seen whole shows of its shape: which pixels along its outline have their middle inside, and which outside.
     #[inline(never)]
     pub fn add_whole(&mut self, object: &WholeObject) {
         let Some(samples) = self.samples.get_mut(object.prototype) else { return };
         if samples.len() < SAMPLES_PER_PROTOTYPE {
             let frame = Frame::new(&object.pose);
             let scale = FRAME / frame.scale;
-            samples.extend(object.edges.iter().map(|&edge| EdgeSample {
-                point: frame.to_unit(edge).map(|v| v * FRAME),
-                distance: 0.0,
+            let sample = |&(middle, is_inside): &([f64; 2], bool)| EdgeSample {
+                point: frame.to_unit(middle).map(|v| v * FRAME),
+                distance: if is_inside { -scale } else { scale },
                 weight: PIXEL_NOISE / (STEP_PX * scale),
-            }));
+            };
+            samples.extend(object.sides.iter().map(sample));
             self.hard = true;
         }
     }
@@ -158,11 +164,7 @@ impl<T: Real> Pool<T> {
         let mut prototypes = Vec::new();
         for ((name, efd), samples) in self.bank.prototypes.iter().zip(&self.samples) {
             let few = samples.len() < FEW_SAMPLES;
-            let better = if few {
-                efd.clone()
-            } else {
-                refined(efd, samples, &basis, if self.hard { &HARD_WIDTHS } else { &WIDTHS })?
-            };
+            let better = if few { efd.clone() } else { refined(efd, samples, &basis, self.hard)? };
             prototypes.push((name.clone(), better));
         }
         Ok(Bank { prototypes })
@@ -182,21 +184,42 @@ fn refined<T: Real>(
     efd: &Efd<T>,
     samples: &[EdgeSample<f64>],
     basis: &Basis<f64>,
-    widths: &[f64],
+    hard: bool,
 ) -> Result<Efd<T>, ShapeError> {
+    let widths = if hard { &HARD_WIDTHS } else { &WIDTHS };
     let mut scratch = OutlineScratch::default();
-    let mut lay = |rows: &[[f64; 4]], widths: &[f64]| {
+    let (mut lanes, mut vertices) = (EdgeLanes::default(), Vec::new());
+    // Samples that an outline is to be laid at: where they are pixels, those that are not clear of it.
+    let mut asked = |outline: &FreeOutline<f64>, margin: f64| -> Vec<EdgeSample<f64>> {
+        if !hard {
+            return samples.to_vec();
+        }
+        outline.write_vertices(basis, REFERENCE_VERTICES, &mut vertices);
+        lanes.set(&vertices);
+        let wanted = samples.iter().map(|&sample| EdgeSample { distance: margin * sample.distance, ..sample });
+        let off = |sample: &EdgeSample<f64>| foot(&vertices, &lanes, sample.point).distance - sample.distance;
+        wanted.filter(|sample| off(sample) * sample.distance < 0.0).collect()
+    };
+    let mut lay = |rows: &[[f64; 4]]| {
         let rows = rows.iter().map(|row| row.map(|v| v * FRAME)).collect();
         let mut outline = FreeOutline { center: [0.0; 2], rows };
-        for &width_px in widths {
+        for (&width_px, margin) in widths.iter().zip(MARGINS_PX) {
             let settings =
                 OutlineSettings { width_px, pixel_noise: PIXEL_NOISE, smoothness: SMOOTHNESS, max_steps: STEPS };
-            refine(&mut outline, samples, basis, REFERENCE_VERTICES, &settings, &mut scratch);
+            let samples = asked(&outline, margin);
+            // Without a say of samples an outline would become smooth.
+            if samples.len() >= FEW_SAMPLES {
+                refine(&mut outline, &samples, basis, REFERENCE_VERTICES, &settings, &mut scratch);
+            }
         }
         Efd::new(outline.rows.into_iter().map(|row| row.map(|v| v / FRAME)).collect())
     };
     let stands = efd.cast::<f64>().normalize()?.rotation.abs() > STANDS;
-    let efd = lay(&rows(&efd.resized(MAX_HARMONICS)), widths);
+    let mut efd: Efd<f64> = lay(&rows(&efd.resized(MAX_HARMONICS)));
+    if hard {
+        // Pixels tell little of fine details, and symmetric shapes show each more than once.
+        efd = Form::as_it_runs(&efd).symmetrized(SYMMETRIC).0.efd(0.0);
+    }
     let mut scaled = efd.clone();
     let normal = efd.normalize()?;
     // What stands as it was learned goes on to do so.

@@ -193,22 +193,13 @@ impl FlatPicture {
         [f64::of_usize(pixel % width) + 0.5, f64::of_usize(pixel / width) + 0.5]
     }
 
-    /// Where the outline of pixels passes: half-way from each to those beside it that are not among them. Px.
-    pub(super) fn edges_of(&self, pixels: &[usize]) -> Vec<[f64; 2]> {
+    /// The middles (px) of pixels on either side of the outline of some, and whether they are among them.
+    pub(super) fn sides_of(&self, pixels: &[usize]) -> Vec<([f64; 2], bool)> {
         let mut is_own = vec![false; self.color_of.len()];
         pixels.iter().for_each(|&pixel| is_own[pixel] = true);
-        let mut edges = Vec::new();
-        for &pixel in pixels {
-            let [x, y] = self.middle(pixel);
-            for neighbor in self.around(pixel).filter(|&neighbor| !is_own[neighbor]) {
-                let [u, v] = self.middle(neighbor);
-                // Those across corners are no neighbors here.
-                if (u - x).abs() + (v - y).abs() < 1.5 {
-                    edges.push([0.5 * (x + u), 0.5 * (y + v)]);
-                }
-            }
-        }
-        edges
+        let is_beside = |pixel: usize, other: bool| self.around(pixel).any(|neighbor| is_own[neighbor] == other);
+        let pixels = (0..is_own.len()).filter(|&pixel| is_beside(pixel, !is_own[pixel]));
+        pixels.map(|pixel| (self.middle(pixel), is_own[pixel])).collect()
     }
 
     /// Whether a pixel lies at the border of the picture.

@@ -86,8 +86,8 @@ pub struct WholeObject {
     pub pixels: usize,
     /// Pixels that the shape covers and should not, or the other way round.
     pub wrong: usize,
-    /// Where the outline passes between the middles of two pixels, px.
-    pub(super) edges: Vec<[f64; 2]>,
+    /// The middles (px) of pixels on either side of its outline, and whether they are inside.
+    pub(super) sides: Vec<([f64; 2], bool)>,
 }
 
 /// An object that was found: its pixels, and what they are.
@@ -240,8 +240,8 @@ impl<T: Real> Decoder<T> {
                 let wrong = posed.verdict.wrong;
                 if f64::of_usize(wrong) <= ABOUT * demand.area {
                     let Posed { prototype, pose, .. } = posed;
-                    let edges = picture.edges_of(&part);
-                    found.push(WholeObject { prototype, pose, pixels: part.len(), wrong, edges });
+                    let sides = picture.sides_of(&part);
+                    found.push(WholeObject { prototype, pose, pixels: part.len(), wrong, sides });
                 }
             }
         }
