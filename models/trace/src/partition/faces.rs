@@ -94,33 +94,35 @@ fn partition(size: [usize; 2], pixels: Vec<[f32; 3]>, mixed: Mixed, labels: Vec<
 /// hard edges are where they are slanted. Upright shapes on whole pixels have none, however many corners they have, and things side by side that begin
 /// a pixel from one another have single ones.
 fn steps(labels: &[u32], [width, height]: [usize; 2]) -> usize {
-    // In a picture, or in one turned over its diagonal, of so many columns and rows: pixels that a crack has on its left.
-    let count = |[columns, rows]: [usize; 2], label: &dyn Fn(usize, usize) -> u32| {
-        // The sides of an upright crack (its left pixel) that is a step: what is left of it, what is right, and whether the boundary is lower on its right.
-        let step = |x: usize, y: usize| {
-            if x + 1 >= columns || y == 0 || y + 1 >= rows {
-                return None;
-            }
-            let row = |y: usize| [label(x, y), label(x + 1, y)];
-            let ([left, right], above, below) = (row(y), row(y - 1), row(y + 1));
-            let falls = [above, below] == [[right; 2], [left; 2]];
-            let rises = [above, below] == [[left; 2], [right; 2]];
-            (left != right && (falls || rises)).then_some((left, right, falls))
-        };
-        let is_followed = |x: usize, y: usize| {
-            let Some((left, right, falls)) = step(x, y) else { return false };
-            // The boundary goes on to the right between this row and the one that has the left side's label.
-            let beyond = if falls { y + 1 } else { y - 1 };
-            let goes_on = |&x: &usize| label(x, y) == right && label(x, beyond) == left;
-            let last = (x + 1..columns).take_while(goes_on).last();
-            last.is_some_and(|last| step(last, beyond) == Some((left, right, falls)))
-        };
-        (1..rows.saturating_sub(1))
-            .flat_map(|y| (1..columns).map(move |x| (x - 1, y)))
-            .filter(|&(x, y)| is_followed(x, y))
-            .count()
+    let is_upright = |i: usize| is_followed([i % width, i / width], [width, height], |x, y| labels[y * width + x]);
+    let is_level = |i: usize| is_followed([i / width, i % width], [height, width], |x, y| labels[x * width + y]);
+    let of = |i: usize| usize::from(is_upright(i)) + usize::from(is_level(i));
+    (0..labels.len()).map(of).sum()
+}
+
+/// Whether the crack on the right of a pixel is a step that another one follows. For level cracks rows and columns change places.
+fn is_followed([x, y]: [usize; 2], [columns, rows]: [usize; 2], label: impl Fn(usize, usize) -> u32) -> bool {
+    // The sides of a step, left and right, and whether the boundary is lower on its right.
+    let step = |x: usize, y: usize| {
+        if x + 1 >= columns || y == 0 || y + 1 >= rows {
+            return None;
+        }
+        let row = |y: usize| [label(x, y), label(x + 1, y)];
+        let [left, right] = row(y);
+        if left == right {
+            return None;
+        }
+        let (above, below) = (row(y - 1), row(y + 1));
+        let falls = [above, below] == [[right; 2], [left; 2]];
+        let rises = [above, below] == [[left; 2], [right; 2]];
+        (falls || rises).then_some((left, right, falls))
     };
-    count([width, height], &|x, y| labels[y * width + x]) + count([height, width], &|x, y| labels[x * width + y])
+    let Some((left, right, falls)) = step(x, y) else { return false };
+    // The boundary goes on to the right between this row and the one that has the left side's label.
+    let beyond = if falls { y + 1 } else { y - 1 };
+    let goes_on = |&x: &usize| label(x, y) == right && label(x, beyond) == left;
+    let last = (x + 1..columns).take_while(goes_on).last();
+    last.is_some_and(|last| step(last, beyond) == Some((left, right, falls)))
 }
 
 /// Whether, of four pixels around a corner whose diagonals are of two colors, the diagonal from upper left to lower right is

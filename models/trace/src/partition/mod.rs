@@ -2,7 +2,7 @@
 //!
 //! Every pixel is pure (of one face) or mixed (of two, rarely three, with shares). `flat` finds what is of one color beyond doubt,
 //! `palette` the colors, `seam` mends what renderers let through between things side by side, `thin` (windows of `cross`, colors of `ink`, joined
-//! by `chain`, and by `pair` where two lines fill a window) finds and `erase` takes out lines without a pixel of their own (`sliver` puts some back), `mix` explains every other pixel as a mixture of colors nearby, `faces`
+//! by `chain`, and by `pair` where two lines fill a window; all `found` together) finds and `erase` takes out lines without a pixel of their own (`sliver` puts some back), `mix` explains every other pixel as a mixture of colors nearby, `faces`
 //! joins pixels to faces, but not across the corners of `checker`. `runs` are what all read instead of single pixels.
 
 mod chain;
@@ -13,6 +13,7 @@ mod cross;
 mod erase;
 mod faces;
 mod flat;
+mod found;
 mod ink;
 mod mix;
 mod pair;
@@ -26,12 +27,13 @@ mod thin;
 
 use alloc::vec::Vec;
 
-use dvp_core::{ImageView, Vec2};
+use dvp_core::ImageView;
 
 use crate::tuning;
 
 pub use faces::Face;
 use flat::Noise;
+use found::Found;
 pub(crate) use mix::coverage;
 pub(crate) use palette::distance;
 pub(crate) use seam::{BEHIND, Seam};
@@ -196,10 +198,11 @@ impl Partition {
             {
                 let mut pixels = pixels.clone();
                 let (lines, guessed) = rest.erase(&mut pixels, size);
-                let lines: Vec<ThinLine> = lines.collect();
+                let lines = lines.collect();
                 let flats = find(&pixels);
-                let colors = palette::Palette::of(&flats, &noise)?;
-                others.push(Self { guessed, ..finish(pixels, &flats, colors, lines, seams.clone()) });
+                if let Ok(colors) = palette::Palette::of(&flats, &noise) {
+                    others.push(Self { guessed, ..finish(pixels, &flats, colors, lines, seams.clone()) });
+                }
             }
             if !found.lines.is_empty() {
                 // Wide lines may pass under thin ones.
@@ -261,74 +264,5 @@ impl Partition {
     #[must_use]
     pub fn face_at(&self, [x, y]: [usize; 2]) -> u32 {
         if x < self.size[0] && y < self.size[1] { self.labels[y * self.size[0] + x] } else { OUTSIDE }
-    }
-}
-
-/// Lines in a picture, and what is known of the pixels that they leave.
-#[derive(Clone)]
-struct Found {
-    lines: Vec<(ThinLine, chain::Chain)>,
-    /// Pixels (ascending) that no mixture of flat colors nearby explains, and the colors of those that are flat.
-    open: Vec<usize>,
-    flat: Vec<u16>,
-    /// Colors of flat pixels when the lines were found.
-    palette: Vec<Color>,
-    /// Pixels that were seams, which are others than before.
-    mended: Vec<Seam>,
-    /// Of a channel, as [`cross::Canvas`] has them.
-    noise: f64,
-    contrast: f64,
-}
-
-impl Found {
-    /// Mends seams, and finds lines up to some width, pixels.
-    fn of(
-        pixels: &mut [[f32; 3]],
-        size: [usize; 2],
-        flats: &flat::Flats,
-        colors: &palette::Palette,
-        noise: &Noise,
-        widest: f64,
-    ) -> Self {
-        let flat = cross::thick(&flats.regions, size[0], &colors.of_region, widest as u16 + 1);
-        let (contrast, white) =
-            (noise.contrast, if noise.reading.coded { coded::weighted([1.0; 3]) } else { [1.0; 3] });
-        let mut open = mix::open(pixels, size, &flat, &colors.colors, noise);
-        let noise = f64::from(noise.mixed);
-        let mended = seam::mend(pixels, size, &flat, &mut open, &colors.colors, noise);
-        let white = white.map(f64::from);
-        let canvas = cross::Canvas { pixels, size, flat: &flat, open: &open, noise, contrast, white, widest };
-        let mut lines = thin::find(&canvas, &colors.colors);
-        let ground = colors.colors[0];
-        if widest > tuning::THIN_WIDTH {
-            lines = thin::crossing_lines(lines, ground);
-        }
-        Self { lines, open, flat, palette: colors.colors.clone(), mended, noise, contrast }
-    }
-
-    /// The same without lines that may be gaps between things, through which what lies behind all shows: they lead to it, and are as wide as a pixel. None if
-    /// there is no such line.
-    fn without_gaps(&self, size: [usize; 2]) -> Option<Self> {
-        let is_gap = |(line, chain): &(ThinLine, chain::Chain)| {
-            let leads_out = |[tip, out]: [Vec2<f64>; 2]| {
-                (1..=tuning::GAP_REACH).any(|k| {
-                    let [x, y] = (tip + out * k as f64).to_array().map(|at| at.max(0.0) as usize);
-                    x < size[0] && y < size[1] && self.flat[y * size[0] + x] == 0
-                })
-            };
-            let is_ground = palette::distance(self.palette[0], line.color) <= self.noise;
-            is_ground && !chain.is_closed && chain.width >= tuning::GAP_LEAST && chain.ends().into_iter().any(leads_out)
-        };
-        let lines: Vec<_> = self.lines.iter().filter(|line| !is_gap(line)).cloned().collect();
-        (lines.len() < self.lines.len()).then(|| Self { lines, ..self.clone() })
-    }
-
-    /// Takes the lines out of the picture: them, and the pixels under which it says nothing.
-    fn erase(self, pixels: &mut [[f32; 3]], size: [usize; 2]) -> (impl Iterator<Item = ThinLine>, Vec<usize>) {
-        let Self { mut lines, open, flat, palette, noise, contrast, .. } = self;
-        let known = flat.iter().map(|&color| color != u16::MAX).collect();
-        let mut eraser = erase::Eraser { pixels, size, open: &open, known, palette: &palette, noise, contrast };
-        let guessed = eraser.erase(&mut lines);
-        (lines.into_iter().map(|(line, _)| line), guessed)
     }
 }
