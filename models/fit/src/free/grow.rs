@@ -18,10 +18,6 @@ const FORECAST: [usize; 10] = [2, 3, 4, 6, 8, 10, 12, 16, 20, 24];
 const LADDER: [usize; 7] = [3, 6, 10, 14, 18, 22, 26];
 /// After so many in a row that do not pay, no more are tried.
 const MOST_FAILURES: usize = 2;
-/// Steps that tell how many harmonics pay; the outline that is taken is worth as many more.
-const TRIAL_STEPS: usize = 2;
-/// Steps of an outline whose number of harmonics is not asked.
-const STEPS: usize = 3;
 /// Steps of the polygon after the first two.
 const POLYGON_STEPS: usize = 3;
 
@@ -100,12 +96,11 @@ pub(crate) fn grow<T: Real>(
     }
     let mut steps = 0;
     let mut fit = |start: &FreeOutline<T>, harmonics: usize, widths: &[f64], scratch: &mut OutlineScratch<T>| {
-        let max_steps = if harmonics > 1 && thrift == Thrift::Fitted { TRIAL_STEPS } else { STEPS };
         let mut outline = FreeOutline { center: start.center, rows: start.rows[..harmonics].to_vec() };
         let mut cost = T::zero();
         for &width in widths {
             let settings =
-                OutlineSettings { width_px: T::of(width), pixel_noise: noise, smoothness: T::of(1e-3), max_steps };
+                OutlineSettings { width_px: T::of(width), pixel_noise: noise, smoothness: T::of(1e-3), max_steps: 3 };
             cost = refine(&mut outline, samples, basis, vertex_count, &settings, scratch);
             steps += settings.max_steps;
         }
@@ -155,10 +150,6 @@ pub(crate) fn grow<T: Real>(
             if tried.bits < best.bits {
                 best = tried;
             }
-        }
-        if best.outline.rows.len() > 1 {
-            let harmonics = best.outline.rows.len();
-            best = fit(&best.outline, harmonics, &[0.5], outline_scratch);
         }
         steps += 2 + POLYGON_STEPS;
     }
