@@ -3,9 +3,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::mix::Mixed;
 use super::runs::runs;
-use crate::tuning;
 
 /// How far (pixels) from the corner the fields are asked for their color: beyond what is mixed there.
 const NEAR: usize = 2;
@@ -13,8 +11,7 @@ const NEAR: usize = 2;
 const FAR: usize = 6;
 
 /// Side of the corner, 1 or 2, of the pixels around one; 0 of all others. Pixels of one color that are on different sides are no neighbors.
-pub(super) fn sides(mixed: &Mixed, [width, height]: [usize; 2]) -> Vec<u8> {
-    let Mixed { colors, shares, is_flat, .. } = mixed;
+pub(super) fn sides(colors: &[u16], is_flat: &[bool], [width, height]: [usize; 2]) -> Vec<u8> {
     let mut sides = vec![0; colors.len()];
     let flat = |x: usize, y: usize| is_flat[y * width + x].then(|| colors[y * width + x]);
     let corner = |x: usize, y: usize| -> Option<[bool; 2]> {
@@ -45,14 +42,15 @@ pub(super) fn sides(mixed: &Mixed, [width, height]: [usize; 2]) -> Vec<u8> {
             let (ne, nw) = (colors[(y - NEAR) * width + x + NEAR], colors[(y - NEAR) * width + x - NEAR]);
             let [columns_near, rows_near] = [(cx, width), (cy, height)]
                 .map(|(middle, side)| middle.saturating_sub(NEAR + 1)..(middle + NEAR + 2).min(side));
-            // Fields that nothing of their color joins are apart as they are; what pixels of their color alone join, side by side, is one thing.
+            // Fields that nothing of their color joins are apart as they are; what flat pixels of it join, side by side, is one thing. A seam may have any
+            // color, but is not flat.
             let meet = |from: [usize; 2], to| {
                 let is_own = |[px, py]: [usize; 2]| {
                     let is_near = columns_near.contains(&px) && rows_near.contains(&py);
                     is_near && colors[py * width + px] == colors[from[1] * width + from[0]]
                 };
-                let is_pure = |at: [usize; 2]| is_own(at) && shares[at[1] * width + at[0]] >= tuning::PURE_SHARE;
-                leads(from, to, is_own, true) && !leads(from, to, is_pure, false)
+                let is_way = |at: [usize; 2]| is_own(at) && is_flat[at[1] * width + at[0]];
+                leads(from, to, is_own, true) && !leads(from, to, is_way, false)
             };
             let [rises, falls] = [
                 rises && meet([x + NEAR, y - NEAR], [x - NEAR, y + NEAR]),

@@ -134,7 +134,7 @@ fn falling_joins(shares: &[f32], [nw, ne, sw, se]: [usize; 4]) -> bool {
 /// Numbers the faces: runs of pixels side by side, joined with those of the row above.
 fn label([width, height]: [usize; 2], mixed: &Mixed) -> (Vec<u32>, Vec<Face>) {
     let colors = &mixed.colors;
-    let sides = super::checker::sides(mixed, [width, height]);
+    let sides = super::checker::sides(colors, &mixed.is_flat, [width, height]);
     let same = |i: usize, j: usize| colors[i] == colors[j] && (sides[i] == sides[j] || sides[i] == 0 || sides[j] == 0);
     let mut sets = DisjointSets::default();
     let mut labels = vec![NONE; colors.len()];
