@@ -54,10 +54,7 @@ fn columns_before<T: Real>(done: &[T], rows: &mut [T], first: usize) {
 /// Solves L L^T x = b in place, `factor`ed matrix.
 #[inline(always)]
 pub(crate) fn solve<T: Real>(factor: &[T], n: usize, b: &mut [T]) {
-    for i in 0..n {
-        let row = &factor[packed(i, 0)..=packed(i, i)];
-        b[i] = (b[i] - dot(&row[..i], &b[..i])) / row[i];
-    }
+    solve_lower(factor, n, b);
     for i in (0..n).rev() {
         let row = &factor[packed(i, 0)..=packed(i, i)];
         let x = b[i] / row[i];
@@ -65,6 +62,15 @@ pub(crate) fn solve<T: Real>(factor: &[T], n: usize, b: &mut [T]) {
         for (target, &l) in b[..i].iter_mut().zip(&row[..i]) {
             *target -= l * x;
         }
+    }
+}
+
+/// Solves L x = b in place.
+#[inline(always)]
+pub(crate) fn solve_lower<T: Real>(factor: &[T], n: usize, b: &mut [T]) {
+    for i in 0..n {
+        let row = &factor[packed(i, 0)..=packed(i, i)];
+        b[i] = (b[i] - dot(&row[..i], &b[..i])) / row[i];
     }
 }
 

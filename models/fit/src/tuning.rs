@@ -183,8 +183,6 @@ pub(crate) const CLEARLY_LESS_LOSS: f64 = 0.8;
 pub(crate) const SEGMENT_HARMONIC_PX: f64 = 6.0;
 /// Noise of independent samples that says as little of an outline as that of a coded picture, in units of the latter.
 pub(crate) const CODED_ALIKE: f64 = 2.0;
-/// A number that is foretold to gain less than this share of what is missed is left out: more may gain it at once.
-pub(crate) const LEAST_FORETOLD_GAIN: f64 = 0.1;
 /// Weight of samples that hold an outline where nothing is seen of it.
 pub(crate) const HOLD_WEIGHT: f64 = 0.02;
 /// Descriptions whose lengths differ by less say nothing.

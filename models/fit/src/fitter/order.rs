@@ -10,7 +10,7 @@ use alloc::vec::Vec;
 use dvp_core::Real;
 
 use super::run::Run;
-use crate::free::grow::{Freedom, Thrift};
+use crate::free::grow::Freedom;
 use crate::pose::search::Effort;
 use crate::price::{coefficient_bits, misfit_bits};
 use crate::tuning::CLEARLY_SHORTER_BITS;
@@ -36,11 +36,11 @@ impl<T: Real> Run<'_, T> {
             let [a, b] = border.objects;
             let [behind_a, behind_b] = [a, b].map(|object| {
                 let held = alone[object as usize];
-                held.unwrap_or_else(|| *alone[object as usize].insert(self.part_bits(object, Thrift::Fitted)))
+                held.unwrap_or_else(|| *alone[object as usize].insert(self.part_bits(object)))
             });
             let [before_a, before_b] = [a, b].map(|object| {
                 self.scratch.segmentation.set_front(at, Some(object));
-                self.part_bits(object, Thrift::Fitted)
+                self.part_bits(object)
             });
             self.scratch.segmentation.set_front(at, None);
             let gain = (behind_a + before_b) - (before_a + behind_b);
@@ -53,12 +53,12 @@ impl<T: Real> Run<'_, T> {
     }
 
     /// Bits of the shape of an object and of what its samples miss, from the borders that are decided for it.
-    pub(super) fn part_bits(&mut self, object: u32, thrift: Thrift) -> f64 {
+    pub(super) fn part_bits(&mut self, object: u32) -> f64 {
         let size = self.image.size();
         self.scratch.segmentation.gather_object(object, size, &self.kind);
         if self.fitter.prototypes.is_empty() {
             let prices = self.fitter.options.prices;
-            let grown = self.outline_of(object as usize, Freedom::Full, thrift);
+            let grown = self.outline_of(object as usize, Freedom::Full);
             return grown.map_or(NO_FIT_BITS, |grown| {
                 let rows = &grown.outline.rows;
                 grown.bits.as_f64() - prices.equal_bits(rows.len()) + coefficient_bits(rows)

@@ -9,7 +9,6 @@ use alloc::vec::Vec;
 use dvp_core::Real;
 
 use super::run::Run;
-use crate::free::grow::Thrift;
 use crate::segment::color::may_be_same;
 use crate::tuning::MIXED_ORDER_BITS;
 
@@ -90,7 +89,7 @@ impl<T: Real> Run<'_, T> {
         // Pieces on their own may be behind all covers, in front of all, or each where it fits best.
         let (mut front, mut apart) = (Vec::new(), [0.0; 3]);
         for &piece in pieces {
-            let behind = [self.part_bits(piece, Thrift::Foretold), self.bits_around(&covers, &[piece])];
+            let behind = [self.part_bits(piece), self.bits_around(&covers, &[piece])];
             let before = [self.bits_if_front(piece, &covers), self.bits_around(&covers, &[])];
             apart[0] += behind[0];
             apart[1] += before[0];
@@ -108,7 +107,7 @@ impl<T: Real> Run<'_, T> {
         let others = f64::from(u32::try_from(pieces.len() - 1).unwrap_or(u32::MAX));
         let apart = self.fitter.options.prices.object_bits() * others + apart.into_iter().fold(f64::INFINITY, f64::min);
         let before = self.scratch.segmentation.join(pieces);
-        let joined = self.part_bits(pieces[0], Thrift::Foretold) + around;
+        let joined = self.part_bits(pieces[0]) + around;
         if joined < apart {
             return true;
         }
@@ -132,7 +131,7 @@ impl<T: Real> Run<'_, T> {
                 self.scratch.segmentation.set_front(at, Some(object));
             }
         }
-        let bits = self.part_bits(object, Thrift::Foretold);
+        let bits = self.part_bits(object);
         for (at, front) in changed {
             self.scratch.segmentation.set_front(at, front);
         }

@@ -4,12 +4,12 @@ use alloc::vec::Vec;
 
 use dvp_core::scene::Pose;
 use dvp_core::shape::{REFERENCE_VERTICES, SYMMETRY_TOLERANCE, Symmetry};
-use dvp_core::{Efd, Object, Real};
+use dvp_core::{Object, Real};
 
 use super::known::Source;
 use super::run::{Found, FoundObject, Run};
 use crate::FitError;
-use crate::free::grow::{Freedom, GrowSettings, Thrift};
+use crate::free::grow::{Freedom, GrowSettings};
 use crate::free::outline_fit::FreeOutline;
 use crate::joint::{JointObject, JointScene};
 use crate::pose::field::OutlineField;
@@ -199,7 +199,6 @@ impl<T: Real> Run<'_, T> {
                 vertex_count: REFERENCE_VERTICES,
                 max_harmonics: self.fitter.options.max_harmonics,
                 freedom: Freedom::Full,
-                thrift: Thrift::Fitted,
                 noise: scratch.segmentation.noise(),
                 prices: self.fitter.options.prices,
             },
@@ -225,13 +224,14 @@ impl<T: Real> Run<'_, T> {
     fn placed(&self, explanation: &Explanation<T>, single: &FoundObject<T>) -> Option<Vec<FoundObject<T>>> {
         let unit = self.unit_px();
         let place = |(outline, motion): &(FreeOutline<T>, PosePx<T>)| {
-            let normal = Efd::new(outline.rows.clone()).normalize().ok()?;
+            // The outline stands in the frame of the motion.
+            let (efd, own) = outline.normal_form(unit)?;
             let pose = Pose {
                 translation: Frame::new(motion).to_pixels(outline.center).map(|v| v / unit),
-                scale: motion.log_scale.exp() * normal.scale / unit,
-                rotation: normal.rotation + motion.rotation,
+                scale: motion.log_scale.exp() * own.scale,
+                rotation: own.rotation + motion.rotation,
             };
-            let object = Object { pose, shape: normal.efd.into(), ..single.object.clone() };
+            let object = Object { pose, shape: efd.into(), ..single.object.clone() };
             Some(FoundObject { object, ..single.clone() })
         };
         explanation.members.iter().map(place).collect()

@@ -3,12 +3,11 @@
 use alloc::vec::Vec;
 
 use dvp_core::contour::perimeter;
-use dvp_core::scene::Pose;
 use dvp_core::shape::REFERENCE_VERTICES;
 use dvp_core::{Efd, Object, Real};
 
 use super::run::{Care, Found, FoundObject, Run};
-use crate::free::grow::{Freedom, GrowSettings, Grown, Thrift, grow, hold_outside};
+use crate::free::grow::{Freedom, GrowSettings, Grown, grow, hold_outside};
 use crate::free::start::{shrink, trace};
 use crate::pose::search::symmetry_order;
 use crate::tuning::{CLEARLY_LESS_LOSS, CODED_ALIKE, FOLDED_PIXELS, SEGMENT_HARMONIC_PX};
@@ -74,18 +73,11 @@ impl<T: Real> Run<'_, T> {
 
     /// The object of a segment, the steps it took, and what completes it; none if it encloses nothing.
     fn object_of(&mut self, segment: usize, freedom: Freedom) -> Option<(Object<T>, usize, Completion)> {
-        let grown = self.outline_of(segment, freedom, Thrift::Fitted)?;
+        let grown = self.outline_of(segment, freedom)?;
         let completion = completion(&grown.outline.rows);
-        // A first harmonic of size 0 has no pose.
-        let normal = Efd::new(grown.outline.rows).normalize().ok()?;
-        let unit = self.unit_px();
-        let pose = Pose {
-            translation: grown.outline.center.map(|v| v / unit),
-            scale: normal.scale / unit,
-            rotation: normal.rotation,
-        };
+        let (efd, pose) = grown.outline.normal_form(self.unit_px())?;
         let segment = &self.scratch.segmentation.segments()[segment];
-        Some((Object::of_efd(pose, segment.color, segment.confidence, normal.efd, None), grown.steps, completion))
+        Some((Object::of_efd(pose, segment.color, segment.confidence, efd, None), grown.steps, completion))
     }
 
     /// The outline of a segment as traced (px); none if it encloses nothing.
@@ -100,7 +92,7 @@ impl<T: Real> Run<'_, T> {
     }
 
     /// The outline of a segment; where it is hidden, it goes on the shortest way.
-    pub(super) fn outline_of(&mut self, segment: usize, freedom: Freedom, thrift: Thrift) -> Option<Grown<T>> {
+    pub(super) fn outline_of(&mut self, segment: usize, freedom: Freedom) -> Option<Grown<T>> {
         let size = self.image.size();
         let contour = self.contour_of(segment)?;
         let scratch = &mut *self.scratch;
@@ -123,7 +115,6 @@ impl<T: Real> Run<'_, T> {
             vertex_count: REFERENCE_VERTICES,
             max_harmonics,
             freedom,
-            thrift,
             noise,
             prices: self.fitter.options.prices,
         };

@@ -7,6 +7,7 @@
 
 pub(crate) mod basis;
 pub(crate) mod foot;
+mod forecast;
 pub(crate) mod grow;
 pub(crate) mod outline_fit;
 pub(crate) mod polygon_fit;

@@ -6,7 +6,9 @@
 
 use alloc::vec::Vec;
 
-use dvp_core::{Real, simd};
+use dvp_core::scene::Pose;
+use dvp_core::shape::REFERENCE_VERTICES;
+use dvp_core::{Efd, Real, simd};
 
 use super::basis::Basis;
 use super::foot::{EdgeLanes, foot};
@@ -30,9 +32,11 @@ pub(crate) struct OutlineScratch<T> {
     own: Vec<[T; 3]>,
     next: Vec<[T; 3]>,
     pull: Vec<[T; 2]>,
+    /// Squared residuals in units of the noise.
+    pub(super) squares: Vec<T>,
     pub(super) hessian: Vec<T>,
     pub(super) gradient: Vec<T>,
-    mix: [Vec<T>; 3],
+    mix: [Vec<T>; 2],
     tried: FreeOutline<T>,
 }
 
@@ -49,6 +53,26 @@ pub(crate) struct OutlineSettings<T> {
 }
 
 impl<T: Real> FreeOutline<T> {
+    /// Unknown `i`: x and y of the center, then per harmonic those of its cosine and of its sine, (a, c) and (b, d), so that
+    /// the first 2 + 4 n are an outline of n harmonics.
+    pub(super) fn coefficient(&mut self, i: usize) -> &mut T {
+        match i.checked_sub(2) {
+            None => &mut self.center[i],
+            Some(i) => &mut self.rows[i / 4][i % 2 * 2 + i / 2 % 2],
+        }
+    }
+
+    /// Its shape, and its pose with lengths in units of `unit_px`: turned and scaled so that the long axis of the first harmonic is
+    /// 1 along x, and started at the vertex nearest to that axis. A start between two vertices would move them all along the
+    /// curve, and a polygon cuts corners elsewhere then than where it was fitted to. None if the first harmonic is 0.
+    pub(crate) fn normal_form(&self, unit_px: T) -> Option<(Efd<T>, Pose<T>)> {
+        let mut normal = Efd::new(self.rows.clone()).normalize().ok()?;
+        let step = T::of(core::f64::consts::TAU / f64::of_usize(REFERENCE_VERTICES - 1));
+        normal.efd.shift((normal.phase / step).round() * step - normal.phase);
+        let translation = self.center.map(|v| v / unit_px);
+        Some((normal.efd, Pose { translation, scale: normal.scale / unit_px, rotation: normal.rotation }))
+    }
+
     pub(crate) fn write_vertices(&self, basis: &Basis<T>, vertex_count: usize, vertices: &mut Vec<[T; 2]>) {
         vertices.clear();
         for i in 0..vertex_count {
@@ -104,31 +128,24 @@ fn steps<T: Real>(
     settings: &OutlineSettings<T>,
     scratch: &mut OutlineScratch<T>,
 ) -> T {
-    let half = 1 + 2 * outline.rows.len();
-    let n = 2 * half;
+    let n = 2 + 4 * outline.rows.len();
     let mut cost = gather(outline, samples, basis, vertex_count, settings, scratch);
     // Weaker damping lets vertices slide along the outline and fold it.
     let weakest = T::of(1e-3);
     let mut damping = T::of(4e-3);
     for _ in 0..settings.max_steps {
         expand(outline, basis, settings, scratch);
-        let trace = (0..n).map(|i| scratch.hessian[packed(i, i)]).sum::<T>() / T::of_usize(n);
-        for i in 0..n {
-            scratch.hessian[packed(i, i)] += damping * trace;
-        }
+        damp(&mut scratch.hessian, n, damping);
         if !factor(&mut scratch.hessian, n) {
             damping *= T::of(10.0);
             continue;
         }
         solve(&scratch.hessian, n, &mut scratch.gradient);
-        let step = &scratch.gradient;
         let mut tried = core::mem::take(&mut scratch.tried);
-        tried.center = [outline.center[0] - step[0], outline.center[1] - step[half]];
-        tried.rows.clear();
-        tried.rows.extend(outline.rows.iter().enumerate().map(|(k, &[a, b, c, d])| {
-            let (x, y) = (1 + 2 * k, half + 1 + 2 * k);
-            [a - step[x], b - step[x + 1], c - step[y], d - step[y + 1]]
-        }));
+        tried.clone_from(outline);
+        for (i, &step) in scratch.gradient.iter().enumerate() {
+            *tried.coefficient(i) -= step;
+        }
         let next = gather(&tried, samples, basis, vertex_count, settings, scratch);
         let better = next < cost;
         if better {
@@ -167,7 +184,8 @@ pub(super) fn gather<T: Real>(
     scratch: &mut OutlineScratch<T>,
 ) -> T {
     let edges = vertex_count - 1;
-    let OutlineScratch { vertices, edges: lanes, own, next, pull, .. } = scratch;
+    let OutlineScratch { vertices, edges: lanes, own, next, pull, squares, .. } = scratch;
+    squares.clear();
     outline.write_vertices(basis, vertex_count, vertices);
     lanes.set(vertices);
     for blocks in [&mut *own, &mut *next] {
@@ -186,6 +204,7 @@ pub(super) fn gather<T: Real>(
         let base = sample.weight * sample.weight * noise;
         let falloff = T::one() / (T::one() + squared * inverse);
         cost += base * squared * falloff;
+        squares.push(base * squared);
         let weight = base * falloff * falloff;
         // The distance falls by (1 - u) n and u n as the vertices move.
         let [nx, ny] = foot.direction;
@@ -219,57 +238,56 @@ fn stiffness<T: Real>(k: usize, settings: &OutlineSettings<T>) -> T {
 /// Fills hessian (packed) and gradient of the coefficients from what [`gather`] left.
 #[inline(always)]
 pub(super) fn expand<T: Real>(
-    outline: &FreeOutline<T>,
+    outline: &mut FreeOutline<T>,
     basis: &Basis<T>,
     settings: &OutlineSettings<T>,
     scratch: &mut OutlineScratch<T>,
 ) {
     let harmonics = outline.rows.len();
-    let half = 1 + 2 * harmonics;
-    let n = 2 * half;
+    let n = 2 + 4 * harmonics;
     let OutlineScratch { hessian, gradient, mix, own, next, pull, .. } = scratch;
     hessian.clear();
     hessian.resize(packed(n, 0), T::zero());
     gradient.clear();
     gradient.resize(n, T::zero());
-    for part in mix.iter_mut() {
-        part.resize(half, T::zero());
-    }
     let edges = own.len();
     for i in 0..edges {
         let (before, after) = (if i == 0 { edges - 1 } else { i - 1 }, if i + 1 == edges { 0 } else { i + 1 });
-        let [row, row_before, row_after] = [i, before, after].map(|v| basis.row(v, harmonics));
-        // Row i of the vertices' equations times the basis: one mixture per component xx, xy, yy.
-        for (c, part) in mix.iter_mut().enumerate() {
-            let (here, back, ahead) = (own[i][c], next[before][c], next[i][c]);
-            for (m, ((&p, &q), &r)) in part.iter_mut().zip(row.iter().zip(row_before).zip(row_after)) {
-                *m = here * p + back * q + ahead * r;
+        let (row, row_before, row_after) =
+            (basis.row(i, harmonics), basis.row(before, harmonics), basis.row(after, harmonics));
+        // The two rows of vertex i of the vertices' equations times the basis, x and y of each unknown side by side.
+        for (axis, part) in mix.iter_mut().enumerate() {
+            let pair = |block: [T; 3]| [block[axis], block[axis + 1]];
+            let (here, back, ahead) = (pair(own[i]), pair(next[before]), pair(next[i]));
+            part.resize(2 * row.len(), T::zero());
+            for (m, ((&p, &q), &r)) in part.as_chunks_mut().0.iter_mut().zip(row.iter().zip(row_before).zip(row_after))
+            {
+                *m = [here[0] * p + back[0] * q + ahead[0] * r, here[1] * p + back[1] * q + ahead[1] * r];
             }
         }
-        let [xx, xy, yy] = &*mix;
         for (k, &value) in row.iter().enumerate() {
-            gradient[k] += pull[i][0] * value;
-            gradient[half + k] += pull[i][1] * value;
-            let line = &mut hessian[packed(k, 0)..=packed(k, k)];
-            for (h, &m) in line.iter_mut().zip(xx) {
-                *h += value * m;
-            }
-            let line = &mut hessian[packed(half + k, 0)..=packed(half + k, half + k)];
-            let (cross, same) = line.split_at_mut(half);
-            for (h, &m) in cross.iter_mut().zip(xy) {
-                *h += value * m;
-            }
-            for (h, &m) in same.iter_mut().zip(yy) {
-                *h += value * m;
+            for axis in 0..2 {
+                let unknown = 2 * k + axis;
+                gradient[unknown] += pull[i][axis] * value;
+                let line = &mut hessian[packed(unknown, 0)..=packed(unknown, unknown)];
+                for (h, &m) in line.iter_mut().zip(&mix[axis]) {
+                    *h += value * m;
+                }
             }
         }
     }
-    for (k, row) in outline.rows.iter().enumerate().skip(1) {
-        let pull = stiffness(k, settings);
-        for (c, &value) in row.iter().enumerate() {
-            let i = if c < 2 { 1 + 2 * k + c } else { half + 1 + 2 * k + c - 2 };
-            hessian[packed(i, i)] += pull;
-            gradient[i] += pull * value;
-        }
+    for i in 6..n {
+        let pull = stiffness((i - 2) / 4, settings);
+        hessian[packed(i, i)] += pull;
+        gradient[i] += pull * *outline.coefficient(i);
+    }
+}
+
+/// Adds `damping` times the mean of the diagonal to it.
+#[inline(always)]
+pub(super) fn damp<T: Real>(hessian: &mut [T], n: usize, damping: T) {
+    let trace = (0..n).map(|i| hessian[packed(i, i)]).sum::<T>() / T::of_usize(n);
+    for i in 0..n {
+        hessian[packed(i, i)] += damping * trace;
     }
 }

@@ -3,7 +3,7 @@ use alloc::vec::Vec;
 
 use super::basis::Basis;
 use super::foot::EdgeLanes;
-use super::grow::{Freedom, GrowScratch, GrowSettings, Grown, Thrift, grow};
+use super::grow::{Freedom, GrowScratch, GrowSettings, Grown, grow};
 use super::outline_fit::{FreeOutline, OutlineScratch, OutlineSettings, expand, gather};
 use crate::price::Prices;
 use crate::segment::EdgeSample;
@@ -63,23 +63,17 @@ fn no_edge_is_nearer_than_the_closest() {
 #[test]
 fn the_gradient_is_that_of_half_the_cost() {
     let basis = Basis::new(VERTICES, 3);
-    let start = outline();
+    let mut start = outline();
     let samples = samples(&start, &basis);
     let mut scratch = OutlineScratch::default();
     gather(&start, &samples, &basis, VERTICES, &SETTINGS, &mut scratch);
-    expand(&start, &basis, &SETTINGS, &mut scratch);
+    expand(&mut start, &basis, &SETTINGS, &mut scratch);
     let gradient = scratch.gradient.clone();
-    // x of the center, (a, b) per harmonic, then y of the center, (c, d) per harmonic.
     assert_eq!(gradient.len(), 14);
     for (lane, &analytic) in gradient.iter().enumerate() {
         let mut cost = |by: f64| {
             let mut moved = start.clone();
-            let (axis, at) = (lane / 7, lane % 7);
-            if at == 0 {
-                moved.center[axis] += by;
-            } else {
-                moved.rows[(at - 1) / 2][2 * axis + (at - 1) % 2] += by;
-            }
+            *moved.coefficient(lane) += by;
             gather(&moved, &samples, &basis, VERTICES, &SETTINGS, &mut scratch)
         };
         let numeric = 0.5 * (cost(1e-6) - cost(-1e-6)) / 2e-6;
@@ -114,7 +108,6 @@ fn grown(outline: &FreeOutline<f64>) -> Grown<f64> {
         vertex_count: VERTICES,
         max_harmonics: 31,
         freedom: Freedom::Full,
-        thrift: Thrift::Fitted,
         noise: 0.003,
         prices: Prices::default(),
     };

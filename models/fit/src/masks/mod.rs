@@ -20,10 +20,9 @@ use core::fmt;
 
 use dvp_core::contour::{Connectivity, trace_mask};
 use dvp_core::shape::{AnyShape, Polygon, Rectangle};
-use dvp_core::{Efd, ImageSize, Pose, Real};
+use dvp_core::{ImageSize, Pose, Real};
 
 use self::ring::{Ring, RingFitter};
-use crate::free::outline_fit::FreeOutline;
 
 /// The outline of a label.
 #[derive(Clone, Debug, PartialEq)]
@@ -153,12 +152,7 @@ fn shape_of<T: Real>(ring: &mut Ring<T>, border: &[[T; 2]], unit_px: T) -> Optio
             let rectangle = Rectangle::new(size, T::zero()).ok()?;
             Some((rectangle.into(), Pose { translation, ..Pose::identity() }))
         }
-        (Ring::Smooth(FreeOutline { center, rows }, _), _) => {
-            let normal = Efd::new(core::mem::take(rows)).normalize().ok()?;
-            let translation = center.map(|v| v / unit_px);
-            let pose = Pose { translation, scale: normal.scale / unit_px, rotation: normal.rotation };
-            Some((normal.efd.into(), pose))
-        }
+        (Ring::Smooth(outline, _), _) => outline.normal_form(unit_px).map(|(efd, pose)| (efd.into(), pose)),
         _ => None,
     }
 }

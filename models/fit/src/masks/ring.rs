@@ -10,7 +10,7 @@ use super::between::{Crack, settle};
 use super::smooth::smooth_polygon;
 use crate::free::basis::Basis;
 use crate::free::foot::{EdgeLanes, foot};
-use crate::free::grow::{Freedom, GrowScratch, GrowSettings, Thrift, grow};
+use crate::free::grow::{Freedom, GrowScratch, GrowSettings, grow};
 use crate::free::outline_fit::{FreeOutline, OutlineScratch};
 use crate::price::Prices;
 use crate::segment::EdgeSample;
@@ -84,7 +84,6 @@ impl<T: Real> RingFitter<T> {
             vertex_count: REFERENCE_VERTICES,
             max_harmonics: most,
             freedom: Freedom::Normals,
-            thrift: Thrift::Fitted,
             noise: T::of(CRACK_NOISE),
             prices: Prices::default(),
         };

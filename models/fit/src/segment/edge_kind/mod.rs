@@ -42,7 +42,7 @@ impl<T: Real> EdgeKind<T> {
     /// Standard deviation (px) of distances read from noiseless pixels: what the inversion itself gets wrong.
     pub(crate) fn distance_noise(&self) -> T {
         match self {
-            Self::Profile(edge) if edge.law == EdgeLaw::SquaredDistance => T::of(0.01),
+            Self::Profile(edge) if edge.law == EdgeLaw::SquaredDistance => T::of(0.003),
             // Blur is no logistic, and rounds corners.
             Self::Profile(_) => T::of(0.02),
             // The direction of the outline is not known: up to 0.1 px along diagonals.
