@@ -28,7 +28,6 @@
 #![no_std]
 
 extern crate alloc;
-extern crate std;
 
 /// The example of the README, compiled and run.
 #[cfg(doctest)]

@@ -13,14 +13,16 @@ use crate::price::{Prices, misfit_bits};
 use crate::segment::EdgeSample;
 use crate::tuning::HOLD_WEIGHT;
 
-/// How often the number of harmonics is chosen again, near the outline that the last choice came to.
+/// How often the number of harmonics is chosen, first near the polygon, then near the outline that the last choice came to.
 const ROUNDS: usize = 3;
-/// Steps of the ellipse, of each width of what counts.
+/// Steps of the ellipse, with each of [`WIDTHS_PX`].
 const ELLIPSE_STEPS: usize = 3;
-/// Steps of the polygon, while far samples count and afterwards.
+/// Steps of the polygon, likewise.
 const POLYGON_STEPS: [usize; 2] = [2, 1];
 /// Steps of the outline with the number of harmonics that is foretold to be best.
 const STEPS: usize = 3;
+/// [`OutlineSettings::width_px`], while far samples count and afterwards.
+const WIDTHS_PX: [f64; 2] = [2.0, 0.5];
 /// See [`OutlineSettings::smoothness`].
 const SMOOTHNESS: f64 = 1e-3;
 
@@ -66,8 +68,8 @@ pub(crate) struct GrowScratch<T> {
 
 /// Fits the traced outline with as many harmonics as pay.
 ///
-/// An ellipse is fitted first, then a polygon, which all harmonics together can be. What any number of harmonics would miss is
-/// foretold near both, and the number with the shortest description is fitted.
+/// An ellipse is fitted first, then a polygon, which all harmonics together can be. What fewer of them would miss is foretold
+/// near it, and the number with the shortest description is fitted.
 pub(crate) fn grow<T: Real>(
     contour: &[[T; 2]],
     samples: &[EdgeSample<T>],
@@ -77,74 +79,67 @@ pub(crate) fn grow<T: Real>(
 ) -> Option<Grown<T>> {
     let GrowSettings { vertex_count, max_harmonics, freedom, noise, prices } = settings;
     let GrowScratch { outline: memory, polygon, vertices, forecast } = scratch;
-    let price = |harmonics| T::of(prices.equal_bits(harmonics));
+    let bits = |harmonics: usize, cost: T| T::of(prices.equal_bits(harmonics)) + cost * misfit_bits();
     if freedom != Freedom::Full {
         take_vertices(contour, vertex_count, vertices)?;
         let steps = if freedom == Freedom::Normals { 2 } else { 0 };
         let cost = move_vertices(vertices, samples, T::one(), noise, steps, polygon);
         let outline = transform(vertices, basis, max_harmonics);
-        return Some(Grown { outline, bits: price(max_harmonics) + cost * misfit_bits(), steps });
+        return Some(Grown { outline, bits: bits(max_harmonics, cost), steps });
     }
-    let samples = Samples { samples, basis, vertex_count, noise };
-    let [wide, narrow] = [2.0, 0.5].map(T::of);
+    let target = Target { samples, basis, vertex_count, noise };
+    let [wide, narrow] = WIDTHS_PX.map(T::of);
     let (first, center) = Efd::from_contour(contour, 1).ok()?;
-    let mut ellipse = FreeOutline { center, rows: first.rows().to_vec() };
-    samples.refine(&mut ellipse, wide, ELLIPSE_STEPS, memory);
-    let cost = samples.refine(&mut ellipse, narrow, ELLIPSE_STEPS, memory);
+    let mut best = FreeOutline { center, rows: first.rows().to_vec() };
+    target.refine(&mut best, wide, ELLIPSE_STEPS, memory);
+    let mut least = target.refine(&mut best, narrow, ELLIPSE_STEPS, memory);
     let mut steps = 2 * ELLIPSE_STEPS;
-    let mut best = (ellipse, cost);
-    let bits = |harmonics: usize, cost: T| price(harmonics) + cost * misfit_bits();
     // More harmonics cannot pay for themselves if what is missed costs less than the second one.
-    if max_harmonics > 1 && bits(1, cost) >= price(2) {
+    if max_harmonics > 1 && bits(1, least) >= bits(2, T::zero()) {
         take_vertices(contour, vertex_count, vertices)?;
-        move_vertices(vertices, samples.samples, wide, noise, POLYGON_STEPS[0], polygon);
-        move_vertices(vertices, samples.samples, narrow, noise, POLYGON_STEPS[1], polygon);
+        move_vertices(vertices, samples, wide, noise, POLYGON_STEPS[0], polygon);
+        move_vertices(vertices, samples, narrow, noise, POLYGON_STEPS[1], polygon);
         steps += POLYGON_STEPS[0] + POLYGON_STEPS[1];
         let mut near = transform(vertices, basis, max_harmonics);
-        let mut spread = T::one();
         for round in 0..ROUNDS {
-            let Some(()) = samples.foretell(&mut near, narrow, memory, forecast) else { break };
-            let all = near.rows.len();
-            if round > 0 {
-                spread = forecast.spread.max(T::one());
-            }
+            let Some(()) = target.foretell(&mut near, narrow, memory, forecast) else { break };
+            // Of samples with more noise than was thought any number of harmonics would explain some. A polygon from afar tells
+            // nothing of it.
+            let spread = if round == 0 { T::one() } else { forecast.spread.max(T::one()) };
             let told = |harmonics: usize| bits(harmonics, forecast.costs[harmonics] / spread);
-            let fewer = if round == 0 { all + 1 } else { all };
-            let harmonics = (2..fewer).fold(1, |a, b| if told(b) < told(a) { b } else { a });
-            let before = bits(best.0.rows.len(), best.1 / spread);
-            if std::env::var("DVP_F").is_ok() { std::eprintln!("round {round}: spread {:.2} best {} {:.0} told {harmonics} {:.0}", spread.as_f64(), best.0.rows.len(), before.as_f64(), told(harmonics).as_f64()); }
+            let most = if round == 0 { near.rows.len() } else { near.rows.len() - 1 };
+            let harmonics = (2..=most).fold(1, |a, b| if told(b) < told(a) { b } else { a });
+            let before = bits(best.rows.len(), least / spread);
             if told(harmonics) >= before {
                 break;
             }
             let foretold = forecast.outline(&mut near, harmonics, memory);
             near.rows.truncate(harmonics);
             // Far from where it was made, the outline of a forecast may be worse than the one that is only cut.
-            let mut at = |start: &FreeOutline<T>| samples.refine(&mut start.clone(), narrow, 0, memory);
-            if at(&foretold) < at(&near) {
+            let mut cost = |start: &FreeOutline<T>| target.refine(&mut start.clone(), narrow, 0, memory);
+            if cost(&foretold) < cost(&near) {
                 near = foretold;
             }
-            let cost = samples.refine(&mut near, narrow, STEPS, memory);
+            let cost = target.refine(&mut near, narrow, STEPS, memory);
             steps += STEPS;
-            if std::env::var("DVP_F").is_ok() { std::eprintln!("   is {:.0}", bits(harmonics, cost / spread).as_f64()); }
             if bits(harmonics, cost / spread) < before {
-                best = (near.clone(), cost);
+                (best, least) = (near.clone(), cost);
             }
         }
     }
-    let (outline, cost) = best;
-    Some(Grown { bits: bits(outline.rows.len(), cost), outline, steps })
+    Some(Grown { bits: bits(best.rows.len(), least), outline: best, steps })
 }
 
 /// What outlines are fitted to.
 #[derive(Clone, Copy, Debug)]
-struct Samples<'a, T> {
+struct Target<'a, T> {
     samples: &'a [EdgeSample<T>],
     basis: &'a Basis<T>,
     vertex_count: usize,
     noise: T,
 }
 
-impl<T: Real> Samples<'_, T> {
+impl<T: Real> Target<'_, T> {
     fn settings(&self, width_px: T, max_steps: usize) -> OutlineSettings<T> {
         OutlineSettings { width_px, pixel_noise: self.noise, smoothness: T::of(SMOOTHNESS), max_steps }
     }

@@ -1,10 +1,14 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
+use dvp_core::shape::OutlineBasis;
+
 use super::basis::Basis;
 use super::foot::EdgeLanes;
+use super::forecast::{DAMPING, Forecast, foretell};
 use super::grow::{Freedom, GrowScratch, GrowSettings, Grown, grow};
-use super::outline_fit::{FreeOutline, OutlineScratch, OutlineSettings, expand, gather};
+use super::outline_fit::{FreeOutline, OutlineScratch, OutlineSettings, damp, expand, gather};
+use crate::cholesky::packed;
 use crate::price::Prices;
 use crate::segment::EdgeSample;
 
@@ -79,6 +83,75 @@ fn the_gradient_is_that_of_half_the_cost() {
         let numeric = 0.5 * (cost(1e-6) - cost(-1e-6)) / 2e-6;
         assert!((analytic - numeric).abs() < 1e-5 * (1.0 + numeric.abs()), "lane {lane}: {analytic} {numeric}");
     }
+}
+
+#[test]
+fn a_forecast_is_the_least_of_the_quadratic_with_the_high_harmonics_at_0() {
+    let basis = Basis::new(VERTICES, 3);
+    let mut start = outline();
+    let samples = samples(&start, &basis);
+    let (mut scratch, mut forecast) = (OutlineScratch::default(), Forecast::default());
+    let cost = gather(&start, &samples, &basis, VERTICES, &SETTINGS, &mut scratch);
+    expand(&mut start, &basis, &SETTINGS, &mut scratch);
+    let (n, gradient) = (scratch.gradient.len(), scratch.gradient.clone());
+    damp(&mut scratch.hessian, n, DAMPING);
+    let hessian: Vec<Vec<f64>> =
+        (0..n).map(|i| (0..n).map(|j| scratch.hessian[packed(i.max(j), i.min(j))]).collect()).collect();
+    foretell(&mut start, &samples, &basis, VERTICES, &SETTINGS, &mut scratch, &mut forecast).unwrap();
+    for harmonics in 1..=3 {
+        let told = forecast.outline(&mut start, harmonics, &scratch);
+        assert_eq!(told.rows.len(), harmonics);
+        let mut all = FreeOutline { center: told.center, rows: told.rows.clone() };
+        all.rows.resize(3, [0.0; 4]);
+        let step: Vec<f64> = (0..n).map(|i| *all.coefficient(i) - *start.coefficient(i)).collect();
+        let slope: Vec<f64> =
+            (0..n).map(|i| gradient[i] + (0..n).map(|j| hessian[i][j] * step[j]).sum::<f64>()).collect();
+        // What is free has no slope left.
+        let free = 2 + 4 * harmonics;
+        assert!(slope[..free].iter().all(|s| s.abs() < 1e-7 * gradient[0].abs().max(1.0)), "{harmonics}: {slope:?}");
+        let value = cost + (0..n).map(|i| step[i] * (gradient[i] + slope[i])).sum::<f64>();
+        let foretold = forecast.costs[harmonics];
+        assert!((value - foretold).abs() < 1e-7 * cost, "{harmonics}: {value} {foretold}");
+    }
+}
+
+#[test]
+fn a_forecast_tells_how_far_residuals_spread() {
+    let basis = Basis::new(VERTICES, 3);
+    let (mut scratch, mut forecast) = (OutlineScratch::default(), Forecast::default());
+    // A hundred and twenty-six samples, off by three times what their weights say, in turns of the golden section.
+    let mut shape = outline();
+    let mut samples = exact_samples(&shape).1;
+    for (k, sample) in (0_u32..).zip(&mut samples) {
+        let turn = (f64::from(k) * 0.618_033_988_749_895).fract() * core::f64::consts::TAU;
+        sample.distance += 3.0 * core::f64::consts::SQRT_2 * turn.cos() * SETTINGS.pixel_noise / sample.weight;
+    }
+    // Some that are far off do not count.
+    samples.iter_mut().step_by(10).for_each(|sample| sample.distance += 3.0);
+    foretell(&mut shape, &samples, &basis, VERTICES, &SETTINGS, &mut scratch, &mut forecast).unwrap();
+    assert!((9.0..30.0).contains(&forecast.spread), "{}", forecast.spread);
+}
+
+#[test]
+fn an_outline_in_its_normal_form_has_the_same_vertices() {
+    // Started anywhere, turned, and in pixels of which 50 are a unit.
+    let mut outline = outline();
+    outline.rows.resize(20, [0.02, -0.01, 0.03, 0.01]);
+    let basis = Basis::new(VERTICES, 20);
+    let mut fitted = Vec::new();
+    outline.write_vertices(&basis, VERTICES, &mut fitted);
+    let (efd, pose) = outline.normal_form(50.0).unwrap();
+    let mut drawn = vec![[0.0; 2]; VERTICES];
+    OutlineBasis::new(VERTICES, 20).unwrap().outline(efd.rows(), &mut drawn).unwrap();
+    pose.transform(&mut drawn);
+    for vertex in &drawn {
+        let distance = |v: &[f64; 2]| (v[0] - 50.0 * vertex[0]).hypot(v[1] - 50.0 * vertex[1]);
+        let nearest = fitted.iter().map(distance).fold(f64::INFINITY, f64::min);
+        assert!(nearest < 1e-9, "{vertex:?} is {nearest} px from the nearest");
+    }
+    // Within half an edge of the long axis.
+    let [a, b, ..] = efd.rows()[0];
+    assert!(a > (core::f64::consts::PI / 63.0).cos() - 1e-9 && b.abs() < core::f64::consts::PI / 63.0, "{a} {b}");
 }
 
 /// Vertices of an outline, and exact samples around it.
