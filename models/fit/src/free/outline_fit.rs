@@ -15,6 +15,13 @@ use super::foot::{EdgeLanes, foot};
 use crate::cholesky::{factor, packed, solve};
 use crate::segment::EdgeSample;
 
+/// Least weight of a vertex that samples are near, as a share of the mean weight: less than what holds a cropped outline outside.
+const SEEN: f64 = 1e-3;
+/// Weight of an unseen vertex where it stands, likewise.
+const UNSEEN_HOLD: f64 = 0.02;
+/// So many vertices to either side must be unseen as well: between samples that are sparse one may be.
+const UNSEEN_AROUND: usize = 2;
+
 /// Center (px) and rows (a, b, c, d) in px: x = cx + sum a cos + b sin, y = cy + sum c cos + d sin.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct FreeOutline<T> {
@@ -32,6 +39,8 @@ pub(crate) struct OutlineScratch<T> {
     own: Vec<[T; 3]>,
     next: Vec<[T; 3]>,
     pull: Vec<[T; 2]>,
+    /// Whether no sample is near a vertex.
+    unseen: Vec<bool>,
     /// Squared residuals in units of the noise.
     pub(super) squares: Vec<T>,
     pub(super) hessian: Vec<T>,
@@ -245,12 +254,15 @@ pub(super) fn expand<T: Real>(
 ) {
     let harmonics = outline.rows.len();
     let n = 2 + 4 * harmonics;
-    let OutlineScratch { hessian, gradient, mix, own, next, pull, .. } = scratch;
+    let OutlineScratch { hessian, gradient, mix, own, next, pull, unseen, .. } = scratch;
     hessian.clear();
     hessian.resize(packed(n, 0), T::zero());
     gradient.clear();
     gradient.resize(n, T::zero());
     let edges = own.len();
+    if harmonics > 1 {
+        hold_unseen(own, unseen);
+    }
     for i in 0..edges {
         let (before, after) = (if i == 0 { edges - 1 } else { i - 1 }, if i + 1 == edges { 0 } else { i + 1 });
         let (row, row_before, row_after) =
@@ -280,6 +292,24 @@ pub(super) fn expand<T: Real>(
         let pull = stiffness((i - 2) / 4, settings);
         hessian[packed(i, i)] += pull;
         gradient[i] += pull * *outline.coefficient(i);
+    }
+}
+
+/// Damps vertices in the middle of others that no sample is near: nothing else would hold what is hidden of an outline where it was
+/// traced, while the rest of it finds its place. An ellipse goes on as it must.
+#[inline(always)]
+fn hold_unseen<T: Real>(own: &mut [[T; 3]], unseen: &mut Vec<bool>) {
+    let weight = |block: &[T; 3]| block[0] + block[2];
+    let count = own.len();
+    let mean = own.iter().map(weight).sum::<T>() / T::of_usize(count);
+    let [seen, hold] = [SEEN, UNSEEN_HOLD].map(|share| T::of(share) * mean);
+    unseen.clear();
+    unseen.extend(own.iter().map(|block| weight(block) < seen));
+    for (i, block) in own.iter_mut().enumerate() {
+        if (count + i - UNSEEN_AROUND..=count + i + UNSEEN_AROUND).all(|k| unseen[k % count]) {
+            block[0] += hold;
+            block[2] += hold;
+        }
     }
 }
 

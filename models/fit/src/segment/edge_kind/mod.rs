@@ -42,6 +42,7 @@ impl<T: Real> EdgeKind<T> {
     /// Standard deviation (px) of distances read from noiseless pixels: what the inversion itself gets wrong.
     pub(crate) fn distance_noise(&self) -> T {
         match self {
+            // Exact but for the seams of whoever draws triangles.
             Self::Profile(edge) if edge.law == EdgeLaw::SquaredDistance => T::of(0.003),
             // Blur is no logistic, and rounds corners.
             Self::Profile(_) => T::of(0.02),
