@@ -87,10 +87,9 @@ impl<T: Real> simd::Kernel for Foretell<'_, T> {
         costs.clear();
         costs.resize(harmonics + 1, missed);
         for h in (0..harmonics).rev() {
-            for i in 2 + 4 * h..6 + 4 * h {
-                let u = forced[i] + scratch.gradient[i];
-                missed += u * u;
-            }
+            let own = 2 + 4 * h..6 + 4 * h;
+            missed +=
+                forced[own.clone()].iter().zip(&scratch.gradient[own]).map(|(&f, &w)| (f + w) * (f + w)).sum::<T>();
             costs[h] = missed;
         }
         Some(())
@@ -124,7 +123,7 @@ impl<T: Real> Forecast<T> {
         for i in (0..all).rev() {
             let row = &scratch.hessian[packed(i, 0)..=packed(i, i)];
             let by = if i < n {
-                step[i] = step[i] / row[i];
+                step[i] /= row[i];
                 step[i]
             } else {
                 -*from.coefficient(i)

@@ -116,6 +116,26 @@ fn a_forecast_is_the_least_of_the_quadratic_with_the_high_harmonics_at_0() {
 }
 
 #[test]
+fn what_is_hidden_of_an_outline_stays_where_it_was() {
+    // A disk whose right quarter is hidden; the rest is that of another of 12 harmonics, a tenth of a pixel off here and there.
+    let basis = Basis::new(VERTICES, 12);
+    let mut shape = FreeOutline { center: [40.0, 38.0], rows: vec![[0.0; 4]; 12] };
+    shape.rows[0] = [20.0, 0.0, 0.0, -20.0];
+    let (vertices, mut samples) = exact_samples(&shape);
+    samples.retain(|sample| sample.point[0] < 54.0);
+    for (k, sample) in (0_u32..).zip(&mut samples) {
+        sample.distance += 0.1 * f64::from((k / 2 * 7) % 5) - 0.2;
+    }
+    let (mut scratch, mut forecast) = (OutlineScratch::default(), Forecast::default());
+    foretell(&mut shape, &samples, &basis, VERTICES, &SETTINGS, &mut scratch, &mut forecast).unwrap();
+    let mut moved = Vec::new();
+    forecast.outline(&mut shape, 12, &scratch).write_vertices(&basis, VERTICES, &mut moved);
+    let hidden = vertices.iter().zip(&moved).filter(|(v, _)| v[0] > 56.0);
+    let farthest = hidden.map(|(v, m)| (v[0] - m[0]).hypot(v[1] - m[1])).fold(0.0, f64::max);
+    assert!(farthest < 1.0, "{farthest} px");
+}
+
+#[test]
 fn a_forecast_tells_how_far_residuals_spread() {
     let basis = Basis::new(VERTICES, 3);
     let (mut scratch, mut forecast) = (OutlineScratch::default(), Forecast::default());
