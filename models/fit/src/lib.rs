@@ -200,7 +200,7 @@ impl<T: Real> Fit<T> {
     #[must_use]
     #[inline(never)]
     pub fn of_painted(scene: Scene<T>, drawing: &Drawing<T>, image: &ImageView<'_, T>, painted: &[T]) -> Self {
-        let Unexplained { share, noise, variance, .. } = Unexplained::of(image, painted);
+        let Unexplained { share, noise, variance, .. } = Unexplained::without_bits(image, painted);
         Self {
             loss: T::nan(),
             steps: 0,

@@ -153,11 +153,17 @@ impl<T: Real> Unexplained<T> {
     #[must_use]
     #[inline(never)]
     pub fn of(image: &ImageView<'_, T>, painted: &[T]) -> Self {
-        let noise = noise_level(image, &mut Vec::new()).max(T::of(PIXEL_NOISE));
+        let without_bits = Self::without_bits(image, painted);
         let mut residual = Residual::default();
         residual.measure(image, painted);
+        Self { bits: residual.bits(without_bits.noise), ..without_bits }
+    }
+
+    /// The same for those who ask for no bits, which take as long again: NaN.
+    pub(crate) fn without_bits(image: &ImageView<'_, T>, painted: &[T]) -> Self {
+        let noise = noise_level(image, &mut Vec::new()).max(T::of(PIXEL_NOISE));
         let (share, variance) = Residual::unexplained(image, painted, noise);
-        Self { share, noise, variance, bits: residual.bits(noise) }
+        Self { share, noise, variance, bits: f64::NAN }
     }
 }
 

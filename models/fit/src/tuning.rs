@@ -194,11 +194,11 @@ pub(crate) const VERTEX_COUPLING: f64 = 1e-3;
 
 /// Noise of a pixel value that free outlines leave: harmonics cut corners, by more the sharper they are, and a shape and its motion
 /// are fitted in turn, to some hundredths of a pixel; neither says how many objects there are.
-pub(crate) const CORNER_NOISE: f64 = 0.015;
+pub(crate) const CORNER_NOISE: f64 = 0.01;
 /// A union may miss the samples by this many times as much as the single outline did, and by so much (px^2) in any case.
 pub(crate) const MISFIT_RATIO: f64 = 2.0;
 /// See [`MISFIT_RATIO`].
-pub(crate) const MISFIT_SLACK: f64 = 0.008;
+pub(crate) const MISFIT_SLACK: f64 = 0.004;
 /// Turn (radians) over four edges from which an outline bends inward.
 pub(crate) const WAIST_TURN: f64 = 0.12;
 /// See [`WAIST_TURN`].

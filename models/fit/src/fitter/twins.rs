@@ -15,6 +15,7 @@ use crate::joint::{JointObject, JointScene};
 use crate::pose::field::OutlineField;
 use crate::pose::gauss_newton::{Frame, PosePx};
 use crate::pose::search::{Effort, search};
+use crate::split::overlap::Overlap;
 use crate::split::twins::{Union, misfit, repeats};
 use crate::split::waist::{is_convex, is_waisted};
 use crate::split::{Explanation, split};
@@ -188,12 +189,14 @@ impl<T: Real> Run<'_, T> {
     }
 
     fn explanations(&mut self, waisted: &Waisted<T>, single: &FoundObject<T>, way: Way) -> Vec<Explanation<T>> {
+        let overlap = self.edge.in_pixels(self.unit_px());
         let scratch = &mut *self.scratch;
         let segment = &scratch.segmentation.segments()[single.segment];
         let union = Union {
             contour: &waisted.contour,
             field: &waisted.field,
             samples: &segment.samples,
+            overlap: Overlap(overlap),
             basis: &self.fitter.basis,
             settings: GrowSettings {
                 vertex_count: REFERENCE_VERTICES,

@@ -64,7 +64,7 @@ pub(crate) struct OutlineSettings<T> {
 impl<T: Real> FreeOutline<T> {
     /// Unknown `i`: x and y of the center, then per harmonic those of its cosine and of its sine, (a, c) and (b, d), so that
     /// the first 2 + 4 n are an outline of n harmonics.
-    pub(super) fn coefficient(&mut self, i: usize) -> &mut T {
+    pub(crate) fn coefficient(&mut self, i: usize) -> &mut T {
         match i.checked_sub(2) {
             None => &mut self.center[i],
             Some(i) => &mut self.rows[i / 4][i % 2 * 2 + i / 2 % 2],
@@ -315,7 +315,7 @@ fn hold_unseen<T: Real>(own: &mut [[T; 3]], unseen: &mut Vec<bool>) {
 
 /// Adds `damping` times the mean of the diagonal to it.
 #[inline(always)]
-pub(super) fn damp<T: Real>(hessian: &mut [T], n: usize, damping: T) {
+pub(crate) fn damp<T: Real>(hessian: &mut [T], n: usize, damping: T) {
     let trace = (0..n).map(|i| hessian[packed(i, i)]).sum::<T>() / T::of_usize(n);
     for i in 0..n {
         hessian[packed(i, i)] += damping * trace;

@@ -10,6 +10,8 @@
 mod assign;
 mod cover;
 pub(crate) mod motion;
+pub(crate) mod overlap;
+mod pair;
 mod partial;
 pub(crate) mod simple_shapes;
 mod symmetry;

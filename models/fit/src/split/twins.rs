@@ -13,8 +13,10 @@ use dvp_core::{ImageSize, Real};
 
 use super::assign;
 use super::motion::{between, search};
+use super::overlap::Overlap;
+use super::pair::{Pair, PairScratch, Target};
 use super::symmetry::PartlyKnown;
-use super::{CROSSING_PX, Explanation, Part};
+use super::{Explanation, Part};
 use crate::free::basis::Basis;
 use crate::free::foot::{EdgeLanes, foot};
 use crate::free::grow::{GrowScratch, GrowSettings, grow};
@@ -30,6 +32,8 @@ const TRIED: usize = 6;
 const MOST_PAIRS: usize = 3;
 /// Rounds of fitting the shape and posing it.
 const ROUNDS: usize = 2;
+/// Steps of both together.
+const STEPS: usize = 4;
 /// Vertices of the outlines in between.
 const START_VERTICES: usize = 96;
 /// Rows and columns around the union while the intersection is traced.
@@ -39,6 +43,7 @@ const MARGIN: usize = 2;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct TwinScratch<T> {
     grow: GrowScratch<T>,
+    pair: PairScratch<T>,
     field: Vec<T>,
     samples: Vec<EdgeSample<T>>,
 }
@@ -63,6 +68,7 @@ pub(crate) struct Union<'a, T> {
     /// Its signed distance.
     pub(crate) field: &'a OutlineField<T>,
     pub(crate) samples: &'a [EdgeSample<T>],
+    pub(crate) overlap: Overlap<T>,
     pub(crate) basis: &'a Basis<T>,
     /// How the shape of twins is fitted.
     pub(crate) settings: GrowSettings<T>,
@@ -104,49 +110,62 @@ impl<T: Real> Union<'_, T> {
     fn shaped(
         &self,
         mut outline: Vec<[T; 2]>,
-        motion: PosePx<T>,
+        mut motion: PosePx<T>,
         scratch: &mut TwinScratch<T>,
     ) -> Option<Explanation<T>> {
-        let margin = T::of_usize(MARGIN);
-        let mut poses = [PosePx::identity(), motion];
-        let mut field = OutlineField::new(&outline)?;
-        let mut found = None;
+        let mut best: Option<Explanation<T>> = None;
         for _ in 0..ROUNDS {
-            gather(&field, poses, self.samples, &mut scratch.samples)?;
-            let mut known = PartlyKnown::new(&outline, &field, &scratch.samples);
-            let frames = poses.map(|pose| Frame::new(&pose));
-            let symmetries = known.symmetries(|point, distance| {
-                frames
-                    .iter()
-                    .all(|frame| self.field.distance(frame.to_pixels(point)).0 - distance <= T::of(STANDS_OUT_PX))
-            });
-            if !symmetries.is_empty() {
-                let carried = known.carried(&symmetries);
-                let common = |point: [T; 2]| {
-                    let here = field.distance(point).0;
-                    let carried = symmetries.iter().map(|map| field.distance(map.point(point.into()).to_array()).0);
-                    if here > margin { here } else { carried.fold(here, T::max) }
-                };
-                outline = closed(&traced(&outline, common, &mut scratch.field)?);
-                scratch.samples.extend(carried);
+            let Some((pair, found)) = self.round(outline, motion, scratch) else { break };
+            // What was not found better is not left for worse.
+            if best.as_ref().is_some_and(|best| found.cost >= best.cost) {
+                break;
             }
-            outline.pop();
-            let TwinScratch { grow: memory, samples: shared, .. } = &mut *scratch;
-            let grown = grow(&outline, shared, self.basis, self.settings, memory)?;
-            grown.outline.write_vertices(self.basis, REFERENCE_VERTICES, &mut outline);
-            let prototype = Prototype { field: OutlineField::new(&outline)?, outline, symmetry: 1 };
-            let parts = poses.map(|pose| Part { prototype: 0, pose });
-            let set = assign::refine(parts.into(), self.samples, core::slice::from_ref(&prototype));
-            let [first, second] = *set.parts else { return None };
-            poses = [first.pose, second.pose];
-            found = Some(Explanation {
-                shape_bits: self.settings.prices.free_shape_bits(grown.outline.rows.len(), symmetries.len() + 1),
-                members: poses.map(|pose| (grown.outline.clone(), pose)).into(),
-                cost: set.cost,
-            });
-            Prototype { outline, field, .. } = prototype;
+            best = Some(found);
+            outline = Vec::new();
+            pair.outline.write_vertices(self.basis, REFERENCE_VERTICES, &mut outline);
+            motion = pair.motion;
         }
-        found
+        best
+    }
+
+    /// Fits the shape to what both places show of it, as far as it is told which of them that is, then both together.
+    fn round(
+        &self,
+        mut outline: Vec<[T; 2]>,
+        motion: PosePx<T>,
+        scratch: &mut TwinScratch<T>,
+    ) -> Option<(Pair<T>, Explanation<T>)> {
+        let margin = T::of_usize(MARGIN);
+        let field = OutlineField::new(&outline)?;
+        let poses = [PosePx::identity(), motion];
+        gather(&field, poses, self.samples, &self.overlap, &mut scratch.samples)?;
+        let mut known = PartlyKnown::new(&outline, &field, &scratch.samples);
+        let frames = poses.map(|pose| Frame::new(&pose));
+        let symmetries = known.symmetries(|point, distance| {
+            frames.iter().all(|frame| self.field.distance(frame.to_pixels(point)).0 - distance <= T::of(STANDS_OUT_PX))
+        });
+        let mut carried = Vec::new();
+        if !symmetries.is_empty() {
+            carried = known.carried(&symmetries);
+            let common = |point: [T; 2]| {
+                let here = field.distance(point).0;
+                let carried = symmetries.iter().map(|map| field.distance(map.point(point.into()).to_array()).0);
+                if here > margin { here } else { carried.fold(here, T::max) }
+            };
+            outline = closed(&traced(&outline, common, &mut scratch.field)?);
+            scratch.samples.extend_from_slice(&carried);
+        }
+        outline.pop();
+        let TwinScratch { grow: memory, samples: shared, pair: of_pair, .. } = scratch;
+        let grown = grow(&outline, shared, self.basis, self.settings, memory)?;
+        let union = Target { samples: self.samples, carried: &carried, overlap: self.overlap, basis: self.basis };
+        let pair = Pair { outline: grown.outline, motion }.refined(&union, STEPS, of_pair);
+        let found = Explanation {
+            shape_bits: self.settings.prices.free_shape_bits(pair.outline.rows.len(), symmetries.len() + 1),
+            members: [PosePx::identity(), pair.motion].map(|pose| (pair.outline.clone(), pose)).into(),
+            cost: pair.misfit(&union, of_pair),
+        };
+        Some((pair, found))
     }
 }
 
@@ -188,6 +207,7 @@ fn gather<T: Real>(
     field: &OutlineField<T>,
     poses: [PosePx<T>; 2],
     samples: &[EdgeSample<T>],
+    overlap: &Overlap<T>,
     out: &mut Vec<EdgeSample<T>>,
 ) -> Option<()> {
     let frames = poses.map(|pose| Frame::new(&pose));
@@ -196,10 +216,14 @@ fn gather<T: Real>(
         let back = frames.map(|frame| frame.to_unit(sample.point));
         let distances: [T; 2] = core::array::from_fn(|k| frames[k].scale * field.distance(back[k]).0);
         let own = usize::from(distances[1] < distances[0]);
-        let astray = (distances[own] - sample.distance).abs() > T::of(TWINS_ASTRAY_PX);
-        if !astray && distances[1 - own] > T::of(CROSSING_PX) {
+        let Some((distance, slope)) = overlap.alone(sample.distance, distances[1 - own]) else { continue };
+        if (distances[own] - distance).abs() <= T::of(TWINS_ASTRAY_PX) {
             let scale = frames[own].scale;
-            out.push(EdgeSample { point: back[own], distance: sample.distance / scale, weight: sample.weight * scale });
+            out.push(EdgeSample {
+                point: back[own],
+                distance: distance / scale,
+                weight: sample.weight * scale / slope,
+            });
         }
     }
     (out.len() >= 8).then_some(())

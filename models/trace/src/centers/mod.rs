@@ -25,7 +25,7 @@ use crate::partition::{OUTSIDE, Partition};
 use crate::ruler::Ruler;
 use crate::tuning;
 use numbers::{Curves, curves, cut, distance, numbers, polygon, with_numbers};
-use rows::Rows;
+use rows::{Place, Rows};
 use slopes::{Depth, Slopes};
 
 /// How far outlines are held from the middles of pixels, pixels; and, where that cannot be, once more.
@@ -43,7 +43,7 @@ const MOST_DAMPING: f64 = 1e5;
 /// Pieces that an outline may get without being better.
 const MOST_IDLE: usize = 3;
 /// Pixels on either side of a boundary whose middles are looked at.
-const REACH: usize = 2;
+const REACH: usize = 1;
 /// Step of differences, pixels.
 const STEP: f64 = 1e-4;
 /// What a pixel on the wrong side costs, bits, beside its place: its color is told.
@@ -98,10 +98,19 @@ impl Facts {
         };
         let mut facts = Vec::new();
         for y in bounds[1].saturating_sub(REACH)..(bounds[3] + REACH).min(height) {
+            // Whether all around the last pixel are as it is.
+            let mut is_one = false;
             for x in bounds[0].saturating_sub(REACH)..(bounds[2] + REACH).min(width) {
-                let Some(is_inside) = known(x, y) else { continue };
-                let around = |at: usize| at.saturating_sub(REACH)..=at + REACH;
-                if around(y).any(|v| around(x).any(|u| known(u, v) != Some(is_inside))) {
+                let Some(is_inside) = known(x, y) else {
+                    is_one = false;
+                    continue;
+                };
+                // Beyond the border nothing is known.
+                let around = |at: usize, first: usize| (first..=2 * REACH).map(move |k| (at + k).wrapping_sub(REACH));
+                // Of what is around the pixel before only the last column is new.
+                let mut columns = around(x, if is_one { 2 * REACH } else { 0 });
+                is_one = columns.all(|u| around(y, 0).all(|v| known(u, v) == Some(is_inside)));
+                if !is_one {
                     facts.push(Fact { at: Vec2::new(x as f64 + 0.5, y as f64 + 0.5), is_inside });
                 }
             }
@@ -217,16 +226,16 @@ impl Facts {
         let curves: Vec<Curves> = shapes.iter().map(curves).collect();
         let rows = Rows::of(&curves, self.rows());
         let mut depths = Vec::new();
-        // Of each curve, the middles that it is the nearest to: only what moves that curve moves it nearer or farther.
-        let none = |curves: &Curves| vec![Vec::<(usize, Vec2<f64>)>::new(); curves.len()];
+        // Of each curve, the middles that it is the nearest to, with the line of it: only what moves that curve moves it nearer or farther.
+        let none = |curves: &Curves| vec![Vec::<(usize, usize, Vec2<f64>)>::new(); curves.len()];
         let mut nearest: Vec<_> = curves.iter().map(none).collect();
         for (fact, &value) in self.0.iter().zip(&state.depths).filter(|&(_, &depth)| depth < NEAR) {
-            let (ring, curve) = rows.nearest(fact.at);
-            nearest[ring][curve].push((depths.len(), fact.at));
+            let Place { ring, curve, line } = rows.nearest(fact.at);
+            nearest[ring][curve].push((depths.len(), line, fact.at));
             depths.push(Depth { value, slopes: Vec::new() });
         }
         let mut levers = Vec::new();
-        for (shape, nearest) in shapes.iter().zip(&nearest) {
+        for ((shape, curves), nearest) in shapes.iter().zip(&curves).zip(&nearest) {
             let with_levers = numbers(shape);
             let mut moved: Vec<f64> = with_levers.iter().map(|number| number.value).collect();
             for (j, number) in with_levers.iter().enumerate() {
@@ -237,9 +246,12 @@ impl Facts {
                 let [one, other] = number.curves;
                 for &curve in if one == other { &number.curves[..1] } else { &number.curves } {
                     let moved = numbers::curve(&with_step, curve);
-                    for &(k, at) in &nearest[curve] {
+                    // The line that is nearest stays so, unless there is one more of them.
+                    let is_same = moved.len() == curves[curve].len();
+                    for &(k, line, at) in &nearest[curve] {
+                        let near = if is_same { &moved[line..line + 2] } else { &moved };
                         let Depth { value, slopes } = &mut depths[k];
-                        slopes.push((levers.len(), (value.signum() * distance(&moved, at) - *value) / step));
+                        slopes.push((levers.len(), (value.signum() * distance(near, at) - *value) / step));
                     }
                 }
                 levers.push(number.lever);
@@ -254,7 +266,8 @@ impl Facts {
         let rows = Rows::of(&curves, self.rows());
         let mut strains: Vec<(f64, (usize, usize))> = Vec::new();
         for (fact, depth) in self.0.iter().zip(&state.depths).filter(|&(_, &depth)| depth < SURE) {
-            let nearest = rows.nearest(fact.at);
+            let Place { ring, curve, .. } = rows.nearest(fact.at);
+            let nearest = (ring, curve);
             match strains.iter_mut().find(|(_, place)| *place == nearest) {
                 Some((strain, _)) => *strain += MARGINS[0] - depth,
                 None => strains.push((MARGINS[0] - depth, nearest)),

@@ -7,7 +7,7 @@ use dvp_core::Vec2;
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
-use super::numbers::{Curves, FAR, distance, square};
+use super::numbers::{Curves, FAR, square};
 
 /// The lines that some outlines are made of, by row.
 pub(super) struct Rows<'a> {
@@ -23,26 +23,26 @@ pub(super) struct Rows<'a> {
 #[derive(Clone, Copy)]
 struct Line {
     ends: [Vec2<f64>; 2],
-    /// The outline, and the curve of it.
-    place: (usize, usize),
+    place: Place,
+}
+
+/// Where in outlines a line is.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Place {
+    pub(super) ring: usize,
+    pub(super) curve: usize,
+    pub(super) line: usize,
 }
 
 impl<'a> Rows<'a> {
     /// What the rows of pixels `rows` need; others are left out.
     pub(super) fn of(curves: &'a [Curves], rows: core::ops::Range<usize>) -> Self {
         let mut lines = vec![Vec::new(); rows.len()];
-        for (ring, curve, points) in curves
-            .iter()
-            .enumerate()
-            .flat_map(|(ring, curves)| curves.iter().enumerate().map(move |(curve, points)| (ring, curve, points)))
-        {
-            for pair in points.windows(2) {
-                let ends = [pair[0], pair[1]];
-                let [top, bottom] = [ends[0].y.min(ends[1].y), ends[0].y.max(ends[1].y)];
-                let row = |y: f64| (y - rows.start as f64).max(0.0).min(rows.len() as f64) as usize;
-                let near = row(top - FAR - 0.5)..row((bottom + FAR + 0.5).ceil());
-                lines[near].iter_mut().for_each(|row| row.push(Line { ends, place: (ring, curve) }));
-            }
+        for (place, ends) in places(curves) {
+            let [top, bottom] = [ends[0].y.min(ends[1].y), ends[0].y.max(ends[1].y)];
+            let row = |y: f64| (y - rows.start as f64).max(0.0).min(rows.len() as f64) as usize;
+            let near = row(top - FAR - 0.5)..row((bottom + FAR + 0.5).ceil());
+            lines[near].iter_mut().for_each(|row| row.push(Line { ends, place }));
         }
         Self { curves, first: rows.start, lines }
     }
@@ -66,8 +66,8 @@ impl<'a> Rows<'a> {
         if is_inside { -nearest.sqrt() } else { nearest.sqrt() }
     }
 
-    /// The outline, and the curve of it, that is nearest to the middle of a pixel.
-    pub(super) fn nearest(&self, at: Vec2<f64>) -> (usize, usize) {
+    /// The line that is nearest to the middle of a pixel.
+    pub(super) fn nearest(&self, at: Vec2<f64>) -> Place {
         let mut nearest = (FAR * FAR, None);
         for Line { ends: [from, to], place } in self.around(at) {
             let square = square(from, to, at);
@@ -77,18 +77,28 @@ impl<'a> Rows<'a> {
         }
         // What is farther away may be in any row.
         nearest.1.unwrap_or_else(|| {
-            let places = self.curves.iter().enumerate();
-            let places = places.flat_map(|(ring, curves)| (0..curves.len()).map(move |curve| (ring, curve)));
-            let far = |&(ring, curve): &(usize, usize)| distance(&self.curves[ring][curve], at);
-            places.min_by(|a, b| far(a).total_cmp(&far(b))).unwrap_or_default()
+            let far = |&(_, [from, to]): &(Place, [Vec2<f64>; 2])| square(from, to, at);
+            let nearest = places(self.curves).min_by(|a, b| far(a).total_cmp(&far(b)));
+            nearest.map_or_else(Place::default, |(place, _)| place)
         })
     }
+}
+
+/// All lines, and where they are.
+fn places(curves: &[Curves]) -> impl Iterator<Item = (Place, [Vec2<f64>; 2])> {
+    curves.iter().enumerate().flat_map(|(ring, curves)| {
+        curves.iter().enumerate().flat_map(move |(curve, points)| {
+            let lines = points.windows(2).enumerate();
+            lines.map(move |(line, pair)| (Place { ring, curve, line }, [pair[0], pair[1]]))
+        })
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
 
+    use super::super::numbers::distance;
     use super::*;
 
     proptest! {
@@ -113,9 +123,9 @@ mod tests {
                 let far = all().map(|pair| square(pair[0], pair[1], at)).fold(FAR * FAR, f64::min).sqrt();
                 let sign = if all().filter(crossed).count() % 2 == 1 { -1.0 } else { 1.0 };
                 prop_assert_eq!(rows.depth(at), sign * far);
-                let (ring, curve) = rows.nearest(at);
+                let Place { ring, curve, line } = rows.nearest(at);
                 let least = curves.iter().flatten().map(|points| distance(points, at)).fold(f64::INFINITY, f64::min);
-                prop_assert_eq!(distance(&curves[ring][curve], at), least);
+                prop_assert_eq!(distance(&curves[ring][curve][line..line + 2], at), least);
             }
         }
     }

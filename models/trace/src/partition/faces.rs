@@ -94,10 +94,13 @@ fn partition(size: [usize; 2], pixels: Vec<[f32; 3]>, mixed: Mixed, labels: Vec<
 /// hard edges are where they are slanted. Upright shapes on whole pixels have none, however many corners they have, and things side by side that begin
 /// a pixel from one another have single ones.
 fn steps(labels: &[u32], [width, height]: [usize; 2]) -> usize {
-    let is_upright = |i: usize| is_followed([i % width, i / width], [width, height], |x, y| labels[y * width + x]);
-    let is_level = |i: usize| is_followed([i / width, i % width], [height, width], |x, y| labels[x * width + y]);
-    let of = |i: usize| usize::from(is_upright(i)) + usize::from(is_level(i));
-    (0..labels.len()).map(of).sum()
+    let of = |[x, y]: [usize; 2]| {
+        let is_upright = is_followed([x, y], [width, height], |x, y| labels[y * width + x]);
+        let is_level = is_followed([y, x], [height, width], |y, x| labels[y * width + x]);
+        usize::from(is_upright) + usize::from(is_level)
+    };
+    let of_row = |y: usize| (0..width).map(move |x| [x, y]).map(of).sum::<usize>();
+    (0..height).map(of_row).sum()
 }
 
 /// Whether the crack on the right of a pixel is a step that another one follows. For level cracks rows and columns change places.

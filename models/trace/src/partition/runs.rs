@@ -2,14 +2,20 @@
 
 use core::ops::Range;
 
+/// Values that are compared at once.
+const MANY: usize = 16;
+
 /// The runs of a row from left to right: their value, and their columns.
 pub(super) fn runs<V: Copy + PartialEq>(row: &[V]) -> impl Iterator<Item = (V, Range<usize>)> {
     let mut start = 0;
     core::iter::from_fn(move || {
         let rest = row.get(start..)?;
         let &value = rest.first()?;
-        let length = rest.iter().position(|other| *other != value).unwrap_or(rest.len());
-        let columns = start..start + length;
+        // Most runs are long: many values are compared at once as long as all of them go on.
+        let goes_on = |values: &&[V; MANY]| values.iter().fold(true, |all, other| all & (*other == value));
+        let whole = MANY * rest.as_chunks().0.iter().take_while(goes_on).count();
+        let more = rest[whole..].iter().take_while(|other| **other == value).count();
+        let columns = start..start + whole + more;
         start = columns.end;
         Some((value, columns))
     })

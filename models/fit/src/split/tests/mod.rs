@@ -1,3 +1,5 @@
+mod pair;
+
 use alloc::vec::Vec;
 
 use dvp_core::shape::{OutlineBasis, REFERENCE_VERTICES, mdshr_bank};
