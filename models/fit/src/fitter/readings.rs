@@ -17,8 +17,8 @@ use crate::block_code::BlockCode;
 use crate::colors::{is_rounded, round_color};
 use crate::segment::{EdgeKind, NoisyOptions, SegmentOptions};
 use crate::tuning::{
-    CODED_NOISE, COMPRESSED_BLUR_PX, COMPRESSED_NOISE, FINE_ZONE, MANY_REGIONS, MISSED_SHARE, MOST_CLEAN_REGIONS,
-    NOT_FLAT_SHARE, QUIET_NOISE, TEXTURE_NOISE,
+    CODED_CLEARLY_SHORTER, CODED_NOISE, COMPRESSED_BLUR_PX, COMPRESSED_NOISE, FINE_ZONE, MANY_REGIONS, MISSED_SHARE,
+    MOST_CLEAN_REGIONS, NOT_FLAT_SHARE, QUIET_NOISE, TEXTURE_NOISE,
 };
 use crate::{Fit, FitError, StopReason};
 
@@ -223,7 +223,8 @@ impl<T: Real> Fitter<T> {
     }
 
     /// The fit of shorter description. Fractions of a step of color lie up to half a step off every flat pixel of a rounded
-    /// image: those of one fit must not speak against it.
+    /// image: those of one fit must not speak against it. What a coder spreads looks most like area coverage, whatever it was: this
+    /// must be clearly shorter than the renderer's own edges.
     fn shorter(
         &self,
         image: ImageView<'_, T>,
@@ -231,6 +232,9 @@ impl<T: Real> Fitter<T> {
         other: Fit<T>,
         scratch: &mut FitScratch<T>,
     ) -> Result<Fit<T>, FitError> {
+        let spread = scratch.segmentation.is_compressed()
+            && [&one, &other].map(|fit| fit.scene.edge.law) == [EdgeLaw::Area, EdgeLaw::SquaredDistance];
+        let clearly = if spread { CODED_CLEARLY_SHORTER } else { 1.0 };
         let rounded = is_rounded(scratch.segmentation.region_colors().flatten());
         let mut bits = |fit: &Fit<T>| {
             if !rounded || !has_fractions(fit.scene.edge, fit.scene.compositing) {
@@ -241,7 +245,7 @@ impl<T: Real> Fitter<T> {
             colors.chain([&mut plain.scene.background]).for_each(round_color);
             self.bits_at(image, &plain, fit.noise, scratch)
         };
-        Ok(if bits(&one)? <= bits(&other)? { one } else { other })
+        Ok(if bits(&one)? <= clearly * bits(&other)? { one } else { other })
     }
 
     /// Description length of a fit, at another noise level than its own.

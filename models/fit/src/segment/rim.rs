@@ -18,7 +18,7 @@ impl<T: Real> Segmentation<T> {
                 && rim.object == object as usize
             {
                 segment.rim.push((transition.pixel, rim.coverage));
-                segment.samples.extend(sample(&rim, transition, edge, size, self.noise));
+                segment.samples.extend(sample(&rim, transition, edge, size, self.noise, self.is_compressed()));
             }
         }
         self.segments[object as usize] = segment;
@@ -36,7 +36,7 @@ impl<T: Real> Segmentation<T> {
                 self.share_between(&transition);
                 continue;
             };
-            let sample = sample(&rim, &transition, edge, size, self.noise);
+            let sample = sample(&rim, &transition, edge, size, self.noise, self.is_compressed());
             let segment = &mut self.segments[rim.object];
             segment.rim.push((transition.pixel, rim.coverage));
             segment.samples.extend(sample);
@@ -87,17 +87,19 @@ impl<T: Real> Segmentation<T> {
     }
 }
 
-/// The distance that a soft pixel tells; none where coverage is too close to 0 or 1.
+/// The distance that a soft pixel, of a picture that may be `coded`, tells; none where coverage is too close to 0 or 1.
 fn sample<T: Real>(
     rim: &Rim<T>,
     transition: &transition::Transition<T>,
     edge: &EdgeKind<T>,
     size: ImageSize,
     pixel_noise: T,
+    coded: bool,
 ) -> Option<EdgeSample<T>> {
     let own = edge.distance_noise();
     let (one, half) = (T::one(), T::of(0.5));
-    let known = edge.distance(rim.coverage, T::of_usize(size.unit_px()));
+    let unit = T::of_usize(size.unit_px());
+    let known = edge.distance(rim.coverage, unit);
     // Pixels that are covered in whole beside ones not covered at all: the outline runs between them.
     let between = || {
         let to_nearest = (rim.coverage - rim.coverage.round()).abs();
@@ -110,7 +112,10 @@ fn sample<T: Real>(
     let [x, y] = transition.pixel.map(|v| T::of_usize(v as usize) + half);
     // Pixel noise over the slope, and the noise of the distance itself.
     let from_pixel = pixel_noise / (rim.contrast * slope * share).max(T::of(1e-6));
-    let weight = pixel_noise / (from_pixel * from_pixel + own * own).sqrt();
+    // A coder spreads edges by about their own width: only in their middle are they where they were.
+    let spread =
+        if coded { distance - edge.distance(half, unit).map_or(distance, |(middle, _)| middle) } else { T::zero() };
+    let weight = pixel_noise / (from_pixel * from_pixel + own * own + spread * spread).sqrt();
     Some(EdgeSample { point: [x, y], distance, weight })
 }
 
