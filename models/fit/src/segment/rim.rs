@@ -88,7 +88,7 @@ impl<T: Real> Segmentation<T> {
 }
 
 /// The distance that a soft pixel, of a picture that may be `coded`, tells; none where coverage is too close to 0 or 1.
-fn sample<T: Real>(
+pub(super) fn sample<T: Real>(
     rim: &Rim<T>,
     transition: &transition::Transition<T>,
     edge: &EdgeKind<T>,
