@@ -14,9 +14,10 @@ use super::outline_fit::{FreeOutline, OutlineScratch, OutlineSettings, damp, exp
 use crate::cholesky::{factor, packed, solve_lower};
 use crate::segment::EdgeSample;
 
-/// Damping as a share of the mean of the diagonal: as little as keeps single precision from failing, so that vertices may slide along
-/// the outline where harmonics are left out.
-pub(super) const DAMPING: f64 = 1e-5;
+/// Damping as a share of the mean of the diagonal, so that vertices may slide along the outline where harmonics are left out, but not so
+/// far that it folds at its corners. Ten times less: half as long for pictures of objects with a waist, and folded outlines under noise;
+/// three times more: the mean error grows by a hundredth.
+pub(super) const DAMPING: f64 = 3e-4;
 
 /// Median of the square of a normal deviate of variance 1.
 const MEDIAN_SQUARE: f64 = 0.455;
