@@ -9,14 +9,12 @@ use alloc::vec::Vec;
 
 use dvp_core::{Real, simd};
 
-use super::basis::Basis;
-use super::outline_fit::{FreeOutline, OutlineScratch, OutlineSettings, damp, expand, gather};
+use super::outline_fit::{FreeOutline, OutlineScratch, Target, damp, expand, gather};
 use crate::cholesky::{factor, packed, solve_lower};
-use crate::segment::EdgeSample;
 
 /// Damping as a share of the mean of the diagonal, so that vertices may slide along the outline where harmonics are left out, but not so
-/// far that it folds at its corners. Ten times less: half as long for pictures of objects with a waist, and folded outlines under noise;
-/// three times more: the mean error grows by a hundredth.
+/// far that it folds at its corners. With a tenth of it some outlines fold under noise, and pictures take a quarter longer on average; with
+/// three times as much the mean error grows by a hundredth.
 pub(super) const DAMPING: f64 = 3e-4;
 
 /// Median of the square of a normal deviate of variance 1.
@@ -36,23 +34,17 @@ pub(super) struct Forecast<T> {
 /// Foretells what `outline` misses with fewer harmonics; none if nothing can be told. `scratch` keeps the factorization, for
 /// [`Forecast::outline`].
 pub(super) fn foretell<T: Real>(
-    outline: &mut FreeOutline<T>,
-    samples: &[EdgeSample<T>],
-    basis: &Basis<T>,
-    vertex_count: usize,
-    settings: &OutlineSettings<T>,
+    outline: &FreeOutline<T>,
+    target: &Target<'_, T>,
     scratch: &mut OutlineScratch<T>,
     forecast: &mut Forecast<T>,
 ) -> Option<()> {
-    simd::dispatch(Foretell { outline, samples, basis, vertex_count, settings, scratch, forecast })
+    simd::dispatch(Foretell { outline, target, scratch, forecast })
 }
 
 struct Foretell<'a, T> {
-    outline: &'a mut FreeOutline<T>,
-    samples: &'a [EdgeSample<T>],
-    basis: &'a Basis<T>,
-    vertex_count: usize,
-    settings: &'a OutlineSettings<T>,
+    outline: &'a FreeOutline<T>,
+    target: &'a Target<'a, T>,
     scratch: &'a mut OutlineScratch<T>,
     forecast: &'a mut Forecast<T>,
 }
@@ -62,10 +54,10 @@ impl<T: Real> simd::Kernel for Foretell<'_, T> {
 
     #[inline(always)]
     fn run(self) -> Option<()> {
-        let Self { outline, samples, basis, vertex_count, settings, scratch, forecast } = self;
-        let cost = gather(outline, samples, basis, vertex_count, settings, scratch);
+        let Self { outline, target, scratch, forecast } = self;
+        let cost = gather(outline, target, scratch);
         forecast.spread = spread(&mut scratch.squares, 2 + 4 * outline.rows.len());
-        expand(outline, basis, settings, scratch);
+        expand(outline, target, scratch);
         let n = scratch.gradient.len();
         damp(&mut scratch.hessian, n, T::of(DAMPING));
         if !factor(&mut scratch.hessian, n) {
@@ -77,7 +69,7 @@ impl<T: Real> simd::Kernel for Foretell<'_, T> {
         forced.clear();
         forced.resize(n, T::zero());
         for i in (0..n).rev() {
-            let value = *outline.coefficient(i);
+            let value = outline.coefficient(i);
             let row = &scratch.hessian[packed(i, 0)..=packed(i, i)];
             for (sum, &l) in forced.iter_mut().zip(row) {
                 *sum -= l * value;
@@ -113,7 +105,7 @@ impl<T: Real> Forecast<T> {
     /// The outline of so many harmonics that is foretold: the free part of its step makes its u 0.
     pub(super) fn outline(
         &mut self,
-        from: &mut FreeOutline<T>,
+        from: &FreeOutline<T>,
         harmonics: usize,
         scratch: &OutlineScratch<T>,
     ) -> FreeOutline<T> {
@@ -127,7 +119,7 @@ impl<T: Real> Forecast<T> {
                 step[i] /= row[i];
                 step[i]
             } else {
-                -*from.coefficient(i)
+                -from.coefficient(i)
             };
             let below = i.min(n);
             for (target, &l) in step[..below].iter_mut().zip(row) {
@@ -136,7 +128,7 @@ impl<T: Real> Forecast<T> {
         }
         let mut outline = FreeOutline { center: from.center, rows: from.rows[..harmonics].to_vec() };
         for (i, &by) in step.iter().enumerate() {
-            *outline.coefficient(i) += by;
+            *outline.coefficient_mut(i) += by;
         }
         outline
     }

@@ -7,7 +7,7 @@ use dvp_core::{Efd, Real};
 
 use super::basis::Basis;
 use super::forecast::{Forecast, foretell};
-use super::outline_fit::{FreeOutline, OutlineScratch, OutlineSettings, refine};
+use super::outline_fit::{FreeOutline, OutlineScratch, OutlineSettings, Target, refine};
 use super::polygon_fit::{PolygonScratch, move_vertices, transform};
 use crate::price::{Prices, misfit_bits};
 use crate::segment::EdgeSample;
@@ -87,12 +87,15 @@ pub(crate) fn grow<T: Real>(
         let outline = transform(vertices, basis, max_harmonics);
         return Some(Grown { outline, bits: bits(max_harmonics, cost), steps });
     }
-    let target = Target { samples, basis, vertex_count, noise };
     let [wide, narrow] = WIDTHS_PX.map(T::of);
+    let target = |width_px: T, max_steps: usize| {
+        let settings = OutlineSettings { width_px, pixel_noise: noise, smoothness: T::of(SMOOTHNESS), max_steps };
+        Target { samples, basis, vertex_count, settings }
+    };
     let (first, center) = Efd::from_contour(contour, 1).ok()?;
     let mut best = FreeOutline { center, rows: first.rows().to_vec() };
-    target.refine(&mut best, wide, ELLIPSE_STEPS, memory);
-    let mut least = target.refine(&mut best, narrow, ELLIPSE_STEPS, memory);
+    refine(&mut best, &target(wide, ELLIPSE_STEPS), memory);
+    let mut least = refine(&mut best, &target(narrow, ELLIPSE_STEPS), memory);
     let mut steps = 2 * ELLIPSE_STEPS;
     // More harmonics cannot pay for themselves if what is missed costs less than the second one.
     if max_harmonics > 1 && bits(1, least) >= bits(2, T::zero()) {
@@ -102,7 +105,7 @@ pub(crate) fn grow<T: Real>(
         steps += POLYGON_STEPS[0] + POLYGON_STEPS[1];
         let mut near = transform(vertices, basis, max_harmonics);
         for round in 0..ROUNDS {
-            let Some(()) = target.foretell(&mut near, narrow, memory, forecast) else { break };
+            let Some(()) = foretell(&near, &target(narrow, 0), memory, forecast) else { break };
             // Of samples with more noise than was thought any number of harmonics would explain some. A polygon from afar tells
             // nothing of it.
             let spread = if round == 0 { T::one() } else { forecast.spread.max(T::one()) };
@@ -113,14 +116,14 @@ pub(crate) fn grow<T: Real>(
             if told(harmonics) >= before {
                 break;
             }
-            let foretold = forecast.outline(&mut near, harmonics, memory);
+            let foretold = forecast.outline(&near, harmonics, memory);
             near.rows.truncate(harmonics);
             // Far from where it was made, the outline of a forecast may be worse than the one that is only cut.
-            let mut cost = |start: &FreeOutline<T>| target.refine(&mut start.clone(), narrow, 0, memory);
+            let mut cost = |start: &FreeOutline<T>| refine(&mut start.clone(), &target(narrow, 0), memory);
             if cost(&foretold) < cost(&near) {
                 near = foretold;
             }
-            let cost = target.refine(&mut near, narrow, STEPS, memory);
+            let cost = refine(&mut near, &target(narrow, STEPS), memory);
             steps += STEPS;
             if bits(harmonics, cost / spread) < before {
                 (best, least) = (near.clone(), cost);
@@ -128,37 +131,6 @@ pub(crate) fn grow<T: Real>(
         }
     }
     Some(Grown { bits: bits(best.rows.len(), least), outline: best, steps })
-}
-
-/// What outlines are fitted to.
-#[derive(Clone, Copy, Debug)]
-struct Target<'a, T> {
-    samples: &'a [EdgeSample<T>],
-    basis: &'a Basis<T>,
-    vertex_count: usize,
-    noise: T,
-}
-
-impl<T: Real> Target<'_, T> {
-    fn settings(&self, width_px: T, max_steps: usize) -> OutlineSettings<T> {
-        OutlineSettings { width_px, pixel_noise: self.noise, smoothness: T::of(SMOOTHNESS), max_steps }
-    }
-
-    /// See [`refine`].
-    fn refine(&self, outline: &mut FreeOutline<T>, width_px: T, steps: usize, memory: &mut OutlineScratch<T>) -> T {
-        refine(outline, self.samples, self.basis, self.vertex_count, &self.settings(width_px, steps), memory)
-    }
-
-    /// See [`foretell`].
-    fn foretell(
-        &self,
-        outline: &mut FreeOutline<T>,
-        width_px: T,
-        memory: &mut OutlineScratch<T>,
-        forecast: &mut Forecast<T>,
-    ) -> Option<()> {
-        foretell(outline, self.samples, self.basis, self.vertex_count, &self.settings(width_px, 0), memory, forecast)
-    }
 }
 
 /// Vertices at equal distances along the contour, the last one the first again.

@@ -49,6 +49,16 @@ pub(crate) struct OutlineScratch<T> {
     tried: FreeOutline<T>,
 }
 
+/// What an outline is fitted to.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Target<'a, T> {
+    pub(crate) samples: &'a [EdgeSample<T>],
+    pub(crate) basis: &'a Basis<T>,
+    /// Vertices of the outline, the last one the first again.
+    pub(crate) vertex_count: usize,
+    pub(crate) settings: OutlineSettings<T>,
+}
+
 /// Settings of one refinement.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OutlineSettings<T> {
@@ -64,10 +74,15 @@ pub(crate) struct OutlineSettings<T> {
 impl<T: Real> FreeOutline<T> {
     /// Unknown `i`: x and y of the center, then per harmonic those of its cosine and of its sine, (a, c) and (b, d), so that
     /// the first 2 + 4 n are an outline of n harmonics.
-    pub(crate) fn coefficient(&mut self, i: usize) -> &mut T {
+    pub(crate) fn coefficient(&self, i: usize) -> T {
+        i.checked_sub(2).map_or_else(|| self.center[i], |i| self.rows[i / 4][of_row(i)])
+    }
+
+    /// The same to be changed.
+    pub(crate) fn coefficient_mut(&mut self, i: usize) -> &mut T {
         match i.checked_sub(2) {
             None => &mut self.center[i],
-            Some(i) => &mut self.rows[i / 4][i % 2 * 2 + i / 2 % 2],
+            Some(i) => &mut self.rows[i / 4][of_row(i)],
         }
     }
 
@@ -96,26 +111,25 @@ impl<T: Real> FreeOutline<T> {
     }
 }
 
+/// Where in (a, b, c, d) an unknown of a row is, which come as (a, c, b, d).
+fn of_row(i: usize) -> usize {
+    i % 2 * 2 + i / 2 % 2
+}
+
 /// Moves `outline` until the samples lie at their distances; returns the robust sum of squared residuals in units of
 /// the pixel noise.
 pub(crate) fn refine<T: Real>(
     outline: &mut FreeOutline<T>,
-    samples: &[EdgeSample<T>],
-    basis: &Basis<T>,
-    vertex_count: usize,
-    settings: &OutlineSettings<T>,
+    target: &Target<'_, T>,
     scratch: &mut OutlineScratch<T>,
 ) -> T {
-    simd::dispatch(Refine { outline, samples, basis, vertex_count, settings, scratch })
+    simd::dispatch(Refine { outline, target, scratch })
 }
 
 /// The arguments of [`refine`], compiled per instruction set.
 struct Refine<'a, T> {
     outline: &'a mut FreeOutline<T>,
-    samples: &'a [EdgeSample<T>],
-    basis: &'a Basis<T>,
-    vertex_count: usize,
-    settings: &'a OutlineSettings<T>,
+    target: &'a Target<'a, T>,
     scratch: &'a mut OutlineScratch<T>,
 }
 
@@ -124,26 +138,19 @@ impl<T: Real> simd::Kernel for Refine<'_, T> {
 
     #[inline(always)]
     fn run(self) -> T {
-        steps(self.outline, self.samples, self.basis, self.vertex_count, self.settings, self.scratch)
+        steps(self.outline, self.target, self.scratch)
     }
 }
 
 #[inline(always)]
-fn steps<T: Real>(
-    outline: &mut FreeOutline<T>,
-    samples: &[EdgeSample<T>],
-    basis: &Basis<T>,
-    vertex_count: usize,
-    settings: &OutlineSettings<T>,
-    scratch: &mut OutlineScratch<T>,
-) -> T {
+fn steps<T: Real>(outline: &mut FreeOutline<T>, target: &Target<'_, T>, scratch: &mut OutlineScratch<T>) -> T {
     let n = 2 + 4 * outline.rows.len();
-    let mut cost = gather(outline, samples, basis, vertex_count, settings, scratch);
+    let mut cost = gather(outline, target, scratch);
     // Weaker damping lets vertices slide along the outline and fold it.
     let weakest = T::of(1e-3);
     let mut damping = T::of(4e-3);
-    for _ in 0..settings.max_steps {
-        expand(outline, basis, settings, scratch);
+    for _ in 0..target.settings.max_steps {
+        expand(outline, target, scratch);
         damp(&mut scratch.hessian, n, damping);
         if !factor(&mut scratch.hessian, n) {
             damping *= T::of(10.0);
@@ -153,9 +160,9 @@ fn steps<T: Real>(
         let mut tried = core::mem::take(&mut scratch.tried);
         tried.clone_from(outline);
         for (i, &step) in scratch.gradient.iter().enumerate() {
-            *tried.coefficient(i) -= step;
+            *tried.coefficient_mut(i) -= step;
         }
-        let next = gather(&tried, samples, basis, vertex_count, settings, scratch);
+        let next = gather(&tried, target, scratch);
         let better = next < cost;
         if better {
             core::mem::swap(outline, &mut tried);
@@ -173,7 +180,7 @@ fn steps<T: Real>(
             if damping > T::of(10.0) {
                 break;
             }
-            gather(outline, samples, basis, vertex_count, settings, scratch);
+            gather(outline, target, scratch);
         }
     }
     cost
@@ -184,14 +191,8 @@ fn steps<T: Real>(
 /// A sample moves with the two vertices of its nearest edge, so the normal equations of the vertices are a band, and
 /// small; [`expand`] carries them over to the coefficients.
 #[inline(always)]
-pub(super) fn gather<T: Real>(
-    outline: &FreeOutline<T>,
-    samples: &[EdgeSample<T>],
-    basis: &Basis<T>,
-    vertex_count: usize,
-    settings: &OutlineSettings<T>,
-    scratch: &mut OutlineScratch<T>,
-) -> T {
+pub(super) fn gather<T: Real>(outline: &FreeOutline<T>, target: &Target<'_, T>, scratch: &mut OutlineScratch<T>) -> T {
+    let &Target { samples, basis, vertex_count, ref settings } = target;
     let edges = vertex_count - 1;
     let OutlineScratch { vertices, edges: lanes, own, next, pull, squares, .. } = scratch;
     squares.clear();
@@ -246,12 +247,8 @@ fn stiffness<T: Real>(k: usize, settings: &OutlineSettings<T>) -> T {
 
 /// Fills hessian (packed) and gradient of the coefficients from what [`gather`] left.
 #[inline(always)]
-pub(super) fn expand<T: Real>(
-    outline: &mut FreeOutline<T>,
-    basis: &Basis<T>,
-    settings: &OutlineSettings<T>,
-    scratch: &mut OutlineScratch<T>,
-) {
+pub(super) fn expand<T: Real>(outline: &FreeOutline<T>, target: &Target<'_, T>, scratch: &mut OutlineScratch<T>) {
+    let &Target { basis, ref settings, .. } = target;
     let harmonics = outline.rows.len();
     let n = 2 + 4 * harmonics;
     let OutlineScratch { hessian, gradient, mix, own, next, pull, unseen, .. } = scratch;
@@ -291,7 +288,7 @@ pub(super) fn expand<T: Real>(
     for i in 6..n {
         let pull = stiffness((i - 2) / 4, settings);
         hessian[packed(i, i)] += pull;
-        gradient[i] += pull * *outline.coefficient(i);
+        gradient[i] += pull * outline.coefficient(i);
     }
 }
 

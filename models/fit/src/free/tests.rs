@@ -7,7 +7,7 @@ use super::basis::Basis;
 use super::foot::EdgeLanes;
 use super::forecast::{DAMPING, Forecast, foretell};
 use super::grow::{Freedom, GrowScratch, GrowSettings, Grown, grow};
-use super::outline_fit::{FreeOutline, OutlineScratch, OutlineSettings, damp, expand, gather};
+use super::outline_fit::{FreeOutline, OutlineScratch, OutlineSettings, Target, damp, expand, gather};
 use crate::cholesky::packed;
 use crate::price::Prices;
 use crate::segment::EdgeSample;
@@ -67,18 +67,19 @@ fn no_edge_is_nearer_than_the_closest() {
 #[test]
 fn the_gradient_is_that_of_half_the_cost() {
     let basis = Basis::new(VERTICES, 3);
-    let mut start = outline();
+    let start = outline();
     let samples = samples(&start, &basis);
+    let target = Target { samples: &samples, basis: &basis, vertex_count: VERTICES, settings: SETTINGS };
     let mut scratch = OutlineScratch::default();
-    gather(&start, &samples, &basis, VERTICES, &SETTINGS, &mut scratch);
-    expand(&mut start, &basis, &SETTINGS, &mut scratch);
+    gather(&start, &target, &mut scratch);
+    expand(&start, &target, &mut scratch);
     let gradient = scratch.gradient.clone();
     assert_eq!(gradient.len(), 14);
     for (lane, &analytic) in gradient.iter().enumerate() {
         let mut cost = |by: f64| {
             let mut moved = start.clone();
-            *moved.coefficient(lane) += by;
-            gather(&moved, &samples, &basis, VERTICES, &SETTINGS, &mut scratch)
+            *moved.coefficient_mut(lane) += by;
+            gather(&moved, &target, &mut scratch)
         };
         let numeric = 0.5 * (cost(1e-6) - cost(-1e-6)) / 2e-6;
         assert!((analytic - numeric).abs() < 1e-5 * (1.0 + numeric.abs()), "lane {lane}: {analytic} {numeric}");
@@ -88,22 +89,23 @@ fn the_gradient_is_that_of_half_the_cost() {
 #[test]
 fn a_forecast_is_the_least_of_the_quadratic_with_the_high_harmonics_at_0() {
     let basis = Basis::new(VERTICES, 3);
-    let mut start = outline();
+    let start = outline();
     let samples = samples(&start, &basis);
     let (mut scratch, mut forecast) = (OutlineScratch::default(), Forecast::default());
-    let cost = gather(&start, &samples, &basis, VERTICES, &SETTINGS, &mut scratch);
-    expand(&mut start, &basis, &SETTINGS, &mut scratch);
+    let target = Target { samples: &samples, basis: &basis, vertex_count: VERTICES, settings: SETTINGS };
+    let cost = gather(&start, &target, &mut scratch);
+    expand(&start, &target, &mut scratch);
     let (n, gradient) = (scratch.gradient.len(), scratch.gradient.clone());
     damp(&mut scratch.hessian, n, DAMPING);
     let hessian: Vec<Vec<f64>> =
         (0..n).map(|i| (0..n).map(|j| scratch.hessian[packed(i.max(j), i.min(j))]).collect()).collect();
-    foretell(&mut start, &samples, &basis, VERTICES, &SETTINGS, &mut scratch, &mut forecast).unwrap();
+    foretell(&start, &target, &mut scratch, &mut forecast).unwrap();
     for harmonics in 1..=3 {
-        let told = forecast.outline(&mut start, harmonics, &scratch);
+        let told = forecast.outline(&start, harmonics, &scratch);
         assert_eq!(told.rows.len(), harmonics);
         let mut all = FreeOutline { center: told.center, rows: told.rows.clone() };
         all.rows.resize(3, [0.0; 4]);
-        let step: Vec<f64> = (0..n).map(|i| *all.coefficient(i) - *start.coefficient(i)).collect();
+        let step: Vec<f64> = (0..n).map(|i| all.coefficient(i) - start.coefficient(i)).collect();
         let slope: Vec<f64> =
             (0..n).map(|i| gradient[i] + (0..n).map(|j| hessian[i][j] * step[j]).sum::<f64>()).collect();
         // What is free has no slope left.
@@ -126,10 +128,11 @@ fn what_is_hidden_of_an_outline_stays_where_it_was() {
     for (k, sample) in (0_u32..).zip(&mut samples) {
         sample.distance += 0.1 * f64::from((k / 2 * 7) % 5) - 0.2;
     }
+    let target = Target { samples: &samples, basis: &basis, vertex_count: VERTICES, settings: SETTINGS };
     let (mut scratch, mut forecast) = (OutlineScratch::default(), Forecast::default());
-    foretell(&mut shape, &samples, &basis, VERTICES, &SETTINGS, &mut scratch, &mut forecast).unwrap();
+    foretell(&shape, &target, &mut scratch, &mut forecast).unwrap();
     let mut moved = Vec::new();
-    forecast.outline(&mut shape, 12, &scratch).write_vertices(&basis, VERTICES, &mut moved);
+    forecast.outline(&shape, 12, &scratch).write_vertices(&basis, VERTICES, &mut moved);
     let hidden = vertices.iter().zip(&moved).filter(|(v, _)| v[0] > 56.0);
     let farthest = hidden.map(|(v, m)| (v[0] - m[0]).hypot(v[1] - m[1])).fold(0.0, f64::max);
     assert!(farthest < 1.0, "{farthest} px");
@@ -140,7 +143,7 @@ fn a_forecast_tells_how_far_residuals_spread() {
     let basis = Basis::new(VERTICES, 3);
     let (mut scratch, mut forecast) = (OutlineScratch::default(), Forecast::default());
     // A hundred and twenty-six samples, off by three times what their weights say, in turns of the golden section.
-    let mut shape = outline();
+    let shape = outline();
     let mut samples = exact_samples(&shape).1;
     for (k, sample) in (0_u32..).zip(&mut samples) {
         let turn = (f64::from(k) * 0.618_033_988_749_895).fract() * core::f64::consts::TAU;
@@ -148,7 +151,8 @@ fn a_forecast_tells_how_far_residuals_spread() {
     }
     // Some that are far off do not count.
     samples.iter_mut().step_by(10).for_each(|sample| sample.distance += 3.0);
-    foretell(&mut shape, &samples, &basis, VERTICES, &SETTINGS, &mut scratch, &mut forecast).unwrap();
+    let target = Target { samples: &samples, basis: &basis, vertex_count: VERTICES, settings: SETTINGS };
+    foretell(&shape, &target, &mut scratch, &mut forecast).unwrap();
     assert!((9.0..30.0).contains(&forecast.spread), "{}", forecast.spread);
 }
 

@@ -11,7 +11,7 @@ use dvp_core::shape::REFERENCE_VERTICES;
 
 use crate::free::basis::Basis;
 use crate::free::foot::{EdgeLanes, foot};
-use crate::free::outline_fit::{FreeOutline, OutlineScratch, OutlineSettings, refine};
+use crate::free::outline_fit::{FreeOutline, OutlineScratch, OutlineSettings, Target, refine};
 use crate::segment::EdgeSample;
 
 /// The edge between a pixel of the mask and one that is not.
@@ -52,7 +52,8 @@ pub(super) fn settle<T: Real>(
             let distance = distance * (T::one() - T::of(2.0) / power);
             samples.push(EdgeSample { point: crack.middle, distance, weight });
         });
-        refine(outline, &samples, basis, REFERENCE_VERTICES, &settings, scratch);
+        let target = Target { samples: &samples, basis, vertex_count: REFERENCE_VERTICES, settings };
+        refine(outline, &target, scratch);
     }
     let mut excess = T::neg_infinity();
     measure(outline, cracks, basis, |_, distance, bound| excess = excess.max(distance.abs() - bound));

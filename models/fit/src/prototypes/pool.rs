@@ -15,7 +15,7 @@ use super::learn::SYMMETRIC;
 use crate::fitter::FitScratch;
 use crate::free::basis::Basis;
 use crate::free::foot::{EdgeLanes, foot};
-use crate::free::outline_fit::{FreeOutline, OutlineScratch, OutlineSettings, refine};
+use crate::free::outline_fit::{FreeOutline, OutlineScratch, OutlineSettings, Target, refine};
 use crate::pose::gauss_newton::Frame;
 use crate::segment::{EdgeSample, PIXEL_NOISE, Segment};
 use crate::{Bank, Fit, FitError};
@@ -209,7 +209,8 @@ fn refined<T: Real>(
             let samples = asked(&outline, margin);
             // Without a say of samples an outline would become smooth.
             if samples.len() >= FEW_SAMPLES {
-                refine(&mut outline, &samples, basis, REFERENCE_VERTICES, &settings, &mut scratch);
+                let target = Target { samples: &samples, basis, vertex_count: REFERENCE_VERTICES, settings };
+                refine(&mut outline, &target, &mut scratch);
             }
         }
         Efd::new(outline.rows.into_iter().map(|row| row.map(|v| v / FRAME)).collect())

@@ -77,7 +77,7 @@ impl<T: Real> Pair<T> {
         let mut outline = self.outline.clone();
         let (of_outline, of_motion) = step.split_at(step.len() - OF_MOTION);
         for (i, &by) in of_outline.iter().enumerate() {
-            *outline.coefficient(i) -= by;
+            *outline.coefficient_mut(i) -= by;
         }
         let lever = self.lever();
         let mut motion = self.motion;
