@@ -10,7 +10,7 @@ use dvp_core::geometry::DisjointSets;
 
 use super::flat::{NONE, index};
 use super::mix::{Mixed, best_mixture};
-use super::runs::renumber;
+use super::runs::{differing, renumber};
 use super::{Partition, Reading};
 use crate::tuning;
 
@@ -59,13 +59,17 @@ fn partition(size: [usize; 2], pixels: Vec<[f32; 3]>, mixed: Mixed, labels: Vec<
     };
     // Pixels of another face than the one before or above.
     let [mut edges, mut mixed] = [0_usize; 2];
-    for first in (0..labels.len()).step_by(width) {
-        for i in first..first + width {
-            if i > first && labels[i - 1] != labels[i] || first > 0 && labels[i - width] != labels[i] {
-                edges += 1;
-                mixed += usize::from(is_mixed(i));
-            }
+    let mut beside = Vec::new();
+    for (y, row) in labels.chunks_exact(width).enumerate() {
+        beside.clear();
+        beside.extend(differing(&row[1..], row).map(|x| x + 1));
+        if let Some(above) = y.checked_sub(1) {
+            beside.extend(differing(row, &labels[above * width..y * width]));
         }
+        beside.sort_unstable();
+        beside.dedup();
+        edges += beside.len();
+        mixed += beside.iter().filter(|&x| is_mixed(y * width + x)).count();
     }
     let is_hard = (mixed as f64) < tuning::MOST_HARD * edges as f64
         && steps(&labels, size) as f64 > tuning::LEAST_STAIRS * edges as f64;
@@ -94,13 +98,12 @@ fn partition(size: [usize; 2], pixels: Vec<[f32; 3]>, mixed: Mixed, labels: Vec<
 /// hard edges are where they are slanted. Upright shapes on whole pixels have none, however many corners they have, and things side by side that begin
 /// a pixel from one another have single ones.
 fn steps(labels: &[u32], [width, height]: [usize; 2]) -> usize {
-    let of = |[x, y]: [usize; 2]| {
-        let is_upright = is_followed([x, y], [width, height], |x, y| labels[y * width + x]);
-        let is_level = is_followed([y, x], [height, width], |y, x| labels[y * width + x]);
-        usize::from(is_upright) + usize::from(is_level)
-    };
-    let of_row = |y: usize| (0..width).map(move |x| [x, y]).map(of).sum::<usize>();
-    (0..height).map(of_row).sum()
+    let is_upright = |x: usize, y: usize| is_followed([x, y], [width, height], |x, y| labels[y * width + x]);
+    let is_level = |x: usize, y: usize| is_followed([y, x], [height, width], |y, x| labels[y * width + x]);
+    let row = |y: usize| &labels[y * width..(y + 1) * width];
+    let upright = |y: usize| differing(row(y), &row(y)[1..]).filter(|&x| is_upright(x, y)).count();
+    let level = |y: usize| differing(row(y), row(y + 1)).filter(|&x| is_level(x, y)).count();
+    (0..height).map(upright).sum::<usize>() + (0..height.saturating_sub(1)).map(level).sum::<usize>()
 }
 
 /// Whether the crack on the right of a pixel is a step that another one follows. For level cracks rows and columns change places.

@@ -9,6 +9,7 @@ use alloc::vec::Vec;
 use super::Color;
 use super::flat::{Flats, NONE, Noise};
 use super::palette::{Palette, distance};
+use super::runs::runs;
 use crate::tuning;
 
 /// The main color of every pixel.
@@ -43,20 +44,19 @@ pub(super) fn explain(pixels: &[[f32; 3]], size: [usize; 2], flats: &Flats, pale
     let mut mixed = Mixed {
         colors: vec![u16::MAX; pixels.len()],
         shares: vec![1.0; pixels.len()],
-        is_flat: flats.regions.iter().map(|&region| region != NONE).collect(),
+        is_flat: vec![false; pixels.len()],
         palette: palette.colors,
         unexplained: 0.0,
         noise: f64::from(noise.mixed),
     };
-    for (color, &region) in mixed.colors.iter_mut().zip(&flats.regions) {
-        if region != NONE {
-            *color = of_region[region as usize];
-        }
+    for (region, pixels) in runs(&flats.regions).filter(|&(region, _)| region != NONE) {
+        mixed.colors[pixels.clone()].fill(of_region[region as usize]);
+        mixed.is_flat[pixels].fill(true);
     }
     let flat_colors = mixed.colors.clone();
     let mut open = Vec::new();
     let mut near = Vec::new();
-    for i in (0..pixels.len()).filter(|&i| flats.regions[i] == NONE) {
+    for i in runs(&flats.regions).filter(|&(region, _)| region == NONE).flat_map(|(_, pixels)| pixels) {
         let best = REACH[..noise.reaches()].iter().find_map(|&reach| {
             colors_near(&flat_colors, size, (i, reach), &mut near);
             let best = best_mixture(pixels[i].map(f64::from), &near, &mixed.palette);

@@ -21,6 +21,13 @@ pub(super) fn runs<V: Copy + PartialEq>(row: &[V]) -> impl Iterator<Item = (V, R
     })
 }
 
+/// Where two rows differ, from left to right.
+pub(super) fn differing<'a, V: Copy + PartialEq>(row: &'a [V], other: &'a [V]) -> impl Iterator<Item = usize> + 'a {
+    let pieces = row.chunks(MANY).zip(other.chunks(MANY)).enumerate().filter(|(_, (a, b))| a != b);
+    pieces
+        .flat_map(|(piece, (a, b))| (0..a.len().min(b.len())).filter(|&i| a[i] != b[i]).map(move |i| piece * MANY + i))
+}
+
 /// Gives the runs of a row, which are numbered, other numbers.
 pub(super) fn renumber(row: &mut [u32], mut number: impl FnMut(u32, Range<usize>) -> u32) {
     let mut start = 0;
@@ -48,6 +55,13 @@ mod tests {
             prop_assert_eq!(back, row);
             prop_assert!(runs.windows(2).all(|two| two[0].0 != two[1].0 && two[0].1.end == two[1].1.start));
             prop_assert!(runs.iter().all(|(_, columns)| !columns.is_empty()));
+        }
+
+        #[test]
+        fn rows_differ_where_they_do(rows in prop::collection::vec((0_u8..3, 0_u8..3), 0..40)) {
+            let (row, other): (Vec<u8>, Vec<u8>) = rows.into_iter().unzip();
+            let found: Vec<usize> = differing(&row, &other).collect();
+            prop_assert_eq!(found, (0..row.len()).filter(|&i| row[i] != other[i]).collect::<Vec<_>>());
         }
 
         #[test]
