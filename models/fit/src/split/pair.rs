@@ -52,7 +52,9 @@ impl<T: Real> Pair<T> {
     /// The pair with the samples nearer to their distances.
     pub(super) fn refined(mut self, target: &Target<'_, T>, steps: usize, scratch: &mut PairScratch<T>) -> Self {
         let mut cost = self.normal(target, scratch);
-        let mut damping = T::of(1e-3);
+        // As for outlines: weaker damping lets vertices slide.
+        let weakest = T::of(1e-3);
+        let mut damping = T::of(4e-3);
         for _ in 0..steps {
             let n = scratch.gradient.len();
             damp(&mut scratch.hessian, n, damping);
@@ -63,7 +65,7 @@ impl<T: Real> Pair<T> {
             let moved = self.moved(&scratch.gradient);
             let next = moved.normal(target, scratch);
             if next < cost {
-                (self, cost, damping) = (moved, next, damping * T::of(0.25));
+                (self, cost, damping) = (moved, next, (damping * T::of(0.25)).max(weakest));
             } else {
                 damping *= T::of(10.0);
                 self.normal(target, scratch);
