@@ -232,7 +232,7 @@ impl<T: Real> Fitter<T> {
         other: Fit<T>,
         scratch: &mut FitScratch<T>,
     ) -> Result<Fit<T>, FitError> {
-        let spread = scratch.segmentation.is_compressed()
+        let spread = scratch.code.is_some()
             && [&one, &other].map(|fit| fit.scene.edge.law) == [EdgeLaw::Area, EdgeLaw::SquaredDistance];
         let clearly = if spread { CODED_CLEARLY_SHORTER } else { 1.0 };
         let rounded = is_rounded(scratch.segmentation.region_colors().flatten());

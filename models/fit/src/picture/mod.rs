@@ -315,6 +315,8 @@ fn likeliest(segments: Fit<f32>, drawn: Fit<f32>, factor: f32) -> Fit<f32> {
     let is_clear = segments.scene.edge.law == EdgeLaw::Area && factor >= CLEARLY_WORSE;
     let as_many = if is_clear { 1.0 } else { factor };
     let is_drawing = if segments.scene.edge.law == EdgeLaw::SquaredDistance {
+        // Fewer things that are nearer are better by both.
+        let factor = if drawn.scene.objects.len() < segments.scene.objects.len() { 1.0 } else { factor };
         factor * drawn.loss < segments.loss
     } else {
         is_likelier(&drawn, &segments, as_many, factor)

@@ -33,6 +33,23 @@ fn in_square(least: usize, most: usize) -> impl Fn(usize, usize) -> bool {
 }
 
 #[test]
+fn edges_of_the_renderer_do_not_speak_for_more_things_that_are_farther() {
+    let square = in_square(12, 36);
+    let image = picture(|column, row| if square(column, row) { [0.1, 0.2, 0.6] } else { [1.0; 3] });
+    let drawn = Fit { loss: 0.003, ..fit(&image, &Known::default(), FitOptions::default()) };
+    let with_edges = FitOptions::default().with_edge(Some(EdgeProfile::reference()));
+    let segments = Fitter::new(with_edges).unwrap().fit(image.view(), &mut FitScratch::default()).unwrap();
+    let segments = Fit { loss: 0.005, ..segments };
+    assert_eq!(segments.scene.edge.law, EdgeLaw::SquaredDistance);
+    assert_eq!(likeliest(segments.clone(), drawn.clone(), CLEARLY_WORSE).scene, segments.scene);
+    let mut more = segments;
+    more.scene.objects.extend(more.scene.objects.clone());
+    assert_eq!(likeliest(more.clone(), drawn.clone(), CLEARLY_WORSE).scene, drawn.scene);
+    more.loss = 0.002;
+    assert_eq!(likeliest(more.clone(), drawn, CLEARLY_WORSE).scene, more.scene);
+}
+
+#[test]
 fn clear_edges_make_a_drawing_and_what_is_known_beforehand_segments() {
     let square = in_square(12, 36);
     let image = picture(|column, row| if square(column, row) { [0.1, 0.2, 0.6] } else { [1.0; 3] });

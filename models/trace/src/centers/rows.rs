@@ -98,7 +98,6 @@ fn places(curves: &[Curves]) -> impl Iterator<Item = (Place, [Vec2<f64>; 2])> {
 mod tests {
     use proptest::prelude::*;
 
-    use super::super::numbers::distance;
     use super::*;
 
     proptest! {
@@ -124,8 +123,9 @@ mod tests {
                 let sign = if all().filter(crossed).count() % 2 == 1 { -1.0 } else { 1.0 };
                 prop_assert_eq!(rows.depth(at), sign * far);
                 let Place { ring, curve, line } = rows.nearest(at);
-                let least = curves.iter().flatten().map(|points| distance(points, at)).fold(f64::INFINITY, f64::min);
-                prop_assert_eq!(distance(&curves[ring][curve][line..line + 2], at), least);
+                let least = all().map(|pair| square(pair[0], pair[1], at)).fold(f64::INFINITY, f64::min);
+                let points = &curves[ring][curve];
+                prop_assert_eq!(square(points[line], points[line + 1], at), least);
             }
         }
     }
