@@ -195,8 +195,8 @@ pub(crate) const VERTEX_COUPLING: f64 = 1e-3;
 
 // Several objects of one color.
 
-/// Noise of a pixel value that free outlines leave: harmonics cut corners, by more the sharper they are, and a shape and its motion
-/// are fitted in turn, to some hundredths of a pixel; neither says how many objects there are.
+/// Noise of a pixel value that free outlines leave: harmonics cut corners, by more the sharper they are, which does not say how many
+/// objects there are.
 pub(crate) const CORNER_NOISE: f64 = 0.01;
 /// A union may miss the samples by this many times as much as the single outline did, and by so much (px^2) in any case.
 pub(crate) const MISFIT_RATIO: f64 = 2.0;
