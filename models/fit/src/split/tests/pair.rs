@@ -94,14 +94,26 @@ fn a_pair_is_found_from_nearby() {
     }
 }
 
+#[test]
+fn where_the_other_object_covers_all_nothing_is_told() {
+    for overlap in overlaps() {
+        assert_eq!(overlap.alone(0.5, -30.0), None);
+        assert_eq!(overlap.alone(-30.0, -30.0), None);
+        // On the outline squared distances have no slope to divide by.
+        let (distance, slopes) = overlap.union([0.0, 1e-9]);
+        assert!(distance.is_finite() && slopes.iter().all(|slope| slope.is_finite()), "{distance} {slopes:?}");
+    }
+}
+
 proptest! {
     #[test]
     fn what_the_other_object_adds_is_taken_off(own in -0.5_f64..1.6, other in 0.8_f64..3.0) {
         for overlap in overlaps() {
             let (seen, slopes) = overlap.union([own, other]);
             prop_assert!(seen <= own.min(other) + 1e-9);
+            // Where the pixel tells a distance, and both have a share in it.
             if let Some((alone, slope)) = overlap.alone(seen, other)
-                && slopes[0] > 1e-3
+                && slopes.iter().all(|&slope| slope > 1e-3)
             {
                 prop_assert!((alone - own).abs() < 5e-3, "{alone} is not {own}");
                 prop_assert!((slope * slopes[0] - 1.0).abs() < 5e-2, "{slope} times {}", slopes[0]);
