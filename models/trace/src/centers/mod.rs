@@ -249,7 +249,7 @@ impl Facts {
                     // The line that is nearest stays so, unless there is one more of them.
                     let is_same = moved.len() == curves[curve].len();
                     for &(k, line, at) in &nearest[curve] {
-                        let near = if is_same { &moved[line..line + 2] } else { &moved };
+                        let near = moved.get(line..line + 2).filter(|_| is_same).unwrap_or(&moved);
                         let Depth { value, slopes } = &mut depths[k];
                         slopes.push((levers.len(), (value.signum() * distance(near, at) - *value) / step));
                     }
