@@ -8,8 +8,6 @@ use dvp_core::scene::PixelProfile;
 
 /// Least coverage of the other object that shows.
 const SHOWS: f64 = 1e-3;
-/// Least of a pixel that shows what is behind, where its coverage tells a distance: of squared distances it changes with none on the outline.
-const READABLE: f64 = 0.01;
 
 /// How coverages of the picture go by distance.
 #[derive(Clone, Copy, Debug)]
@@ -23,12 +21,16 @@ impl<T: Real> Overlap<T> {
         let nearest = usize::from(distances[1] < distances[0]);
         let alone = (distances[nearest], if nearest == 0 { [one, zero] } else { [zero, one] });
         let [near, far] = [nearest, 1 - nearest].map(|k| profile.coverage(distances[k]));
-        let behind = (one - near.0) * (one - far.0);
-        if far.0 < T::of(SHOWS) || behind < T::of(READABLE) {
+        // Where the nearer one covers all or nothing the pixel tells no distance.
+        if far.0 < T::of(SHOWS) || near.0 > one - T::of(SHOWS) {
             return alone;
         }
-        let distance = profile.distance(one - behind);
+        let distance = profile.distance(one - (one - near.0) * (one - far.0));
         let slope = profile.coverage(distance).1;
+        // On the outline squared distances have no slope to divide by.
+        if slope.abs() < T::of(SHOWS) {
+            return alone;
+        }
         let [near, far] = [near.1 * (one - far.0) / slope, far.1 * (one - near.0) / slope];
         (distance, if nearest == 0 { [near, far] } else { [far, near] })
     }
@@ -45,7 +47,7 @@ impl<T: Real> Overlap<T> {
         let all = profile.coverage(seen);
         let own = one - (one - all.0) / (one - other);
         // Also none of what is no number, where the other covers all.
-        let is_most = own >= T::of(0.5) * all.0 && own >= T::of(2.0 * READABLE);
+        let is_most = own >= T::of(0.5) * all.0 && own >= T::of(0.02);
         if !is_most {
             return None;
         }
