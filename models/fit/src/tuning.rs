@@ -183,8 +183,8 @@ pub(crate) const CLEARLY_LESS_LOSS: f64 = 0.8;
 pub(crate) const SEGMENT_HARMONIC_PX: f64 = 6.0;
 /// Noise of independent samples that says as little of an outline as that of a coded picture, in units of the latter.
 pub(crate) const CODED_ALIKE: f64 = 2.0;
-/// Description length, as a share of that with the renderer's edges, at which a coded picture has area coverage. Coding noise alone makes
-/// either shorter by as much.
+/// Description length, as a share of that with the renderer's edges, at which a coded picture has area coverage. What a coder
+/// leaves makes either shorter by as much, and more.
 pub(crate) const CODED_CLEARLY_SHORTER: f64 = 0.9;
 /// Weight of samples that hold an outline where nothing is seen of it.
 pub(crate) const HOLD_WEIGHT: f64 = 0.02;

@@ -13,8 +13,8 @@ use super::outline_fit::{FreeOutline, OutlineScratch, Target, damp, expand, gath
 use crate::cholesky::{factor, packed, solve_lower};
 
 /// Damping as a share of the mean of the diagonal, so that vertices may slide along the outline where harmonics are left out, but not so
-/// far that it folds at its corners. With a tenth of it some outlines fold under noise, and pictures take a quarter longer on average; with
-/// three times as much the mean error grows by a hundredth.
+/// far that it folds at its corners. With a third of it pictures take a quarter longer on average, with a thirtieth some outlines fold under
+/// noise; with three times as much the mean error grows by a hundredth.
 pub(super) const DAMPING: f64 = 3e-4;
 
 /// Median of the square of a normal deviate of variance 1.
