@@ -7,6 +7,7 @@ use dvp_core::{Efd, Real};
 
 use super::basis::Basis;
 use super::forecast::{Forecast, foretell};
+use super::loops::cut_loops;
 use super::outline_fit::{FreeOutline, OutlineScratch, OutlineSettings, Target, refine};
 use super::polygon_fit::{PolygonScratch, move_vertices, transform};
 use crate::price::{Prices, misfit_bits};
@@ -100,9 +101,14 @@ pub(crate) fn grow<T: Real>(
     // More harmonics cannot pay for themselves if what is missed costs less than the second one.
     if max_harmonics > 1 && bits(1, least) >= bits(2, T::zero()) {
         take_vertices(contour, vertex_count, vertices)?;
-        move_vertices(vertices, samples, wide, noise, POLYGON_STEPS[0], polygon);
-        move_vertices(vertices, samples, narrow, noise, POLYGON_STEPS[1], polygon);
-        steps += POLYGON_STEPS[0] + POLYGON_STEPS[1];
+        unfold(vertices, vertex_count)?;
+        for (width, count) in [wide, narrow].into_iter().zip(POLYGON_STEPS) {
+            for _ in 0..count {
+                move_vertices(vertices, samples, width, noise, 1, polygon);
+                unfold(vertices, vertex_count)?;
+            }
+            steps += count;
+        }
         let mut near = transform(vertices, basis, max_harmonics);
         for round in 0..ROUNDS {
             let Some(()) = foretell(&near, &target(narrow, 0), memory, forecast) else { break };
@@ -137,6 +143,16 @@ pub(crate) fn grow<T: Real>(
 fn take_vertices<T: Real>(contour: &[[T; 2]], vertex_count: usize, vertices: &mut Vec<[T; 2]>) -> Option<()> {
     vertices.clear();
     vertices.extend(resample(contour, vertex_count - 1));
+    vertices.push(*vertices.first()?);
+    Some(())
+}
+
+/// The same without loops, at equal distances again if there were some.
+fn unfold<T: Real>(vertices: &mut Vec<[T; 2]>, vertex_count: usize) -> Option<()> {
+    vertices.pop();
+    if cut_loops(vertices) {
+        *vertices = resample(vertices, vertex_count - 1);
+    }
     vertices.push(*vertices.first()?);
     Some(())
 }

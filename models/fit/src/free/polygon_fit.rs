@@ -1,7 +1,7 @@
 //! Vertices moved along their normals until the polygon lies at the sampled distances.
 //!
-//! The fast fit of an unknown outline: one unknown per vertex, and nothing can slide along the outline or fold. With 63
-//! vertices at equal distances, center and harmonics 1 to 31 are their discrete Fourier transform.
+//! The fast fit of an unknown outline: one unknown per vertex, and nothing can slide along the outline; where normals run together it
+//! may cross itself (`loops`). With 63 vertices at equal distances, center and harmonics 1 to 31 are their discrete Fourier transform.
 
 use alloc::vec::Vec;
 

@@ -1,6 +1,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
+use dvp_core::contour::resample;
 use dvp_core::shape::OutlineBasis;
 
 use super::basis::Basis;
@@ -200,6 +201,11 @@ fn exact_samples(outline: &FreeOutline<f64>) -> (Vec<[f64; 2]>, Vec<EdgeSample<f
 /// The outline that is grown from exact samples of another.
 fn grown(outline: &FreeOutline<f64>) -> Grown<f64> {
     let (contour, samples) = exact_samples(outline);
+    grown_from(&contour[1..], &samples)
+}
+
+/// The outline that is grown from a traced one.
+fn grown_from(contour: &[[f64; 2]], samples: &[EdgeSample<f64>]) -> Grown<f64> {
     let basis = Basis::new(VERTICES, 31);
     let settings = GrowSettings {
         vertex_count: VERTICES,
@@ -208,7 +214,7 @@ fn grown(outline: &FreeOutline<f64>) -> Grown<f64> {
         noise: 0.003,
         prices: Prices::default(),
     };
-    grow(&contour[1..], &samples, &basis, settings, &mut GrowScratch::default()).unwrap()
+    grow(contour, samples, &basis, settings, &mut GrowScratch::default()).unwrap()
 }
 
 #[test]
@@ -233,6 +239,40 @@ fn a_cog_pays_for_the_harmonics_of_its_teeth() {
     rows[10] = [1.5, 0.0, 0.0, 1.5];
     let grown = grown(&FreeOutline { center: [40.0, 38.0], rows });
     assert!((11..=22).contains(&grown.outline.rows.len()), "{} harmonics", grown.outline.rows.len());
+}
+
+#[test]
+fn a_spur_of_the_traced_outline_is_not_grown() {
+    // A square with a loop traced at one of its corners, as noise leaves it.
+    let ring = |radius: f64| {
+        let corners =
+            [[1.0, 1.0], [1.0, -1.0], [-1.0, -1.0], [-1.0, 1.0]].map(|p: [f64; 2]| p.map(|v| 40.0 + radius * v));
+        resample(&corners, 96)
+    };
+    let traced = resample(
+        &[
+            [60.0, 60.0],
+            [60.0, 20.0],
+            [20.0, 20.0],
+            [20.0, 57.0],
+            [21.5, 65.0],
+            [24.0, 65.0],
+            [22.0, 57.0],
+            [18.5, 60.0],
+        ],
+        96,
+    );
+    let samples: Vec<_> = [-0.7, 0.7]
+        .into_iter()
+        .flat_map(|distance| {
+            ring(20.0 + distance).into_iter().map(move |point| EdgeSample { point, distance, weight: 0.5 })
+        })
+        .collect();
+    let outline = grown_from(&traced, &samples).outline;
+    let mut vertices = Vec::new();
+    outline.write_vertices(&Basis::new(VERTICES, 31), VERTICES, &mut vertices);
+    let farthest = vertices.iter().flatten().map(|v| (v - 40.0).abs()).fold(0.0, f64::max);
+    assert!(farthest < 21.0, "{farthest}: {vertices:?}");
 }
 
 #[test]
