@@ -101,7 +101,6 @@ pub(crate) fn grow<T: Real>(
     // More harmonics cannot pay for themselves if what is missed costs less than the second one.
     if max_harmonics > 1 && bits(1, least) >= bits(2, T::zero()) {
         take_vertices(contour, vertex_count, vertices)?;
-        unfold(vertices, vertex_count)?;
         for (width, count) in [wide, narrow].into_iter().zip(POLYGON_STEPS) {
             for _ in 0..count {
                 move_vertices(vertices, samples, width, noise, 1, polygon);

@@ -6,6 +6,7 @@ use dvp_core::contour::{Connectivity, perimeter, resample, signed_area, trace_le
 use dvp_core::geometry::push_turning;
 use dvp_core::{ImageSize, Real};
 
+use super::loops::cut_loops;
 use crate::segment::{Segment, Segmentation};
 
 /// Rows and columns added around; beyond the image border they continue the border pixels, so that a cropped object closes
@@ -80,20 +81,23 @@ pub(crate) fn trace<T: Real>(
     (best.len() >= 3).then_some(best)
 }
 
-/// Moves a traced outline inward by `offset` (px, outward if negative), along normals taken over its neighbors.
+/// Moves a traced outline inward by `offset` (px, outward if negative), along normals taken over its neighbors, and cuts off the loops that
+/// come of it.
 pub(crate) fn shrink<T: Real>(contour: &[[T; 2]], offset: T) -> Vec<[T; 2]> {
     let count = (perimeter(contour) / T::of(1.5)).to_count().clamp(16, 256);
     let points = resample(contour, count);
     let inward = if signed_area(&points) > T::zero() { -offset } else { offset };
     let n = points.len();
-    (0..n)
+    let mut shrunk: Vec<_> = (0..n)
         .map(|i| {
             let (a, b) = (points[(i + n - 1) % n], points[(i + 1) % n]);
             let (x, y) = (b[0] - a[0], b[1] - a[1]);
             let step = inward / (x * x + y * y).sqrt().max(T::of(1e-6));
             [points[i][0] + y * step, points[i][1] - x * step]
         })
-        .collect()
+        .collect();
+    cut_loops(&mut shrunk);
+    shrunk
 }
 
 /// Takes hidden pixels in the convex hull of the visible ones for covered: a straight line is the simplest way to go on.

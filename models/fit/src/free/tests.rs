@@ -8,7 +8,9 @@ use super::basis::Basis;
 use super::foot::EdgeLanes;
 use super::forecast::{DAMPING, Forecast, foretell};
 use super::grow::{Freedom, GrowScratch, GrowSettings, Grown, grow};
+use super::loops::cut_loops;
 use super::outline_fit::{FreeOutline, OutlineScratch, OutlineSettings, Target, damp, expand, gather};
+use super::start::shrink;
 use crate::cholesky::packed;
 use crate::price::Prices;
 use crate::segment::EdgeSample;
@@ -273,6 +275,19 @@ fn a_spur_of_the_traced_outline_is_not_grown() {
     outline.write_vertices(&Basis::new(VERTICES, 31), VERTICES, &mut vertices);
     let farthest = vertices.iter().flatten().map(|v| (v - 40.0).abs()).fold(0.0, f64::max);
     assert!(farthest < 21.0, "{farthest}: {vertices:?}");
+}
+
+#[test]
+fn a_traced_outline_moved_inward_does_not_cross_itself() {
+    let cog: Vec<[f64; 2]> = (0..90)
+        .map(|i| core::f64::consts::TAU * f64::from(i) / 90.0)
+        .map(|angle| [angle.cos(), angle.sin()].map(|v| 40.0 + v * (12.0 + 2.0 * (9.0 * angle).sin())))
+        .collect();
+    let mut moved = shrink(&cog, 4.0);
+    assert!(!cut_loops(&mut moved));
+    // What is left lies about as far inside.
+    let radii = moved.iter().map(|&[x, y]| (x - 40.0).hypot(y - 40.0));
+    assert!(radii.clone().fold(0.0, f64::max) < 11.0 && radii.fold(f64::INFINITY, f64::min) > 5.0, "{moved:?}");
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Loops of a closed polygon, cut off.
 //!
-//! Under noise a corner may be traced with a spur, and what is moved along its normals crosses itself there. No sample is nearest to
-//! such a loop, so that no fit takes it back; before one begins it is cut off where it crosses, as offsets of polygons are.
+//! What is moved along its normals crosses itself at corners that are sharper than the way is long, and where noise leaves spurs. No
+//! sample is nearest to such a loop, so that no fit takes it back; it is cut off where it crosses, as offsets of polygons are.
 
 #[cfg(test)]
 mod tests;
