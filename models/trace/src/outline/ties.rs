@@ -240,7 +240,7 @@ fn smooth_ties(chain: &Chain) -> Vec<Tie> {
         .collect()
 }
 
-/// Each arc with the first one of about its radius.
+/// Each arc with the last one before it of about its radius: nearer numbers meet in fewer equations.
 fn radius_ties(chain: &Chain) -> Vec<Tie> {
     let radius = |k: usize| chain.radius(k).map(|radius| (k, radius));
     let arcs: Vec<(usize, f64)> = (0..chain.curves.len()).filter_map(radius).collect();
@@ -248,8 +248,8 @@ fn radius_ties(chain: &Chain) -> Vec<Tie> {
     let twin = |&(k, radius): &(usize, f64)| {
         // Arcs that join smoothly have one radius if they are one arc.
         let apart = |other: usize| chain.next(other) != k && chain.next(k) != other;
-        let first = arcs.iter().find(|&&(other, value)| other < k && apart(other) && near(value, radius))?;
-        Some(Tie::EqualRadius { arcs: [first.0, k] })
+        let last = arcs.iter().rev().find(|&&(other, value)| other < k && apart(other) && near(value, radius))?;
+        Some(Tie::EqualRadius { arcs: [last.0, k] })
     };
     arcs.iter().filter_map(twin).collect()
 }
