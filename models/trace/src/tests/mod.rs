@@ -58,14 +58,19 @@ fn scene(background: [f32; 3], objects: Vec<Object<f32>>) -> Scene<f32> {
 
 /// The picture of a scene, rounded to 8 bits.
 fn paint(scene: &Scene<f32>) -> Image<f32> {
+    paint_at(scene, size())
+}
+
+/// The same of any size: numbers of objects are pixels of [`SIZE`] still.
+fn paint_at(scene: &Scene<f32>, size: ImageSize) -> Image<f32> {
     let basis = OutlineBasis::new(64, 1).unwrap();
     let mut drawing = Drawing::default();
     scene.draw(&basis, &mut drawing).unwrap();
-    let mut pixels = vec![0.0; 3 * SIZE * SIZE];
+    let mut pixels = vec![0.0; 3 * size.pixels()];
     ExactRenderer { coverage: ExactArea, compositing: scene.compositing }
-        .render(&drawing, size(), &mut Default::default(), &mut pixels)
+        .render(&drawing, size, &mut Default::default(), &mut pixels)
         .unwrap();
-    Image::from_planar(size(), pixels.into_iter().map(|value: f32| (value * 255.0).round() / 255.0).collect()).unwrap()
+    Image::from_planar(size, pixels.into_iter().map(|value: f32| (value * 255.0).round() / 255.0).collect()).unwrap()
 }
 
 fn found(picture: &Image<f32>) -> Scene<f32> {
@@ -74,7 +79,7 @@ fn found(picture: &Image<f32>) -> Scene<f32> {
 
 /// Mean absolute difference between a picture and what is found in it, painted.
 fn error(picture: &Image<f32>, found: &Scene<f32>) -> f32 {
-    let again = paint(found);
+    let again = paint_at(found, picture.size());
     picture.data().iter().zip(again.data()).map(|(a, b)| (a - b).abs()).sum::<f32>() / picture.data().len() as f32
 }
 
