@@ -60,8 +60,10 @@ pub(super) fn colors(canvas: &Canvas<'_>, crosses: &mut [Vec<Vec<Cross>>; 2], pa
             continue;
         }
         let color = (colors.len(), candidates[best]);
-        // A color of the palette may explain by chance what a line of this color is: which it is its neighbors tell.
-        windows.iter_mut().for_each(|window| window.try_color(canvas, color, palette));
+        // Between two colors a third one of the palette may explain by chance what a line of this color is: which it is its neighbors tell.
+        let is_asked =
+            |window: &&mut Window<'_>| window.cross.colors == 0 || window.cross.sides[0] != window.cross.sides[1];
+        windows.iter_mut().filter(is_asked).for_each(|window| window.try_color(canvas, color, palette));
         rest.retain(|&k| windows[k].cross.colors == 0);
         colors.push(candidates[best]);
     }

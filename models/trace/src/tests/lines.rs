@@ -4,10 +4,9 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use dvp_core::ImageSize;
-use dvp_core::shape::{AnyShape, Cap, Join, Path, PathRing, Segment, Stroke};
+use dvp_core::shape::{AnyShape, Cap, Join, PathRing, Segment, Stroke};
 
-use super::{BLUE, RED, WHITE, circle, error, found, object, paint, paint_at, rectangle, scene};
-use crate::{Known, trace};
+use super::{BLUE, RED, WHITE, error, found, object, paint, paint_at, rectangle, scene};
 
 /// A line of a pen with flat ends, points in pixels.
 fn line(points: &[[f64; 2]], width: f64, color: [f32; 3]) -> dvp_core::Object<f32> {
@@ -89,14 +88,6 @@ fn what_stands_on_a_line_does_not_run_along_it() {
     assert_eq!(fields.count(), 5, "{:?}", found.objects);
 }
 
-/// What is found in a scene painted at 256 pixels, and what it misses the picture by.
-fn found_at_256(objects: Vec<dvp_core::Object<f32>>) -> (dvp_core::Scene<f32>, f32) {
-    let picture = paint_at(&scene(WHITE, objects), ImageSize::new(256, 256).unwrap());
-    let found = trace(&picture.view(), &Known::default()).unwrap().scene;
-    let missed = error(&picture, &found);
-    (found, missed)
-}
-
 #[test]
 fn circles_at_the_ends_of_a_line_keep_their_radii() {
     // Two notes: where a pen draws them in one go a circle ends beside its start, and the distance between both tells no radius.
@@ -108,32 +99,12 @@ fn circles_at_the_ends_of_a_line_keep_their_radii() {
     };
     let rings = vec![stems, head(6.0, 18.0), head(18.0, 16.0)];
     let notes = AnyShape::Stroke(Stroke { rings, width: 8.0, cap: Cap::Round, join: Join::Round });
-    let (found, missed) = found_at_256(vec![object(notes, [0.0; 2], 0.0, [0.0; 3])]);
+    // Where it failed: at a size at which the head is drawn in one go with the stem.
+    let picture =
+        paint_at(&scene(WHITE, vec![object(notes, [0.0; 2], 0.0, [0.0; 3])]), ImageSize::new(256, 256).unwrap());
+    let found = found(&picture);
+    let missed = error(&picture, &found);
     assert!(missed < 2e-4, "{missed}: {:?}", found.objects);
-}
-
-#[test]
-fn thin_lines_that_meet_are_of_one_color() {
-    // The edges of a cube: where two pixels of a line are alike they make a flat block of a color that nothing has, but that explains some windows.
-    let (dark, gray) = ([0.184, 0.392, 0.569], [0.8; 3]);
-    let corners = vec![[15.0, 15.0], [45.0, 7.5], [82.5, 21.0], [75.0, 75.0], [22.5, 67.5]];
-    let face = AnyShape::Path(Path { rings: vec![PathRing::polygon(corners.clone())], ..Path::default() });
-    let edge = Stroke {
-        rings: vec![PathRing::polygon(corners)],
-        width: 0.315,
-        cap: Cap::Butt,
-        join: Join::Miter { limit: 4.0 },
-    };
-    let thin = |points: &[[f64; 2]]| line(points, 0.315, gray);
-    let (found, missed) = found_at_256(vec![
-        object(face, [0.0; 2], 0.0, dark),
-        object(AnyShape::Stroke(edge), [0.0; 2], 0.0, gray),
-        thin(&[[15.0, 15.0], [52.5, 31.5]]),
-        thin(&[[52.5, 31.5], [78.0, 22.5]]),
-        thin(&[[52.5, 31.5], [51.0, 71.25]]),
-        object(circle(6.0), [37.5, 45.0], 0.0, WHITE),
-    ]);
-    assert!(missed < 5e-4, "{missed}: {:?}", found.objects);
 }
 
 #[test]
