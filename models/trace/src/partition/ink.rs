@@ -40,7 +40,7 @@ pub(super) fn colors(canvas: &Canvas<'_>, crosses: &mut [Vec<Vec<Cross>>; 2], pa
         let Window { ref cross, extreme, away, .. } = windows[first];
         let sides = cross.sides.map(|side| palette[side as usize]);
         let side = if distance(sides[0], extreme) <= distance(sides[1], extreme) { sides[0] } else { sides[1] };
-        let seen = windows.iter().map(|window| window.extreme);
+        let seen = rest.iter().map(|&k| windows[k].extreme);
         let own = farthest(side, extreme, seen, canvas.noise);
         let darkest = farthest(side, own, opens.iter().copied(), canvas.noise);
         // Where lines of one color cross they are darker: what is no darker elsewhere is nowhere full.
