@@ -31,6 +31,7 @@ const TRACE: Order = &[
     &["ties"],
     &["centers"],
     &["scene"],
+    &["missed"],
 ];
 
 fn row(order: Order, module: &str) -> Option<usize> {

@@ -292,3 +292,11 @@ pub(crate) const IDLE_SHARE: f64 = 1e-3;
 pub(crate) const ONE_COLOR: f64 = 0.02;
 /// Five steps of 8 bits: with less contrast, rounding hides what is wrong with an object from what is left unexplained.
 pub(crate) const FAINT_OBJECT: f64 = 5.0 / 255.0;
+
+// Drawings that are mended.
+
+/// Twice the area over the length of the outline (px), up to which what is drawn may be a piece of something thin: pens of charts and letters are one to
+/// two pixels wide.
+pub(crate) const PIECE_WIDTH_PX: f64 = 3.0;
+/// Share of a thing's outline along which the picture shows something else, from which on it is no thing, or a piece of one.
+pub(crate) const PIECE_WRONG: f64 = 0.3;

@@ -16,6 +16,7 @@
 //! | `layers` | faces and their boundaries | objects, back to front, whole where others hide them |
 //! | `ties` | layers | the same on the grid that they were drawn on, with equal numbers equal |
 //! | `centers` | layers of a picture without a mixed pixel | the same with the middle of every pixel on the right side |
+//! | `missed` | a picture, and its drawing painted | things that are seen and not painted |
 //!
 //! Lengths are in pixels (the center of the pixel (row r, column c) is at (c + 0.5, r + 0.5), y down) and prices in bits,
 //! unless a name says otherwise. Everything is computed in f64; images come in f32. The arithmetic of f64 is inherent with std and
@@ -39,6 +40,7 @@ extern crate std;
 pub mod boundary;
 pub mod centers;
 pub mod layers;
+pub mod missed;
 pub mod noise;
 pub mod outline;
 pub mod partition;
@@ -74,6 +76,8 @@ pub struct Traced {
     pub stained: f64,
     /// Whether it was read as changed by a coder of photographs: known to be, or since its edges ring.
     pub coded: bool,
+    /// Standard deviation of a channel that was averaged away before.
+    pub noise: f64,
     /// Standard deviation of the blur that its edges show, pixels; looked for in spoiled pictures only, else 0.
     pub blur: f64,
 }
@@ -226,7 +230,15 @@ fn draw(read: Read, size: ImageSize, known: &Known) -> Result<Traced, NoDrawing>
     }
     let bits = layers.bits();
     let (scene, covariances) = scene::scene(&layers, size, known.matte.is_some(), read.is_hard);
-    Ok(Traced { scene, covariances, bits, stained, coded: partition.reading.coded, blur: partition.blur })
+    Ok(Traced {
+        scene,
+        covariances,
+        bits,
+        stained,
+        coded: partition.reading.coded,
+        noise: f64::from(partition.reading.noise),
+        blur: partition.blur,
+    })
 }
 
 /// Whether edges have another profile than area coverage: wider, or steeper with stains beyond.

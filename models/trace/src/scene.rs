@@ -65,7 +65,7 @@ fn covariance(layer: &Layer, unit: f64) -> Option<PoseCovariance> {
 }
 
 /// The object of a layer; none if it has no outline.
-fn object(layer: &Layer, unit: f64) -> Option<Object<f32>> {
+pub(crate) fn object(layer: &Layer, unit: f64) -> Option<Object<f32>> {
     let (shape, pose) = match &layer.form {
         Form::Stroked(stroke) if stroke.width.is_nan() || stroke.width <= 0.0 => return None,
         Form::Stroked(stroke) => stroked(stroke, unit),

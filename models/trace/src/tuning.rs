@@ -288,3 +288,9 @@ pub const UNEVEN_SLOPES: [f64; 2] = [0.1, 1.5];
 pub const UNEVEN_BENT: f64 = 0.7;
 /// Fewest stretches of five windows that tell how uneven edges are.
 pub const UNEVEN_LEAST: usize = 6;
+
+/// What a pixel costs that is told as it is, bits: three channels of 8.
+pub const PIXEL_BITS: f64 = 24.0;
+
+/// Standard deviation of a level line of coverage that is interpolated between the middles of pixels, pixels.
+pub const LEVEL_SIGMA: f64 = 0.08;

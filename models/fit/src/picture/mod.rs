@@ -9,6 +9,7 @@
 //! | `mod` | [`fit_picture`]: the decision between the two fits |
 //! | `bank` | pictures whose shapes are known |
 //! | `ground` | [`Ground`]: the color that transparent pictures are put over |
+//! | `mend` | what a drawing paints wrongly, and what it misses |
 //! | `most` | fewer objects than a drawing has |
 //! | `openings` | [`cut_openings`]: what shows nothing in a transparent picture |
 //! | `squares` | pictures that were enlarged by repeating pixels, and sprites |
@@ -18,6 +19,7 @@
 
 mod bank;
 mod ground;
+mod mend;
 mod most;
 mod openings;
 mod squares;
@@ -33,7 +35,7 @@ use num_traits::Float as _;
 
 use dvp_core::loss::{ImagePair, Loss as _};
 use dvp_core::render::{Compositing, EdgeLaw, EdgeProfile, PixelLoss};
-use dvp_core::{Image, ImageView, Real as _, Scene};
+use dvp_core::{Drawing, Image, ImageView, Real as _, Scene};
 use dvp_trace::{NoDrawing, PoseCovariance, Traced, noise};
 
 use crate::options::check_values;
@@ -46,6 +48,7 @@ pub use dvp_trace::Known;
 pub use ground::Ground;
 pub use openings::cut_openings;
 
+use mend::Wrong;
 use most::at_most;
 use squares::Squares;
 
@@ -272,9 +275,23 @@ fn settled(
     Ok(likeliest(segments, drawn, CLEARLY_WORSE))
 }
 
-/// The fit of a drawing, with the blur of the picture if that brings it nearer.
+/// The fit of a drawing, mended where nothing hides what it misses, or with the blur of the picture if that brings it nearer.
 #[inline(never)]
-fn drawn(traced: Traced, image: ImageView<'_, f32>, scratch: &mut PictureScratch) -> Result<Fit<f32>, FitError> {
+fn drawn(mut traced: Traced, image: ImageView<'_, f32>, scratch: &mut PictureScratch) -> Result<Fit<f32>, FitError> {
+    let (canvas, size) = (&mut scratch.canvas, image.size());
+    let of_painted = |scene: Scene<f32>, drawing: &Drawing<f32>, painted: &Image<f32>| {
+        let loss = PixelLoss::Mae.value(ImagePair::new(painted.view(), image)?, &mut ())?;
+        Ok::<_, FitError>(Fit { loss, ..Fit::of_painted(scene, drawing, &image, painted.data()) })
+    };
+    let (painted, drawing) = canvas.paint(&traced.scene, size)?;
+    let is_clear = traced.blur == 0.0 && traced.noise == 0.0;
+    let mut best = match is_clear.then(|| Wrong::of(&traced, &drawing, painted, &image)).flatten() {
+        Some(wrong) => match wrong.mend(&mut traced, &drawing, image, canvas)? {
+            Some(drawing) => of_painted(traced.scene.clone(), &drawing, canvas.painted().unwrap_or(&wrong.before))?,
+            None => of_painted(traced.scene.clone(), &drawing, &wrong.before)?,
+        },
+        None => of_painted(traced.scene.clone(), &drawing, painted)?,
+    };
     let Traced { scene, covariances, bits, blur, .. } = traced;
     let (covariance, ambiguity) = doubt_of_poses(&covariances);
     // Such a profile has the pixel's area in it. The integral of F (1 - F), F the profile, is half the softness of the logistic curve, and the
@@ -282,17 +299,15 @@ fn drawn(traced: Traced, image: ImageView<'_, f32>, scratch: &mut PictureScratch
     let blurred = (blur > 0.0).then(|| {
         let softness = FRAC_2_SQRT_PI * (blur * blur + 1.0 / 12.0).sqrt();
         let edge = EdgeProfile::distance(f32::of(softness) / f32::of_usize(image.size().unit_px()));
-        Scene { edge, ..scene.clone() }
+        Scene { edge, ..scene }
     });
-    let mut best: Option<Fit<f32>> = None;
-    for scene in [Some(scene), blurred].into_iter().flatten() {
-        let (painted, drawing) = scratch.canvas.paint(&scene, image.size())?;
-        let loss = PixelLoss::Mae.value(ImagePair::new(painted.view(), image)?, &mut ())?;
-        if best.as_ref().is_none_or(|best| loss < best.loss) {
-            best = Some(Fit { loss, ..Fit::of_painted(scene, &drawing, &image, painted.data()) });
+    if let Some(scene) = blurred {
+        let (painted, drawing) = canvas.paint(&scene, size)?;
+        let other = of_painted(scene, &drawing, painted)?;
+        if other.loss < best.loss {
+            best = other;
         }
     }
-    let best = best.ok_or(FitError::Setting { what: "edge", must: "known" })?;
     Ok(Fit { bits, stop: StopReason::Converged, covariance, ambiguity, ..best })
 }
 

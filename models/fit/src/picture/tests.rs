@@ -6,7 +6,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use dvp_core::render::Compositing;
-use dvp_core::shape::{AnyShape, Circle, Rectangle};
+use dvp_core::shape::{AnyShape, Cap, Circle, Join, PathRing, Rectangle, Stroke};
 use dvp_core::{Efd, Image, ImageSize, Object, Pose, Scene};
 
 use proptest::prelude::*;
@@ -229,6 +229,48 @@ fn a_drawing_under_noise_is_a_drawing() {
     let found = fit(&image, &Known::default(), FitOptions::default());
     assert_disk_and_rectangle(&found);
     assert!((found.noise / 0.03 - 1.0).abs() < 0.1, "{}", found.noise);
+}
+
+/// Letters of nine pixels' height, of a pen of 1.2 pixels, and a wide bar, black on two grounds: 120 x 48 pixels.
+fn letters() -> Image<f32> {
+    let size = ImageSize::new(120, 48).unwrap();
+    let unit = size.unit_px() as f32;
+    let object = |shape: AnyShape<f32>, [x, y]: [f32; 2], paint: [f32; 3]| {
+        let pose = Pose { translation: [x / unit, y / unit], scale: 1.0 / unit, rotation: 0.0 };
+        Object { shape, pose, paint: paint.into(), confidence: 1.0 }
+    };
+    let rectangle = |width, height| AnyShape::Rectangle(Rectangle { size: [width, height], corner_radius: 0.0 });
+    let letter = |lines: &[&[[f32; 2]]], [x, y]: [f32; 2]| {
+        let rings = lines.iter().map(|line| PathRing::polyline(line.to_vec())).collect();
+        let stroke = Stroke { rings, width: 1.2, cap: Cap::Butt, join: Join::Miter { limit: 4.0 } };
+        object(AnyShape::Stroke(stroke), [x, y], [0.0; 3])
+    };
+    let e: &[&[[f32; 2]]] = &[&[[4.6, 0.6], [0.6, 0.6], [0.6, 8.4], [4.6, 8.4]], &[[0.6, 4.3], [4.2, 4.3]]];
+    let n: &[&[[f32; 2]]] = &[&[[0.6, 9.0], [0.6, 2.8]], &[[0.6, 3.9], [2.2, 3.1], [3.8, 3.4], [4.6, 4.8], [4.6, 9.0]]];
+    let k: &[&[[f32; 2]]] = &[&[[0.6, 0.0], [0.6, 9.0]], &[[4.6, 2.7], [1.2, 5.6], [4.9, 9.0]]];
+    let mut objects = vec![
+        object(rectangle(60.0, 40.0), [86.0, 24.0], [0.8, 0.87, 0.93]),
+        object(rectangle(90.0, 3.0), [52.0, 40.0], [0.0; 3]),
+    ];
+    for (i, form) in [e, n, k, n, e, k, e, n].into_iter().enumerate() {
+        let column = i as f32;
+        objects.push(letter(form, [9.3 + 13.7 * column, 14.2 + 0.3 * column]));
+    }
+    let scene = Scene { edge: EdgeProfile::area(), compositing: Compositing::Over, objects, ..Scene::empty([1.0; 3]) };
+    Canvas::default().paint(&scene, size).unwrap().0.clone()
+}
+
+#[test]
+fn letters_of_a_few_pixels_are_painted() {
+    let image = letters();
+    let found = fit(&image, &Known::default(), FitOptions::default());
+    let mut canvas = Canvas::default();
+    let painted = canvas.paint(&found.scene, image.size()).unwrap().0;
+    let off = |i: usize| (image.data()[i] - painted.data()[i]).abs();
+    let wrong = (0..image.size().pixels()).filter(|&i| off(i) > 0.5).count();
+    assert!(wrong == 0 && found.loss < 2.5e-3, "{wrong} pixels, {}: {:?}", found.loss, found.scene.objects);
+    // As many things as there are letters, on what they lie on.
+    assert_eq!(found.scene.objects.len(), 10);
 }
 
 /// Every pixel `times` x `times` times.

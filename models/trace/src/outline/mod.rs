@@ -53,6 +53,10 @@ use crate::sample::{RingSamples, Sample};
 use path::FittedPath;
 use track::Track;
 
+/// An arc of more bulge (the tangent of a quarter of its turn) is more than three quarters of a turn: where it ends beside its start only the tiny
+/// distance between both tells its radius.
+pub(crate) const MOST_BULGE: f64 = 2.414;
+
 /// An outline, in pixels, and what it costs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outline {

@@ -7,6 +7,7 @@ use dvp_core::Vec2;
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
+use super::MOST_BULGE;
 use super::chain::{Chain, Curve};
 use super::cubic;
 use super::figure::as_f64;
@@ -158,7 +159,7 @@ impl Reviser<'_> {
             options.push(one(Curve::Line));
         }
         let bulge = super::path::bulge_through(from, joint, to);
-        if self.ruler.misfit(moments.circle_chi2()) < saved(Curve::Arc(bulge)) && bulge.abs() < 2.4 {
+        if self.ruler.misfit(moments.circle_chi2()) < saved(Curve::Arc(bulge)) && bulge.abs() < MOST_BULGE {
             options.push(one(Curve::Arc(bulge)));
         }
         if range.len() >= tuning::OUTLINE_CUBIC_SAMPLES

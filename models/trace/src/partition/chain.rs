@@ -188,7 +188,7 @@ pub(super) fn join(canvas: &Canvas<'_>, chains: Vec<Chain>) -> Vec<Chain> {
                 break;
             }
             if done[next / 2] {
-                whole.is_closed = next == start;
+                whole.is_closed = next == start && goes_around(&whole.marks);
                 break;
             }
             end = next;
@@ -196,6 +196,14 @@ pub(super) fn join(canvas: &Canvas<'_>, chains: Vec<Chain>) -> Vec<Chain> {
         joined.push(whole);
     }
     joined
+}
+
+/// Whether marks in order lead back to where they start. A line at 45 degrees, which windows along both axes read, leads to its end and there is
+/// nothing left of the way back.
+fn goes_around(marks: &[Mark]) -> bool {
+    let way: f64 = marks.windows(2).map(|pair| (pair[1].point - pair[0].point).length()).sum();
+    let gap = |(first, last): (&Mark, &Mark)| (last.point - first.point).length();
+    marks.first().zip(marks.last()).is_some_and(|ends| 2.0 * gap(ends) < way)
 }
 
 /// Whether two boxes are within `margin` of one another.

@@ -10,7 +10,7 @@ use num_traits::Float as _;
 use super::border::{Border, Mark};
 use super::chain::{Chain, Tip, meeting};
 use super::draw::{Drawing, Line};
-use super::piece::{move_tip, pieces, tip};
+use super::piece::{halve_turns, move_tip, pieces, tip};
 use crate::outline::{OutlineShape, fit_closed, fit_open};
 use crate::ruler::Ruler;
 use crate::sample::RingSamples;
@@ -98,22 +98,6 @@ fn center_line(chain: &Chain, width: f64, ruler: &Ruler) -> Option<(PathRing<f64
     }
     halve_turns(&mut ring);
     Some((ring, None))
-}
-
-/// Arcs of more bulge than this, three quarters of a turn, are drawn as two.
-const MOST_BULGE: f64 = 2.414;
-
-/// Cuts arcs of nearly a whole turn in the middle: where one ends beside its start, only the tiny distance between both would tell its radius.
-fn halve_turns(ring: &mut PathRing<f64>) {
-    for (k, piece) in pieces(ring).iter().enumerate().rev() {
-        if let Piece::Arc { bulge, .. } = *piece
-            && bulge.abs() > MOST_BULGE
-        {
-            let half = Segment::Arc { bulge: (0.5 * bulge.atan()).tan() };
-            ring.points.insert(k + 1, piece.point(0.5).to_array());
-            ring.segments.splice(k..=k, [half, half]);
-        }
-    }
 }
 
 /// Sum of squares that an end must explain where the line may as well go on beyond the border: ten bits, what its place costs.

@@ -8,6 +8,8 @@ use dvp_core::{Shape as _, Vec2};
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
+use crate::outline::MOST_BULGE;
+
 /// The exact pieces of a line, those of open ones without the straight way back; none if its numbers make no sense.
 pub(crate) fn pieces(ring: &PathRing<f64>) -> Vec<Piece<f64>> {
     let path = Path { rings: alloc::vec![ring.clone()], ..Path::default() };
@@ -65,6 +67,19 @@ const STEPS: usize = 8;
 pub(crate) fn direction(piece: &Piece<f64>, t: f64) -> Vec2<f64> {
     let inside = if t > 0.5 { t - 1e-3 } else { t + 1e-3 };
     piece.velocity(t).normalized().or_else(|| piece.velocity(inside).normalized()).unwrap_or_default()
+}
+
+/// Cuts arcs of nearly a whole turn in the middle: where one ends beside its start, only the tiny distance between both would tell its radius.
+pub(super) fn halve_turns(ring: &mut PathRing<f64>) {
+    for (k, piece) in pieces(ring).iter().enumerate().rev() {
+        if let Piece::Arc { bulge, .. } = *piece
+            && bulge.abs() > MOST_BULGE
+        {
+            let half = Segment::Arc { bulge: (0.5 * bulge.atan()).tan() };
+            ring.points.insert(k + 1, piece.point(0.5).to_array());
+            ring.segments.splice(k..=k, [half, half]);
+        }
+    }
 }
 
 /// Where an open line ends (`at_finish`) or starts, and which way it points there, out of the line.

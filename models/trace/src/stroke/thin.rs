@@ -8,8 +8,8 @@ use dvp_core::shape::{Cap, Join, Stroke};
 use num_traits::Float as _;
 
 use super::draw::MITER_LIMIT;
-use super::piece::{direction, move_tip, nearest, pieces, tip};
-use crate::outline::{fit_closed, fit_open};
+use super::piece::{direction, halve_turns, move_tip, nearest, pieces, tip};
+use crate::outline::{OpenFit, fit_closed, fit_open};
 use crate::ruler::Ruler;
 use crate::sample::{RingSamples, Sample};
 
@@ -55,8 +55,9 @@ pub fn fit_thin(chain: &ThinChain, ruler: &Ruler) -> Option<(Stroke<f64>, f64)> 
         let outline = fit_closed(&RingSamples { runs: alloc::vec![samples.clone()], closed: true }, ruler)?;
         (outline.shape.ring(), outline.misfit)
     } else {
-        let line = fit_open(&samples, ruler)?;
-        (line.path, line.misfit)
+        let OpenFit { mut path, misfit, .. } = fit_open(&samples, ruler)?;
+        halve_turns(&mut path);
+        (path, misfit)
     };
     let line = pieces(&ring);
     let (mut sum, mut weights) = (0.0, 0.0);

@@ -4,9 +4,9 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use dvp_core::ImageSize;
-use dvp_core::shape::{AnyShape, Cap, Join, PathRing, Segment, Stroke};
+use dvp_core::shape::{AnyShape, Cap, FillRule, Join, Path, PathRing, Segment, Stroke};
 
-use super::{BLUE, RED, WHITE, error, found, object, paint, paint_at, rectangle, scene};
+use super::{BLUE, RED, WHITE, disk, error, found, object, paint, paint_at, rectangle, scene};
 
 /// A line of a pen with flat ends, points in pixels.
 fn line(points: &[[f64; 2]], width: f64, color: [f32; 3]) -> dvp_core::Object<f32> {
@@ -133,4 +133,54 @@ fn a_line_of_the_background_s_color_cuts_nothing_in_two() {
     // Its sides lie anywhere under the edge.
     assert!((height - (bottom - top)).abs() < 2.4, "{height}");
     assert!(error(&picture, &found) < 1e-3, "{}", error(&picture, &found));
+}
+
+/// A filled polygon, points in pixels.
+fn polygon(points: &[[f64; 2]], color: [f32; 3]) -> dvp_core::Object<f32> {
+    let rings = vec![PathRing::polygon(points.to_vec())];
+    object(AnyShape::Path(Path { rings, fill: FillRule::EvenOdd }), [0.0; 2], 0.0, color)
+}
+
+#[test]
+fn a_line_at_45_degrees_between_two_things_is_painted() {
+    // Columns and rows read the same stretch, and one leads back along the other.
+    let red = polygon(&[[14.0, 14.0], [54.0, 14.0], [54.0, 54.0]], RED);
+    let green = polygon(&[[14.0, 17.0], [51.0, 54.0], [14.0, 54.0]], GREEN);
+    let under = polygon(&[[14.0, 14.0], [14.0, 17.0], [51.0, 54.0], [54.0, 54.0]], BLUE);
+    let dot = object(super::circle(8.0), [76.0, 76.0], 0.0, BLUE);
+    let picture = paint(&scene(WHITE, vec![under, red, green, dot]));
+    let found = found(&picture);
+    assert!(error(&picture, &found) < 1e-3, "{} {:?}", error(&picture, &found), found.objects);
+}
+
+#[test]
+fn a_gap_thinner_than_a_pixel_is_no_line() {
+    // Half a pixel of the background is seen between two triangles, and no pixel is of it alone.
+    let red = polygon(&[[14.0, 14.0], [54.0, 14.0], [54.0, 54.0]], RED);
+    let green = polygon(&[[14.0, 14.5], [53.5, 54.0], [14.0, 54.0]], GREEN);
+    let found = found(&paint(&scene(BLUE, vec![red, green])));
+    assert_eq!(found.objects.len(), 2, "{:?}", found.objects);
+}
+
+#[test]
+fn edges_of_disks_that_lines_lead_to_keep_their_radii() {
+    // Knots of a graph: where a line touches the edge, it is read as an open line whose ends are side by side.
+    let gray = [0.53; 3];
+    let knots = [[28.3, 30.6], [66.8, 24.1], [40.2, 70.7]];
+    let mut objects = vec![line(&[knots[0], knots[1]], 1.3, gray), line(&[knots[0], knots[2]], 1.3, gray)];
+    objects.push(line(&[knots[1], knots[2]], 1.3, gray));
+    for (knot, color) in knots.into_iter().zip([RED, GREEN, BLUE]) {
+        let edge = Stroke { rings: vec![disk(7.0)], width: 1.15, cap: Cap::Butt, join: Join::Round };
+        objects.push(object(super::circle(7.0), knot, 0.0, color));
+        objects.push(object(AnyShape::Stroke(edge), knot, 0.0, [0.0; 3]));
+    }
+    let found = found(&paint(&scene(WHITE, objects)));
+    let wide = |object: &&dvp_core::Object<f32>| match &object.shape {
+        AnyShape::Stroke(stroke) if object.color()[0] < 0.1 => {
+            let places = stroke.rings.iter().flat_map(|ring| &ring.points).map(|point| f64::from(point[0].abs()));
+            places.fold(0.0, f64::max) * f64::from(object.pose.scale) * super::SIZE as f64 > 8.0
+        }
+        _ => false,
+    };
+    assert_eq!(found.objects.iter().find(wide), None);
 }

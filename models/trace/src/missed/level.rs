@@ -1,0 +1,102 @@
+//! The outlines of what covers pixels in part.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use dvp_core::contour::{Connectivity, perimeter, resample, signed_area, trace_level};
+use dvp_core::shape::PathRing;
+use dvp_core::{ImageSize, Vec2};
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
+
+use crate::layers::polygon;
+use crate::outline::{Outline, OutlineShape, fit_closed};
+use crate::ruler::Ruler;
+use crate::sample::{RingSamples, Sample};
+use crate::tuning;
+
+/// Places of the finer grid along the side of a pixel.
+const FINE: usize = 4;
+/// How often what the finer grid is off by is added to it.
+const BACK_STEPS: usize = 12;
+/// Share of what it is off by that is added: all of it would go too far and back.
+const CAUTION: f64 = 0.4;
+/// How steep its edges are, per pixel of the picture.
+const STEEP: f64 = 4.0;
+/// By how much an outline may be larger or smaller than the line that it follows, per area.
+const MOST_OFF: f64 = 0.2;
+/// How far apart samples of outlines are, pixels.
+const SPACING: f64 = 0.3;
+
+/// The outlines of what covers as much of every pixel of a window as `coverage` says, [0, 1], row by row; `corner` is where the window begins. None if
+/// the window is empty.
+pub(super) fn outlines(coverage: &[f64], window: ImageSize, corner: Vec2<f64>, ruler: &Ruler) -> Option<Vec<Outline>> {
+    let (field, fine) = sharpened(coverage, window)?;
+    let loops = trace_level(&field, fine, 0.5, Connectivity::Four).ok()?;
+    Some(loops.iter().filter_map(|points| outline(points, corner, ruler)).collect())
+}
+
+/// The outline along a closed line of the fine grid.
+fn outline(points: &[[f64; 2]], corner: Vec2<f64>, ruler: &Ruler) -> Option<Outline> {
+    let fine = FINE as f64;
+    let points = resample(points, (perimeter(points) / (fine * SPACING)).ceil().max(4.0) as usize);
+    let n = points.len();
+    let place = |point: [f64; 2]| Vec2::from(point) * fine.recip() + corner;
+    let at = |k: usize| place(points[k % n]);
+    let sample = |k: usize| {
+        let axis = (at(k + 1) - at(k + n - 1)).perp().normalized().unwrap_or(Vec2::new(1.0, 0.0));
+        Sample::new(at(k), axis, tuning::LEVEL_SIGMA)
+    };
+    let ring = RingSamples { runs: vec![(0..n).map(sample).collect()], closed: true };
+    let area = signed_area(&points).abs() / (fine * fine);
+    let is_as_large = |outline: &Outline| {
+        polygon(outline).is_some_and(|points| (signed_area(&points).abs() - area).abs() <= MOST_OFF * area)
+    };
+    fit_closed(&ring, ruler).map(|fitted| {
+        if is_as_large(&fitted) {
+            return fitted;
+        }
+        let few = resample(&points, (n as f64 * SPACING).ceil().max(4.0) as usize);
+        let points: Vec<[f64; 2]> = few.iter().map(|&point| place(point).to_array()).collect();
+        let bits = 2.0 * points.len() as f64 * ruler.number(tuning::LEVEL_SIGMA);
+        let shape = OutlineShape::Path(PathRing::polygon(points));
+        Outline { shape, bits, misfit: 0.0, covariance: Vec::new() }
+    })
+}
+
+/// A field of coverage on a finer grid, where it is 0 or 1 nearly everywhere and whose means over pixels are the coverage: what it is off by there is
+/// added to it again and again (iterative back-projection).
+fn sharpened(coverage: &[f64], size: ImageSize) -> Option<(Vec<f64>, ImageSize)> {
+    let [width, height] = [size.width(), size.height()];
+    let fine = ImageSize::new(FINE * width, FINE * height).ok()?;
+    let mut field = vec![0.0; fine.pixels()];
+    let mut left = coverage.to_vec();
+    // Of the pixels at the border of the window nothing is covered.
+    let inner = (1..height.saturating_sub(1)).flat_map(|y| (1..width.saturating_sub(1)).map(move |x| (x, y)));
+    let around = |(x, y): (usize, usize)| (0..9).map(move |k| (y + k / 3 - 1) * width + x + k % 3 - 1);
+    let active: Vec<(usize, usize)> = inner.filter(|&at| around(at).any(|i| coverage[i] > 0.0)).collect();
+    // Where a place of the finer grid lies between the middles of two pixels: the first of both, from the one before its own on, and the share of the
+    // second.
+    let between: [(usize, f64); FINE] = core::array::from_fn(|k| {
+        let at = (k as f64 + 0.5) / FINE as f64 + 0.5;
+        if at < 1.0 { (0, at) } else { (1, at - 1.0) }
+    });
+    let cells = |(x, y): (usize, usize)| {
+        (0..FINE * FINE).map(move |k| (k % FINE, k / FINE, (y * FINE + k / FINE) * fine.width() + x * FINE + k % FINE))
+    };
+    for _ in 0..BACK_STEPS {
+        for &(x, y) in &active {
+            for (column, row, i) in cells((x, y)) {
+                let ((dx, u), (dy, v)) = (between[column], between[row]);
+                let first = (y + dy - 1) * width + x + dx - 1;
+                let mixed = |first: usize| (1.0 - u) * left[first] + u * left[first + 1];
+                field[i] += CAUTION * ((1.0 - v) * mixed(first) + v * mixed(first + width));
+            }
+        }
+        for &(x, y) in &active {
+            let covered: f64 = cells((x, y)).map(|(_, _, i)| (STEEP * (field[i] - 0.5) + 0.5).clamp(0.0, 1.0)).sum();
+            left[y * width + x] = coverage[y * width + x] - covered / (FINE * FINE) as f64;
+        }
+    }
+    Some((field, fine))
+}

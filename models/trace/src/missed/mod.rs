@@ -1,0 +1,230 @@
+//! What a drawing misses: what is seen in the picture and not painted, traced from what is left of it.
+//!
+//! Letters of a few pixels' height, and lines that meet or cross in ways that nobody foresaw, have hardly a pixel of their own: what reads faces and
+//! lines leaves such out. When the drawing is painted they stand out of it. What stands out in one color is a thing: its coverage, pixel by pixel, is
+//! the share of the way from what is painted there to that color, and its outline is one that covers as much of every pixel.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `mod` | [`Painted`]: what stands out, and in which color |
+//! | `pixels` | pixels that differ, and which of them touch |
+//! | `level` | the outlines of what covers pixels in part |
+
+mod level;
+mod pixels;
+#[cfg(test)]
+mod tests;
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
+
+use dvp_core::{ImageSize, ImageView, Object, Paint, Scene, Vec2};
+
+use crate::layers::{Form, Layer};
+use crate::partition::{Color, coverage, distance};
+use crate::ruler::Ruler;
+use crate::scene;
+use crate::tuning;
+pub use pixels::{differing, touching};
+
+/// Largest window that is searched for one thing, pixels: the finer grid takes 128 bytes for each.
+const MOST_PIXELS: usize = 1 << 18;
+
+/// A picture beside what a drawing of it paints.
+#[derive(Debug)]
+pub struct Painted<'a> {
+    /// The drawing.
+    pub scene: &'a Scene<f32>,
+    /// The picture.
+    pub image: ImageView<'a, f32>,
+    /// The drawing, painted.
+    pub painted: ImageView<'a, f32>,
+    /// Differences of a channel up to this are none.
+    pub step: f64,
+}
+
+/// A thing that the picture shows and the drawing does not.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Missed {
+    /// The thing.
+    pub object: Object<f32>,
+    /// Description length of its outline, bits.
+    pub bits: f64,
+}
+
+/// What is painted around a pixel that differs.
+struct Mark {
+    /// Whether no mixture of that, and of the background, explains the pixel: else an edge may be off by a pixel, or an opening filled.
+    is_new: bool,
+    /// Whether it is of one color.
+    is_flat: bool,
+}
+
+/// The pixels of a thing.
+struct Seen {
+    color: Color,
+    pixels: Vec<usize>,
+    /// How many of them nothing that is painted beside them explains.
+    count: usize,
+}
+
+impl Painted<'_> {
+    /// What is missed, where telling it is shorter than telling its pixels one by one. `off`: the pixels that differ.
+    #[must_use]
+    pub fn missed(&self, off: &[usize]) -> Vec<Missed> {
+        let parts = touching(off, self.image.size().width());
+        let mut pixels: Vec<Vec<usize>> =
+            vec![Vec::new(); parts.iter().map(|&part| part as usize + 1).max().unwrap_or(0)];
+        off.iter().zip(parts).for_each(|(&i, part)| pixels[part as usize].push(i));
+        let colors = self.colors();
+        let mut found = Vec::new();
+        for mut pixels in pixels {
+            while let Some(seen) = self.seen(&pixels, &colors) {
+                pixels.retain(|i| seen.pixels.binary_search(i).is_err());
+                found.extend(self.traced(seen));
+            }
+        }
+        found
+    }
+
+    /// Whether enough of the pixels that differ show something new for anything to be missed.
+    #[must_use]
+    pub fn may_miss(&self, off: &[usize]) -> bool {
+        off.iter().filter(|&&i| self.mark(i).is_new).count() >= least_seen()
+    }
+
+    /// The pixels that differ, ascending.
+    #[must_use]
+    pub fn off(&self) -> Vec<usize> {
+        #[expect(clippy::cast_possible_truncation, reason = "a difference of colors")]
+        let step = self.step as f32;
+        differing(&self.image, &self.painted, step, 0..self.image.size().pixels())
+    }
+
+    /// The colors of the drawing's things; what has that of the background is left to what lies around it.
+    fn colors(&self) -> Vec<Color> {
+        let background = self.scene.background.map(f64::from);
+        let mut colors: Vec<Color> = Vec::new();
+        for object in &self.scene.objects {
+            let Paint::Flat(color) = object.paint else { continue };
+            let color = color.map(f64::from);
+            if distance(color, background) > self.step && !colors.contains(&color) {
+                colors.push(color);
+            }
+        }
+        colors
+    }
+
+    /// Of pixels that touch, those that one color explains, where they are more than telling it as a thing costs.
+    fn seen(&self, pixels: &[usize], colors: &[Color]) -> Option<Seen> {
+        let marks: Vec<Mark> = pixels.iter().map(|&i| self.mark(i)).collect();
+        let least = least_seen();
+        if marks.iter().filter(|mark| mark.is_new).count() < least {
+            return None;
+        }
+        // What lies along an edge is a sliver of something that is seen elsewhere; what lies on one color may have its own.
+        let is_own = marks.iter().any(|mark| mark.is_new && mark.is_flat);
+        let least = if is_own { least } else { tuning::LEAST_SEAM };
+        let new = pixels.iter().zip(&marks).filter(|(_, mark)| mark.is_new && mark.is_flat == is_own);
+        let off = |i: usize| distance(color(&self.image, i), color(&self.painted, i));
+        let (&extreme, _) = new.max_by(|(i, _), (j, _)| off(**i).total_cmp(&off(**j)))?;
+        let of_color = |ink: Color| {
+            let mut seen = Seen { color: ink, pixels: Vec::new(), count: 0 };
+            let mut most: f64 = 0.0;
+            for (&i, mark) in pixels.iter().zip(&marks) {
+                if let Some(share) = self.share(i, ink) {
+                    seen.pixels.push(i);
+                    seen.count += usize::from(mark.is_new && mark.is_flat >= is_own);
+                    most = most.max(share);
+                }
+            }
+            (seen, most)
+        };
+        let own = is_own.then(|| of_color(color(&self.image, extreme)).0);
+        // A color of the drawing explains as much, and one that is nowhere half seen on another one is none.
+        let fewest = own.as_ref().map_or(least, |own| own.count - own.count / 10);
+        let known = colors.iter().filter(|&&ink| self.share(extreme, ink).is_some()).map(|&ink| of_color(ink));
+        let known = known.filter(|(seen, most)| seen.count >= fewest && (*most >= 0.5 || !is_own));
+        let best = known.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(seen, _)| seen).or(own)?;
+        (best.count >= least).then_some(best)
+    }
+
+    /// What is painted around a pixel tells of it.
+    fn mark(&self, i: usize) -> Mark {
+        let [width, height] = [self.image.size().width(), self.image.size().height()];
+        let (x, y) = (i % width, i / width);
+        let (pixel, under) = (color(&self.image, i), color(&self.painted, i));
+        let mut is_flat = true;
+        let mut near = vec![self.scene.background.map(f64::from)];
+        for row in y.saturating_sub(1)..(y + 2).min(height) {
+            for column in x.saturating_sub(1)..(x + 2).min(width) {
+                let color = color(&self.painted, row * width + column);
+                is_flat &= distance(color, under) <= self.step;
+                if !near.contains(&color) {
+                    near.push(color);
+                }
+            }
+        }
+        let mut pairs = near.iter().enumerate().flat_map(|(k, &a)| near[..=k].iter().map(move |&b| (a, b)));
+        Mark { is_new: pairs.all(|(a, b)| mixture(pixel, a, b).1 > self.step), is_flat }
+    }
+
+    /// How much of a color is seen in a pixel over what is painted there; none if it is not that color, or if it is painted already.
+    fn share(&self, i: usize, ink: Color) -> Option<f64> {
+        let (pixel, under) = (color(&self.image, i), color(&self.painted, i));
+        let (share, misfit) = mixture(pixel, under, ink);
+        (misfit <= 0.5 * self.step && distance(under, ink) > self.step).then_some(share)
+    }
+
+    /// The outlines of a thing, if it costs less than its pixels.
+    fn traced(&self, Seen { color, pixels, count }: Seen) -> Option<Missed> {
+        let [width, height] = [self.image.size().width(), self.image.size().height()];
+        // Two pixels more on every side; what lies at the border of the picture goes on beyond it.
+        let reach = |of: &dyn Fn(usize) -> usize| {
+            let [low, high] = pixels.iter().map(|&i| of(i)).fold([usize::MAX, 0], |[a, b], at| [a.min(at), b.max(at)]);
+            low..high + 5
+        };
+        let [columns, rows] = [reach(&|i| i % width), reach(&|i| i / width)];
+        let window = ImageSize::new(columns.len(), rows.len()).ok().filter(|window| window.pixels() <= MOST_PIXELS)?;
+        let corner = Vec2::new(columns.start as f64 - 2.0, rows.start as f64 - 2.0);
+        // What lies beside shows a little of it, too.
+        let is_own = |x: usize, y: usize| x < width && y < height && pixels.binary_search(&(y * width + x)).is_ok();
+        let touches =
+            |x: usize, y: usize| (0..9).any(|k| is_own((x + k % 3).wrapping_sub(1), (y + k / 3).wrapping_sub(1)));
+        let share = |(x, y): (usize, usize)| {
+            let [x, y] = [x.saturating_sub(2).min(width - 1), y.saturating_sub(2).min(height - 1)];
+            if touches(x, y) { self.share(y * width + x, color).unwrap_or(0.0) } else { 0.0 }
+        };
+        let field: Vec<f64> = rows.flat_map(|y| columns.clone().map(move |x| share((x, y)))).collect();
+        let ruler = Ruler { extent: width.max(height) as f64 };
+        let outlines = level::outlines(&field, window, corner, &ruler)?;
+        let bits: f64 = outlines.iter().map(|outline| outline.bits + outline.misfit).sum();
+        if bits + tuning::THING_BITS > count as f64 * tuning::PIXEL_BITS {
+            return None;
+        }
+        let layer = Layer { color, form: Form::Filled(outlines), faces: Vec::new(), bits };
+        let object = scene::object(&layer, self.image.size().unit_px() as f64)?;
+        Some(Missed { object, bits })
+    }
+}
+
+/// Fewest pixels that show something new for it to be a thing: fewer cost less than that there is one.
+fn least_seen() -> usize {
+    (tuning::THING_BITS / tuning::PIXEL_BITS).ceil() as usize
+}
+
+/// How much of `to` a pixel shows over `from`, [0, 1], and the most that a channel differs from that mixture.
+fn mixture(pixel: Color, from: Color, to: Color) -> (f64, f64) {
+    let share = coverage(pixel, from, to).clamp(0.0, 1.0);
+    let off = (0..3).map(|c| (pixel[c] - from[c] - share * (to[c] - from[c])).abs());
+    (share, off.fold(0.0, f64::max))
+}
+
+/// The color of a pixel.
+fn color(image: &ImageView<'_, f32>, i: usize) -> Color {
+    image.pixel(i).map(f64::from)
+}

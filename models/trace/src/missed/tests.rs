@@ -1,0 +1,88 @@
+//! Pixels that touch, and outlines that cover as much as was said.
+
+use alloc::vec::Vec;
+
+use dvp_core::contour::{Connectivity, label};
+use dvp_core::{Image, ImageSize, Vec2};
+use proptest::prelude::*;
+
+use super::level::outlines;
+use super::{differing, touching};
+use crate::layers::polygon;
+use crate::ruler::Ruler;
+
+/// Columns and rows of the windows.
+const SIDE: usize = 24;
+
+/// How much of every pixel a pen covers along a line, counted at 16 x 16 places of each.
+fn drawn(from: Vec2<f64>, to: Vec2<f64>, width: f64) -> Vec<f64> {
+    let line = dvp_core::geometry::LineSegment::new(from, to);
+    let is_inside = |x: f64, y: f64| {
+        let at = Vec2::new(x, y);
+        let foot = from.lerp(to, line.nearest(at).share);
+        (at - foot).length() < 0.5 * width
+    };
+    let share = |x: usize, y: usize| {
+        let place = |k: usize| (k as f64 + 0.5) / 16.0;
+        let places = (0..256).filter(|k| is_inside(x as f64 + place(k % 16), y as f64 + place(k / 16)));
+        places.count() as f64 / 256.0
+    };
+    (0..SIDE * SIDE).map(|i| share(i % SIDE, i / SIDE)).collect()
+}
+
+/// How much of every pixel polygons cover, by the even-odd rule, counted likewise.
+fn covered(polygons: &[Vec<[f64; 2]>]) -> Vec<f64> {
+    let is_inside =
+        |at: [f64; 2]| polygons.iter().filter(|points| dvp_core::contour::contains(points, at)).count() % 2 == 1;
+    let share = |x: usize, y: usize| {
+        let place = |k: usize| (k as f64 + 0.5) / 8.0;
+        let places = (0..64).filter(|k| is_inside([x as f64 + place(k % 8), y as f64 + place(k / 8)]));
+        places.count() as f64 / 64.0
+    };
+    (0..SIDE * SIDE).map(|i| share(i % SIDE, i / SIDE)).collect()
+}
+
+proptest! {
+    #[test]
+    fn pixels_touch_as_components_do(mask in prop::collection::vec(prop::bool::weighted(0.4), 7 * 9)) {
+        let size = ImageSize::new(7, 9).unwrap();
+        let pixels: Vec<usize> = (0..mask.len()).filter(|&i| mask[i]).collect();
+        let parts = touching(&pixels, 7);
+        let components = label(&mask, size, Connectivity::Eight).unwrap();
+        for (&i, &part) in pixels.iter().zip(&parts) {
+            prop_assert_eq!(components.labels[i], part + 1);
+        }
+    }
+
+    #[test]
+    fn differing_pixels_are_found(changes in prop::collection::vec((0_usize..900, 0_usize..3), 0..12), from in 0_usize..900) {
+        let size = ImageSize::new(30, 30).unwrap();
+        let one = Image::<f32>::zeros(size);
+        let mut other = one.clone();
+        changes.iter().for_each(|&(i, channel)| other.data_mut()[channel * 900 + i] = -0.5);
+        let mut expected: Vec<usize> = changes.iter().map(|&(i, _)| i).filter(|&i| i >= from).collect();
+        expected.sort_unstable();
+        expected.dedup();
+        prop_assert_eq!(differing(&one.view(), &other.view(), 0.4, from..900), expected);
+        prop_assert!(differing(&one.view(), &other.view(), 0.6, 0..900).is_empty());
+    }
+
+    /// A line of a pen of letters, wherever it lies. Of 2000 one pixel is off by .61 and one area by .16; in 99 of 100 by less than .35 and .09, in half
+    /// of them by less than .04 and .005.
+    #[test]
+    fn outlines_cover_what_is_covered(
+        x in 6.0..18.0, y in 6.0..18.0, length in 4.0..10.0, turn in 0.0..core::f64::consts::PI, width in 0.8..2.5,
+    ) {
+        let (middle, half) = (Vec2::new(x, y), Vec2::from_angle(turn) * (0.5 * length));
+        let wanted = drawn(middle - half, middle + half, width);
+        prop_assume!(wanted.iter().enumerate().all(|(i, &share)| share == 0.0 || (2..22).contains(&(i % SIDE)) && (2..22).contains(&(i / SIDE))));
+        let ruler = Ruler { extent: SIDE as f64 };
+        let found = outlines(&wanted, ImageSize::new(SIDE, SIDE).unwrap(), Vec2::new(0.0, 0.0), &ruler).unwrap();
+        let polygons: Vec<Vec<[f64; 2]>> = found.iter().filter_map(polygon).collect();
+        let shown = covered(&polygons);
+        let worst = wanted.iter().zip(&shown).map(|(wanted, shown)| (wanted - shown).abs()).fold(0.0, f64::max);
+        let [all, drawn] = [&wanted, &shown].map(|shares| shares.iter().sum::<f64>());
+        prop_assert!(worst < 0.75, "off by {worst}");
+        prop_assert!((all - drawn).abs() < 0.2 * all, "{all} against {drawn}");
+    }
+}
