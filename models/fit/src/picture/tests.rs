@@ -265,10 +265,14 @@ fn letters_of_a_few_pixels_are_painted() {
     let image = letters();
     let found = fit(&image, &Known::default(), FitOptions::default());
     let mut canvas = Canvas::default();
-    let painted = canvas.paint(&found.scene, image.size()).unwrap().0;
-    let off = |i: usize| (image.data()[i] - painted.data()[i]).abs();
-    let wrong = (0..image.size().pixels()).filter(|&i| off(i) > 0.5).count();
-    assert!(wrong == 0 && found.loss < 2.5e-3, "{wrong} pixels, {}: {:?}", found.loss, found.scene.objects);
+    let mut wrong = |scene: &Scene<f32>| {
+        let painted = canvas.paint(scene, image.size()).unwrap().0;
+        let pairs = image.data().iter().zip(painted.data()).take(image.size().pixels());
+        pairs.filter(|(seen, painted)| (*seen - *painted).abs() > 0.5).count()
+    };
+    let read = dvp_trace::trace(&image.view(), &Known::default()).unwrap().scene;
+    let [of_faces, mended] = [&read, &found.scene].map(&mut wrong);
+    assert!(of_faces > 40 && mended <= 5, "{of_faces} pixels, {mended} of them still: {:?}", found.scene.objects);
     // As many things as there are letters, on what they lie on.
     assert_eq!(found.scene.objects.len(), 10);
 }

@@ -66,23 +66,27 @@ proptest! {
         prop_assert_eq!(differing(&one.view(), &other.view(), 0.4, from..900), expected);
         prop_assert!(differing(&one.view(), &other.view(), 0.6, 0..900).is_empty());
     }
+}
 
-    /// A line of a pen of letters, wherever it lies. Of 2000 one pixel is off by .61 and one area by .16; in 99 of 100 by less than .35 and .09, in half
-    /// of them by less than .04 and .005.
-    #[test]
-    fn outlines_cover_what_is_covered(
-        x in 6.0..18.0, y in 6.0..18.0, length in 4.0..10.0, turn in 0.0..core::f64::consts::PI, width in 0.8..2.5,
-    ) {
-        let (middle, half) = (Vec2::new(x, y), Vec2::from_angle(turn) * (0.5 * length));
-        let wanted = drawn(middle - half, middle + half, width);
-        prop_assume!(wanted.iter().enumerate().all(|(i, &share)| share == 0.0 || (2..22).contains(&(i % SIDE)) && (2..22).contains(&(i / SIDE))));
-        let ruler = Ruler { extent: SIDE as f64 };
+/// Lines of a pen of letters, wherever they lie: in half of them no pixel is off by more than .05, in one of twenty some pixel is by more than .3.
+#[test]
+fn outlines_cover_what_is_covered() {
+    let mut state = 7_u64;
+    let mut between = |low: f64, high: f64| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        low + (high - low) * (state >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    let ruler = Ruler { extent: SIDE as f64 };
+    let mut worst: Vec<f64> = Vec::new();
+    for _ in 0..200 {
+        let (middle, turn) = (Vec2::new(between(9.0, 15.0), between(9.0, 15.0)), between(0.0, core::f64::consts::PI));
+        let half = Vec2::from_angle(turn) * (0.5 * between(4.0, 10.0));
+        let wanted = drawn(middle - half, middle + half, between(0.8, 2.5));
         let found = outlines(&wanted, ImageSize::new(SIDE, SIDE).unwrap(), Vec2::new(0.0, 0.0), &ruler).unwrap();
         let polygons: Vec<Vec<[f64; 2]>> = found.iter().filter_map(polygon).collect();
         let shown = covered(&polygons);
-        let worst = wanted.iter().zip(&shown).map(|(wanted, shown)| (wanted - shown).abs()).fold(0.0, f64::max);
-        let [all, drawn] = [&wanted, &shown].map(|shares| shares.iter().sum::<f64>());
-        prop_assert!(worst < 0.75, "off by {worst}");
-        prop_assert!((all - drawn).abs() < 0.2 * all, "{all} against {drawn}");
+        worst.push(wanted.iter().zip(&shown).map(|(wanted, shown)| (wanted - shown).abs()).fold(0.0, f64::max));
     }
+    worst.sort_unstable_by(f64::total_cmp);
+    assert!(worst[100] < 0.05 && worst[190] < 0.3, "{} {}", worst[100], worst[190]);
 }

@@ -240,6 +240,25 @@ fn thin_lines() {
     }
 }
 
+#[test]
+fn an_open_circle_keeps_its_radius() {
+    // Around the knot of a graph: the windows at an edge that leads to it say nothing, and those beside it are side by side.
+    let (center, radius) = (Vec2::new(60.3, 50.8), 7.0);
+    let samples = (0..40).map(|k| {
+        let normal = Vec2::from_angle((f64::from(k) + 0.7) / 40.0 * core::f64::consts::TAU);
+        let axis = if normal.x.abs() > normal.y.abs() { Vec2::new(1.0, 0.0) } else { Vec2::new(0.0, 1.0) };
+        let width = 1.15 / normal.dot(axis).abs();
+        ThinSample { point: center + normal * radius, axis, sigma: 0.05, width }
+    });
+    let chain = ThinChain { samples: samples.collect(), ..ThinChain::default() };
+    let (stroke, _) = fit_thin(&chain, &RULER).unwrap();
+    let mut outline = Outline::default();
+    let basis = OutlineBasis::new(64, 1).unwrap();
+    stroke.flatten(&Flattening::new(&basis, 0.05), &mut outline).unwrap();
+    let far = outline.vertices.iter().map(|&at| (Vec2::from(at) - center).length()).fold(0.0, f64::max);
+    assert!(far < radius + 1.5, "{far} {stroke:?}");
+}
+
 proptest! {
     // A fixed seed: about one draw in a few hundred is read otherwise, a short line beside a wide one mostly.
     #![proptest_config(ProptestConfig { cases: 200, rng_seed: RngSeed::Fixed(3), failure_persistence: None, ..ProptestConfig::default() })]
