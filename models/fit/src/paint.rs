@@ -36,6 +36,7 @@ impl<T: Real> Canvas<T> {
     ///
     /// # Errors
     /// [`FitError::Shape`] and [`FitError::Render`] if a number of the scene is out of range.
+    #[inline(never)]
     pub fn paint(&mut self, scene: &Scene<T>, size: ImageSize) -> Result<(&Image<T>, Drawing<T>), FitError> {
         let drawing = drawing_of(scene, size, REFERENCE_VERTICES)?;
         let mut image = self.image.take().filter(|image| image.size() == size).unwrap_or_else(|| Image::zeros(size));
@@ -52,6 +53,7 @@ impl<T: Real> Canvas<T> {
     ///
     /// # Errors
     /// [`RenderError`] if a number is out of the renderer's range.
+    #[inline(never)]
     pub fn paint_to<const N: usize>(
         &mut self,
         scene: &Scene<T>,

@@ -13,7 +13,7 @@ use num_traits::Float as _;
 
 use dvp_core::contour::{perimeter, signed_area};
 use dvp_core::geometry::DisjointSets;
-use dvp_core::{Drawing, Image, ImageSize, ImageView, Object, Scene};
+use dvp_core::{Drawing, Image, ImageSize, ImageView, Object, Real as _, Scene};
 use dvp_trace::Traced;
 use dvp_trace::missed::{Missed, Painted, differing, touching};
 use dvp_trace::tuning::{CODED_CONTRAST, LEAST_CONTRAST, PIXEL_BITS};
@@ -42,6 +42,7 @@ pub(super) struct Wrong {
 
 impl Wrong {
     /// What is wrong with a drawing that is painted; none if nothing is.
+    #[inline(never)]
     pub(super) fn of(
         traced: &Traced,
         drawing: &Drawing<f32>,
@@ -57,6 +58,7 @@ impl Wrong {
     }
 
     /// Mends the drawing where that makes it shorter. Its polygons, as they are painted on the canvas then; none if nothing changes.
+    #[inline(never)]
     pub(super) fn mend(
         &self,
         traced: &mut Traced,
@@ -135,7 +137,7 @@ impl Wrong {
         let rows = all_of(pieces.map(|k| rows(drawing, k, pair.image.size())));
         let within = rows.start * width..rows.end * width;
         let [before, after] = [within.start, within.end].map(|at| self.off.partition_point(|&i| i < at));
-        let again = differing(&pair.image, &pair.painted, self.step as f32, within);
+        let again = differing(&pair.image, &pair.painted, f32::of(self.step), within);
         self.off[..before].iter().copied().chain(again).chain(self.off[after..].iter().copied()).collect()
     }
 }
@@ -145,7 +147,7 @@ fn rows(drawing: &Drawing<f32>, k: usize, size: ImageSize) -> Range<usize> {
     let unit = size.unit_px() as f32;
     let places = || drawing.outline(k).iter().map(|point| point[1] * unit);
     let [low, high] = [places().fold(f32::INFINITY, f32::min) - 2.0, places().fold(0.0, f32::max) + 3.0];
-    (low.max(0.0) as usize).min(size.height())..(high as usize).min(size.height())
+    low.max(0.0).to_count().min(size.height())..high.to_count().min(size.height())
 }
 
 /// The rows from the first to the last of all.
@@ -163,7 +165,7 @@ fn is_piece(drawing: &Drawing<f32>, k: usize, off: &[usize], size: ImageSize) ->
         return false;
     }
     let [mut wrong, mut all] = [0.0; 2];
-    walk(drawing, k, size, |i, length| {
+    walk(drawing, k, size, &mut |i, length| {
         all += length;
         wrong += if off.binary_search(&i).is_ok() { length } else { 0.0 };
     });
@@ -171,7 +173,8 @@ fn is_piece(drawing: &Drawing<f32>, k: usize, off: &[usize], size: ImageSize) ->
 }
 
 /// Walks along the outline of object `k`: pixels on the way, as indices, and how far the way is through each, about a pixel at a time.
-fn walk(drawing: &Drawing<f32>, k: usize, size: ImageSize, mut at: impl FnMut(usize, f64)) {
+#[inline(never)]
+fn walk(drawing: &Drawing<f32>, k: usize, size: ImageSize, at: &mut dyn FnMut(usize, f64)) {
     let unit = size.unit_px() as f64;
     for ring in drawing.rings(k).iter() {
         let ends = ring.iter().skip(1).chain(ring.first());
@@ -179,11 +182,11 @@ fn walk(drawing: &Drawing<f32>, k: usize, size: ImageSize, mut at: impl FnMut(us
             let [from, to] = [from, to].map(|point| point.map(|value| f64::from(value) * unit));
             let length = (to[0] - from[0]).hypot(to[1] - from[1]);
             let count = length.ceil().max(1.0);
-            for j in 0..count as usize {
+            for j in 0..count.to_count() {
                 let share = (j as f64 + 0.5) / count;
                 let [x, y] = [0, 1].map(|c| from[c] + share * (to[c] - from[c]));
                 if x >= 0.0 && y >= 0.0 && x < size.width() as f64 && y < size.height() as f64 {
-                    at(y as usize * size.width() + x as usize, length / count);
+                    at(y.to_count() * size.width() + x.to_count(), length / count);
                 }
             }
         }
@@ -214,7 +217,7 @@ impl Parts {
     /// The part that an object lies in; none if nothing changes along its outline.
     fn part_of(&mut self, drawing: &Drawing<f32>, k: usize) -> Option<u32> {
         let mut first = None;
-        walk(drawing, k, self.size, |i, _| {
+        walk(drawing, k, self.size, &mut |i, _| {
             if let Ok(at) = self.pixels.binary_search(&i) {
                 let part = self.part[at];
                 first = Some(first.map_or(part, |first| self.sets.unite(first, part)));

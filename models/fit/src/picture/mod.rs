@@ -279,18 +279,14 @@ fn settled(
 #[inline(never)]
 fn drawn(mut traced: Traced, image: ImageView<'_, f32>, scratch: &mut PictureScratch) -> Result<Fit<f32>, FitError> {
     let (canvas, size) = (&mut scratch.canvas, image.size());
-    let of_painted = |scene: Scene<f32>, drawing: &Drawing<f32>, painted: &Image<f32>| {
-        let loss = PixelLoss::Mae.value(ImagePair::new(painted.view(), image)?, &mut ())?;
-        Ok::<_, FitError>(Fit { loss, ..Fit::of_painted(scene, drawing, &image, painted.data()) })
-    };
     let (painted, drawing) = canvas.paint(&traced.scene, size)?;
     let is_clear = traced.blur == 0.0 && traced.noise == 0.0;
     let mut best = match is_clear.then(|| Wrong::of(&traced, &drawing, painted, &image)).flatten() {
         Some(wrong) => match wrong.mend(&mut traced, &drawing, image, canvas)? {
-            Some(drawing) => of_painted(traced.scene.clone(), &drawing, canvas.painted().unwrap_or(&wrong.before))?,
-            None => of_painted(traced.scene.clone(), &drawing, &wrong.before)?,
+            Some(drawing) => of_painted(&traced.scene, &drawing, canvas.painted().unwrap_or(&wrong.before), image)?,
+            None => of_painted(&traced.scene, &drawing, &wrong.before, image)?,
         },
-        None => of_painted(traced.scene.clone(), &drawing, painted)?,
+        None => of_painted(&traced.scene, &drawing, painted, image)?,
     };
     let Traced { scene, covariances, bits, blur, .. } = traced;
     let (covariance, ambiguity) = doubt_of_poses(&covariances);
@@ -303,12 +299,24 @@ fn drawn(mut traced: Traced, image: ImageView<'_, f32>, scratch: &mut PictureScr
     });
     if let Some(scene) = blurred {
         let (painted, drawing) = canvas.paint(&scene, size)?;
-        let other = of_painted(scene, &drawing, painted)?;
+        let other = of_painted(&scene, &drawing, painted, image)?;
         if other.loss < best.loss {
             best = other;
         }
     }
     Ok(Fit { bits, stop: StopReason::Converged, covariance, ambiguity, ..best })
+}
+
+/// What a scene that is painted leaves of a picture.
+#[inline(never)]
+fn of_painted(
+    scene: &Scene<f32>,
+    drawing: &Drawing<f32>,
+    painted: &Image<f32>,
+    image: ImageView<'_, f32>,
+) -> Result<Fit<f32>, FitError> {
+    let loss = PixelLoss::Mae.value(ImagePair::new(painted.view(), image)?, &mut ())?;
+    Ok(Fit { loss, ..Fit::of_painted(scene.clone(), drawing, &image, painted.data()) })
 }
 
 /// Whether segments explain a picture as the paper's renderer paints, which no drawing is: by its edges, or by colors that mix.

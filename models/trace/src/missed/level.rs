@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use dvp_core::contour::{Connectivity, perimeter, resample, signed_area, trace_level};
 use dvp_core::shape::PathRing;
-use dvp_core::{ImageSize, Vec2};
+use dvp_core::{ImageSize, Real as _, Vec2};
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
@@ -30,6 +30,7 @@ const SPACING: f64 = 0.3;
 
 /// The outlines of what covers as much of every pixel of a window as `coverage` says, [0, 1], row by row; `corner` is where the window begins. None if
 /// the window is empty.
+#[inline(never)]
 pub(super) fn outlines(coverage: &[f64], window: ImageSize, corner: Vec2<f64>, ruler: &Ruler) -> Option<Vec<Outline>> {
     let (field, fine) = sharpened(coverage, window)?;
     let loops = trace_level(&field, fine, 0.5, Connectivity::Four).ok()?;
@@ -37,18 +38,18 @@ pub(super) fn outlines(coverage: &[f64], window: ImageSize, corner: Vec2<f64>, r
 }
 
 /// The outline along a closed line of the fine grid.
-fn outline(points: &[[f64; 2]], corner: Vec2<f64>, ruler: &Ruler) -> Option<Outline> {
+fn outline(points: &[[f32; 2]], corner: Vec2<f64>, ruler: &Ruler) -> Option<Outline> {
     let fine = FINE as f64;
-    let points = resample(points, (perimeter(points) / (fine * SPACING)).ceil().max(4.0) as usize);
+    let points = resample(points, (f64::from(perimeter(points)) / (fine * SPACING)).ceil().max(4.0) as usize);
     let n = points.len();
-    let place = |point: [f64; 2]| Vec2::from(point) * fine.recip() + corner;
+    let place = |point: [f32; 2]| Vec2::from(point.map(f64::from)) * fine.recip() + corner;
     let at = |k: usize| place(points[k % n]);
     let sample = |k: usize| {
         let axis = (at(k + 1) - at(k + n - 1)).perp().normalized().unwrap_or(Vec2::new(1.0, 0.0));
         Sample::new(at(k), axis, tuning::LEVEL_SIGMA)
     };
     let ring = RingSamples { runs: vec![(0..n).map(sample).collect()], closed: true };
-    let area = signed_area(&points).abs() / (fine * fine);
+    let area = f64::from(signed_area(&points).abs()) / (fine * fine);
     let is_as_large = |outline: &Outline| {
         polygon(outline).is_some_and(|points| (signed_area(&points).abs() - area).abs() <= MOST_OFF * area)
     };
@@ -66,7 +67,8 @@ fn outline(points: &[[f64; 2]], corner: Vec2<f64>, ruler: &Ruler) -> Option<Outl
 
 /// A field of coverage on a finer grid, where it is 0 or 1 nearly everywhere and whose means over pixels are the coverage: what it is off by there is
 /// added to it again and again (iterative back-projection).
-fn sharpened(coverage: &[f64], size: ImageSize) -> Option<(Vec<f64>, ImageSize)> {
+#[inline(never)]
+fn sharpened(coverage: &[f64], size: ImageSize) -> Option<(Vec<f32>, ImageSize)> {
     let [width, height] = [size.width(), size.height()];
     let fine = ImageSize::new(FINE * width, FINE * height).ok()?;
     let mut field = vec![0.0; fine.pixels()];
@@ -98,5 +100,5 @@ fn sharpened(coverage: &[f64], size: ImageSize) -> Option<(Vec<f64>, ImageSize)>
             left[y * width + x] = coverage[y * width + x] - covered / (FINE * FINE) as f64;
         }
     }
-    Some((field, fine))
+    Some((field.into_iter().map(f32::of).collect(), fine))
 }

@@ -75,6 +75,7 @@ struct Seen {
 impl Painted<'_> {
     /// What is missed, where telling it is shorter than telling its pixels one by one. `off`: the pixels that differ.
     #[must_use]
+    #[inline(never)]
     pub fn missed(&self, off: &[usize]) -> Vec<Missed> {
         let parts = touching(off, self.image.size().width());
         let mut pixels: Vec<Vec<usize>> =
@@ -120,6 +121,7 @@ impl Painted<'_> {
     }
 
     /// Of pixels that touch, those that one color explains, where they are more than telling it as a thing costs.
+    #[inline(never)]
     fn seen(&self, pixels: &[usize], colors: &[Color]) -> Option<Seen> {
         let marks: Vec<Mark> = pixels.iter().map(|&i| self.mark(i)).collect();
         let least = least_seen();
@@ -154,6 +156,7 @@ impl Painted<'_> {
     }
 
     /// What is painted around a pixel tells of it.
+    #[inline(never)]
     fn mark(&self, i: usize) -> Mark {
         let [width, height] = [self.image.size().width(), self.image.size().height()];
         let (x, y) = (i % width, i / width);
@@ -174,6 +177,7 @@ impl Painted<'_> {
     }
 
     /// How much of a color is seen in a pixel over what is painted there; none if it is not that color, or if it is painted already.
+    #[inline(never)]
     fn share(&self, i: usize, ink: Color) -> Option<f64> {
         let (pixel, under) = (color(&self.image, i), color(&self.painted, i));
         let (share, misfit) = mixture(pixel, under, ink);
@@ -181,6 +185,7 @@ impl Painted<'_> {
     }
 
     /// The outlines of a thing, if it costs less than its pixels.
+    #[inline(never)]
     fn traced(&self, Seen { color, pixels, count }: Seen) -> Option<Missed> {
         let [width, height] = [self.image.size().width(), self.image.size().height()];
         // Two pixels more on every side; what lies at the border of the picture goes on beyond it.

@@ -12,6 +12,7 @@ const STRETCH: usize = 256;
 
 /// The pixels (indices, ascending) of two images of one size, of those `within`, some channel of which differs by more than `step`.
 #[must_use]
+#[inline(never)]
 pub fn differing(one: &ImageView<'_, f32>, other: &ImageView<'_, f32>, step: f32, within: Range<usize>) -> Vec<usize> {
     let channels = [0, 1, 2].map(|c| (one.channel(c), other.channel(c)));
     let mut found = Vec::new();
@@ -32,6 +33,7 @@ pub fn differing(one: &ImageView<'_, f32>, other: &ImageView<'_, f32>, step: f32
 
 /// Which of some pixels (indices, ascending, of a picture with so many columns) touch, across corners too: the number of its part for each, from 0.
 #[must_use]
+#[inline(never)]
 pub fn touching(pixels: &[usize], width: usize) -> Vec<u32> {
     let mut sets = DisjointSets::default();
     let mut parts: Vec<u32> = Vec::with_capacity(pixels.len());

@@ -76,6 +76,7 @@ impl Partition {
 
     /// Whether a line shows a mixture of what lies on its sides and of the ground, all along: then two things lie so near one another that no pixel
     /// between them is of the ground alone.
+    #[inline(never)]
     pub(crate) fn is_gap(&self, line: &ThinLine) -> bool {
         let is_mixed = |window: &ThinSample| {
             let sides = self.sides(window);
