@@ -180,10 +180,19 @@ fn walk(drawing: &Drawing<f32>, k: usize, size: ImageSize, at: &mut dyn FnMut(us
         let ends = ring.iter().skip(1).chain(ring.first());
         for (from, to) in ring.iter().zip(ends) {
             let [from, to] = [from, to].map(|point| point.map(|value| f64::from(value) * unit));
-            let length = (to[0] - from[0]).hypot(to[1] - from[1]);
+            // What of the way lies in the picture: outlines may lead far out of it.
+            let [mut start, mut end] = [0.0_f64, 1.0_f64];
+            for (c, side) in [size.width(), size.height()].into_iter().enumerate() {
+                let step = to[c] - from[c];
+                let [low, high] = [-from[c] / step, (f64::of_usize(side) - from[c]) / step];
+                if step != 0.0 {
+                    (start, end) = (start.max(low.min(high)), end.min(low.max(high)));
+                }
+            }
+            let length = (end - start) * (to[0] - from[0]).hypot(to[1] - from[1]);
             let count = length.ceil().max(1.0);
-            for j in 0..count.to_count() {
-                let share = (j as f64 + 0.5) / count;
+            for j in 0..if length > 0.0 { count.to_count() } else { 0 } {
+                let share = start + (end - start) * (j as f64 + 0.5) / count;
                 let [x, y] = [0, 1].map(|c| from[c] + share * (to[c] - from[c]));
                 if x >= 0.0 && y >= 0.0 && x < size.width() as f64 && y < size.height() as f64 {
                     at(y.to_count() * size.width() + x.to_count(), length / count);
