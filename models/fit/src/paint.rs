@@ -44,11 +44,6 @@ impl<T: Real> Canvas<T> {
         Ok((self.image.insert(image), drawing))
     }
 
-    /// The image that was painted last.
-    pub(crate) fn painted(&self) -> Option<&Image<T>> {
-        self.image.as_ref()
-    }
-
     /// Paints a drawing of the scene: on its background, or, into an image with alpha, on nothing.
     ///
     /// # Errors

@@ -213,6 +213,15 @@ pub const PAIR_MARKS: usize = 4;
 /// Where lines are steeper to their windows, those along the other axis read them: a little more than 45 degrees, so that both overlap.
 pub const PAIR_SLOPE: f64 = 1.1;
 
+/// Windows of a thin line, with three on both sides of each, that are asked how dark it is.
+pub const SHADE_LEAST: usize = 6;
+
+/// How many times as much (mean square) windows across a thin line have to differ from those of a smooth one of its color before it has another color.
+pub const SHADE_CLEARLY: f64 = 4.0;
+
+/// What they differ by without telling of it, mean square of a window: a step of 8 bits in some pixels, and what curves add.
+pub const SHADE_FLOOR: f64 = 2e-5;
+
 /// How far apart (pixels) the parts of a thin line may be that something crosses.
 pub const THIN_GAP: f64 = 32.0;
 

@@ -6,6 +6,7 @@
 
 use alloc::vec;
 use alloc::vec::Vec;
+use core::mem;
 use core::ops::Range;
 
 #[cfg(not(feature = "std"))]
@@ -15,7 +16,7 @@ use dvp_core::contour::{perimeter, signed_area};
 use dvp_core::geometry::DisjointSets;
 use dvp_core::{Drawing, Image, ImageSize, ImageView, Object, Real as _, Scene};
 use dvp_trace::Traced;
-use dvp_trace::missed::{Missed, Painted, differing, touching};
+use dvp_trace::missed::{Missed, Painted, channels, differing, touching};
 use dvp_trace::tuning::{CODED_CONTRAST, LEAST_CONTRAST, PIXEL_BITS};
 
 use crate::FitError;
@@ -25,19 +26,32 @@ use crate::tuning::{PIECE_WIDTH_PX, PIECE_WRONG};
 
 /// Most rounds of things on one another.
 const MOST_ROUNDS: usize = 4;
+/// Rows around what is wrong that a thing which is added there may reach.
+const MARGIN: usize = 4;
 /// Difference of a channel from which on a pixel is painted anew: less than a step of 8 bits.
 const CHANGED: f32 = 1e-3;
 
 /// What is wrong with a drawing, before it is mended.
 pub(super) struct Wrong {
-    /// The drawing, painted.
-    pub(super) before: Image<f32>,
+    /// The pixels of the rows in which something is wrong.
+    within: Range<usize>,
+    /// What the drawing paints there, channel by channel.
+    before: [Vec<f32>; 3],
     /// Which of its objects are thin, and not what the picture shows.
     is_piece: Vec<bool>,
     /// Differences of a channel up to this are none.
     step: f64,
-    /// The pixels that differ, ascending.
-    off: Vec<usize>,
+}
+
+/// A drawing with everything mended that is wrong with it.
+struct Mended {
+    /// What is kept of the drawing, then what is added.
+    scene: Scene<f32>,
+    drawing: Drawing<f32>,
+    /// What it paints in the rows in which something was wrong.
+    after: [Vec<f32>; 3],
+    /// Description length of the outlines that are added, bits.
+    bits: Vec<f64>,
 }
 
 impl Wrong {
@@ -51,13 +65,23 @@ impl Wrong {
     ) -> Option<Self> {
         let step = if traced.coded { CODED_CONTRAST } else { LEAST_CONTRAST };
         let pair = Painted { scene: &traced.scene, image: *image, painted: painted.view(), step };
-        let off = pair.off();
-        let is_piece = |k: usize| self::is_piece(drawing, k, &off, image.size());
-        let is_piece: Vec<bool> = (0..drawing.object_count()).map(is_piece).collect();
-        (is_piece.contains(&true) || pair.may_miss(&off)).then(|| Self { before: painted.clone(), is_piece, step, off })
+        let (size, width) = (image.size(), image.size().width());
+        let off = pair.off(&(0..size.pixels()));
+        let mut within = off.first().copied()?..off.last().copied()?;
+        let is_piece: Vec<bool> = (0..drawing.object_count()).map(|k| is_piece(drawing, k, &off, size)).collect();
+        if !is_piece.contains(&true) && !pair.may_miss(&off) {
+            return None;
+        }
+        for k in (0..is_piece.len()).filter(|&k| is_piece[k]) {
+            walk(drawing, k, size, &mut |i, _| within = within.start.min(i)..within.end.max(i));
+        }
+        let rows = (within.start / width).saturating_sub(MARGIN)..(within.end / width + MARGIN + 1).min(size.height());
+        let within = rows.start * width..rows.end * width;
+        let before = channels(&painted.view(), &within).map(<[f32]>::to_vec);
+        Some(Self { within, before, is_piece, step })
     }
 
-    /// Mends the drawing where that makes it shorter. Its polygons, as they are painted on the canvas then; none if nothing changes.
+    /// Mends the drawing where that makes it shorter.
     #[inline(never)]
     pub(super) fn mend(
         &self,
@@ -65,94 +89,87 @@ impl Wrong {
         drawing: &Drawing<f32>,
         image: ImageView<'_, f32>,
         canvas: &mut Canvas<f32>,
-    ) -> Result<Option<Drawing<f32>>, FitError> {
-        let Self { before, is_piece, step, .. } = self;
-        let size = image.size();
-        let mut scene = Scene { objects: Vec::new(), ..traced.scene.clone() };
-        let kept = traced.scene.objects.iter().zip(is_piece).filter(|&(_, is_piece)| !is_piece);
-        scene.objects.extend(kept.map(|(object, _)| object.clone()));
-        let first = scene.objects.len();
+    ) -> Result<(), FitError> {
+        let mended = self.mended(&traced.scene, image, canvas)?;
+        let first = mended.scene.objects.len() - mended.bits.len();
+        let pieces: Vec<usize> = (0..self.is_piece.len()).filter(|&k| self.is_piece[k]).collect();
+        // What goes, then what comes: object `k` of a drawing, and by how many bits the scene is shorter.
+        let gone = pieces.iter().map(|&k| (drawing, k, price(&traced.scene.objects[k])));
+        let added = first..mended.scene.objects.len();
+        let added = added.map(|k| (&mended.drawing, k, -price(&mended.scene.objects[k])));
+        let is_better = self.are_better(gone.chain(added), &mended.after, &image);
+        let mut is_left = vec![true; self.is_piece.len()];
+        pieces.iter().zip(&is_better).for_each(|(&k, &is_gone)| is_left[k] = !is_gone);
+        let objects = mem::take(&mut traced.scene.objects).into_iter().zip(mem::take(&mut traced.covariances));
+        let left = objects.zip(is_left).filter(|(_, is_left)| *is_left);
+        (traced.scene.objects, traced.covariances) = left.map(|(object, _)| object).unzip();
+        let added = mended.scene.objects.into_iter().skip(first).zip(mended.bits);
+        for ((object, bits), _) in added.zip(&is_better[pieces.len()..]).filter(|(_, is_better)| **is_better) {
+            traced.scene.objects.push(object);
+            traced.covariances.push(None);
+            traced.bits += bits;
+        }
+        Ok(())
+    }
+
+    /// The drawing without its pieces, and with what it misses then.
+    fn mended(
+        &self,
+        scene: &Scene<f32>,
+        image: ImageView<'_, f32>,
+        canvas: &mut Canvas<f32>,
+    ) -> Result<Mended, FitError> {
+        let mut is_piece = self.is_piece.iter();
+        let mut scene = scene.clone();
+        scene.objects.retain(|_| is_piece.next() == Some(&false));
         let mut bits = Vec::new();
         let mut rounds = 0;
-        let (painted, again) = loop {
-            let (painted, again) = canvas.paint(&scene, size)?;
-            let pair = Painted { scene: &scene, image, painted: painted.view(), step: *step };
-            let off = || if rounds == 0 { self.off_without(&pair, drawing) } else { pair.off() };
-            let missed = if rounds < MOST_ROUNDS { pair.missed(&off()) } else { Vec::new() };
+        loop {
+            let (painted, drawing) = canvas.paint(&scene, image.size())?;
+            let pair = Painted { scene: &scene, image, painted: painted.view(), step: self.step };
+            let missed = if rounds < MOST_ROUNDS { pair.missed(&pair.off(&self.within)) } else { Vec::new() };
             if missed.is_empty() {
-                break (painted, again);
+                let after = channels(&pair.painted, &self.within).map(<[f32]>::to_vec);
+                return Ok(Mended { scene, drawing, after, bits });
             }
             rounds += 1;
             for Missed { object, bits: of_outline, .. } in missed {
                 bits.push(of_outline);
                 scene.objects.push(object);
             }
-        };
-        let pieces: Vec<usize> = (0..is_piece.len()).filter(|&k| is_piece[k]).collect();
-        let rows = pieces.iter().map(|&k| rows(drawing, k, size));
-        let rows = rows.chain((first..scene.objects.len()).map(|k| self::rows(&again, k, size)));
-        let mut parts = Parts::of([before, painted], &all_of(rows));
-        let of_pieces: Vec<Option<u32>> = pieces.iter().map(|&k| parts.part_of(drawing, k)).collect();
-        let of_added: Vec<Option<u32>> = (first..scene.objects.len()).map(|k| parts.part_of(&again, k)).collect();
-        let nearer = parts.nearer(&image, [before, painted], *step);
+        }
+    }
+
+    /// Which changes make the drawing nearer to the picture and shorter, with all others of the part of the picture that changes with them.
+    fn are_better<'a>(
+        &self,
+        changes: impl Iterator<Item = (&'a Drawing<f32>, usize, f64)>,
+        after: &[Vec<f32>; 3],
+        image: &ImageView<'_, f32>,
+    ) -> Vec<bool> {
+        let [before, after] = [&self.before, after].map(|painted| painted.each_ref().map(Vec::as_slice));
+        let mut parts = Parts::of([before, after], self.within.start, image.size());
+        let changes: Vec<(Option<u32>, f64)> =
+            changes.map(|(drawing, k, saved)| (parts.part_of(drawing, k), saved)).collect();
+        let nearer = parts.nearer(channels(image, &self.within), [before, after], self.step);
         let mut shorter = nearer.clone();
-        let price =
-            |object: &Object<f32>| scene_bits(&Scene { objects: vec![object.clone()], ..Scene::empty([0.0; 3]) }, 0);
-        for (&k, part) in pieces.iter().zip(&of_pieces) {
-            part.iter().for_each(|&part| shorter[parts.root(part)] += price(&traced.scene.objects[k]));
+        for (part, saved) in &changes {
+            part.iter().for_each(|&part| shorter[parts.root(part)] += saved);
         }
-        for (object, part) in scene.objects[first..].iter().zip(&of_added) {
-            part.iter().for_each(|&part| shorter[parts.root(part)] -= price(object));
-        }
-        let mut is_better = |part: Option<u32>| {
-            part.map(|part| parts.root(part)).is_some_and(|root| nearer[root] > 0.0 && shorter[root] > 0.0)
+
+        let mut is_better = |part: u32| {
+            let root = parts.root(part);
+            nearer[root] > 0.0 && shorter[root] > 0.0
         };
-        let mut is_left = vec![true; is_piece.len()];
-        pieces.iter().zip(&of_pieces).for_each(|(&k, &part)| is_left[k] = !is_better(part));
-        let mut is_changed = is_left.contains(&false);
-        let mut left = is_left.iter();
-        traced.scene.objects.retain(|_| left.next() != Some(&false));
-        let mut left = is_left.iter();
-        traced.covariances.retain(|_| left.next() != Some(&false));
-        let count = scene.objects.len();
-        for ((object, part), bits) in scene.objects.drain(first..).zip(of_added).zip(bits) {
-            if is_better(part) {
-                is_changed = true;
-                traced.scene.objects.push(object);
-                traced.covariances.push(None);
-                traced.bits += bits;
-            }
-        }
-        if !is_changed {
-            return Ok(None);
-        }
-        let is_all = pieces.iter().all(|&k| !is_left[k]) && traced.scene.objects.len() == count;
-        Ok(Some(if is_all { again } else { canvas.paint(&traced.scene, size)?.1 }))
-    }
-
-    /// The pixels that differ without the pieces: others only where these are.
-    fn off_without(&self, pair: &Painted<'_>, drawing: &Drawing<f32>) -> Vec<usize> {
-        let width = pair.image.size().width();
-        let pieces = (0..self.is_piece.len()).filter(|&k| self.is_piece[k]);
-        let rows = all_of(pieces.map(|k| rows(drawing, k, pair.image.size())));
-        let within = rows.start * width..rows.end * width;
-        let [before, after] = [within.start, within.end].map(|at| self.off.partition_point(|&i| i < at));
-        let again = differing(&pair.image, &pair.painted, f32::of(self.step), within);
-        self.off[..before].iter().copied().chain(again).chain(self.off[after..].iter().copied()).collect()
+        changes.iter().map(|(part, _)| part.is_some_and(&mut is_better)).collect()
     }
 }
 
-/// The rows of pixels that an object may be seen in: from the first to that after the last.
-fn rows(drawing: &Drawing<f32>, k: usize, size: ImageSize) -> Range<usize> {
-    let unit = size.unit_px() as f32;
-    let places = || drawing.outline(k).iter().map(|point| point[1] * unit);
-    let [low, high] = [places().fold(f32::INFINITY, f32::min) - 2.0, places().fold(0.0, f32::max) + 3.0];
-    low.max(0.0).to_count().min(size.height())..high.to_count().min(size.height())
-}
-
-/// The rows from the first to the last of all.
-fn all_of(rows: impl Iterator<Item = Range<usize>>) -> Range<usize> {
-    rows.reduce(|a, b| a.start.min(b.start)..a.end.max(b.end)).unwrap_or_default()
+/// Bits that an object costs by the law of scenes.
+fn price(object: &Object<f32>) -> f64 {
+    let [of_one, of_none] =
+        [vec![object.clone()], Vec::new()].map(|objects| Scene { objects, ..Scene::empty([0.0; 3]) });
+    scene_bits(&of_one, 0) - scene_bits(&of_none, 0)
 }
 
 /// Whether object `k` is thin, and pixels along much of its outline are `off`.
@@ -207,20 +224,20 @@ struct Parts {
     /// The pixels that change, ascending, and the part of each.
     pixels: Vec<usize>,
     part: Vec<u32>,
+    /// The first of the pixels that are compared.
+    first: usize,
     sets: DisjointSets,
     size: ImageSize,
 }
 
 impl Parts {
-    /// What changes from one image to the other in some rows.
-    fn of([before, after]: [&Image<f32>; 2], rows: &Range<usize>) -> Self {
-        let size = before.size();
-        let pixels =
-            differing(&before.view(), &after.view(), CHANGED, rows.start * size.width()..rows.end * size.width());
+    /// What changes from one image to the other, both from pixel `first` on.
+    fn of([before, after]: [[&[f32]; 3]; 2], first: usize, size: ImageSize) -> Self {
+        let pixels = differing(before, after, CHANGED, first);
         let part = touching(&pixels, size.width());
         let mut sets = DisjointSets::default();
         sets.reset(part.iter().map(|part| part + 1).max().unwrap_or(0));
-        Self { pixels, part, sets, size }
+        Self { pixels, part, first, sets, size }
     }
 
     /// The part that an object lies in; none if nothing changes along its outline.
@@ -241,14 +258,14 @@ impl Parts {
     }
 
     /// By how many bits less the second image misses the picture, part by part. A pixel that is off by `step` is off by one sigma.
-    fn nearer(&mut self, image: &ImageView<'_, f32>, [before, after]: [&Image<f32>; 2], step: f64) -> Vec<f64> {
+    fn nearer(&mut self, image: [&[f32]; 3], [before, after]: [[&[f32]; 3]; 2], step: f64) -> Vec<f64> {
         let mut nearer = vec![0.0; self.sets.len()];
-        let bits = |painted: &Image<f32>, i: usize| {
-            let [seen, painted] = [image.pixel(i), painted.view().pixel(i)];
-            let off = (0..3).map(|c| (seen[c] - painted[c]).abs()).fold(0.0, f32::max);
+        let bits = |painted: [&[f32]; 3], i: usize| {
+            let off = (0..3).map(|c| (image[c][i] - painted[c][i]).abs()).fold(0.0, f32::max);
             (0.5 * core::f64::consts::LOG2_E * (f64::from(off) / step).powi(2)).min(PIXEL_BITS)
         };
         for (&i, &part) in self.pixels.iter().zip(&self.part) {
+            let i = i - self.first;
             nearer[self.sets.root(part) as usize] += bits(before, i) - bits(after, i);
         }
         nearer

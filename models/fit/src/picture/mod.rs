@@ -279,15 +279,13 @@ fn settled(
 #[inline(never)]
 fn drawn(mut traced: Traced, image: ImageView<'_, f32>, scratch: &mut PictureScratch) -> Result<Fit<f32>, FitError> {
     let (canvas, size) = (&mut scratch.canvas, image.size());
-    let (painted, drawing) = canvas.paint(&traced.scene, size)?;
+    let (mut painted, mut drawing) = canvas.paint(&traced.scene, size)?;
     let is_clear = traced.blur == 0.0 && traced.noise == 0.0;
-    let mut best = match is_clear.then(|| Wrong::of(&traced, &drawing, painted, &image)).flatten() {
-        Some(wrong) => match wrong.mend(&mut traced, &drawing, image, canvas)? {
-            Some(drawing) => of_painted(&traced.scene, &drawing, canvas.painted().unwrap_or(&wrong.before), image)?,
-            None => of_painted(&traced.scene, &drawing, &wrong.before, image)?,
-        },
-        None => of_painted(&traced.scene, &drawing, painted, image)?,
-    };
+    if let Some(wrong) = is_clear.then(|| Wrong::of(&traced, &drawing, painted, &image)).flatten() {
+        wrong.mend(&mut traced, &drawing, image, canvas)?;
+        (painted, drawing) = canvas.paint(&traced.scene, size)?;
+    }
+    let mut best = of_painted(&traced.scene, &drawing, painted, image)?;
     let Traced { scene, covariances, bits, blur, .. } = traced;
     let (covariance, ambiguity) = doubt_of_poses(&covariances);
     // Such a profile has the pixel's area in it. The integral of F (1 - F), F the profile, is half the softness of the logistic curve, and the

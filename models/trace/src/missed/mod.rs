@@ -17,18 +17,19 @@ mod tests;
 
 use alloc::vec;
 use alloc::vec::Vec;
+use core::ops::Range;
 
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
-use dvp_core::{ImageSize, ImageView, Object, Paint, Scene, Vec2};
+use dvp_core::{ImageSize, ImageView, Object, Paint, Real as _, Scene, Vec2};
 
 use crate::layers::{Form, Layer};
-use crate::partition::{Color, coverage, distance};
+use crate::partition::{Color, distance, mixture};
 use crate::ruler::Ruler;
 use crate::scene;
 use crate::tuning;
-pub use pixels::{differing, touching};
+pub use pixels::{channels, differing, touching};
 
 /// Largest window that is searched for one thing, pixels: the finer grid takes 128 bytes for each.
 const MOST_PIXELS: usize = 1 << 18;
@@ -57,6 +58,7 @@ pub struct Missed {
 }
 
 /// What is painted around a pixel that differs.
+#[derive(Clone, Copy)]
 struct Mark {
     /// Whether no mixture of that, and of the background, explains the pixel: else an edge may be off by a pixel, or an opening filled.
     is_new: bool,
@@ -83,9 +85,10 @@ impl Painted<'_> {
         off.iter().zip(parts).for_each(|(&i, part)| pixels[part as usize].push(i));
         let colors = self.colors();
         let mut found = Vec::new();
-        for mut pixels in pixels {
-            while let Some(seen) = self.seen(&pixels, &colors) {
-                pixels.retain(|i| seen.pixels.binary_search(i).is_err());
+        for pixels in pixels {
+            let mut marked: Vec<(usize, Mark)> = pixels.into_iter().map(|i| (i, self.mark(i))).collect();
+            while let Some(seen) = self.seen(&marked, &colors) {
+                marked.retain(|(i, _)| seen.pixels.binary_search(i).is_err());
                 found.extend(self.traced(seen));
             }
         }
@@ -98,12 +101,11 @@ impl Painted<'_> {
         off.iter().filter(|&&i| self.mark(i).is_new).count() >= least_seen()
     }
 
-    /// The pixels that differ, ascending.
+    /// The pixels that differ, of those `within`, ascending.
     #[must_use]
-    pub fn off(&self) -> Vec<usize> {
-        #[expect(clippy::cast_possible_truncation, reason = "a difference of colors")]
-        let step = self.step as f32;
-        differing(&self.image, &self.painted, step, 0..self.image.size().pixels())
+    pub fn off(&self, within: &Range<usize>) -> Vec<usize> {
+        let [image, painted] = [&self.image, &self.painted].map(|image| channels(image, within));
+        differing(image, painted, f32::of(self.step), within.start)
     }
 
     /// The colors of the drawing's things; what has that of the background is left to what lies around it.
@@ -122,22 +124,21 @@ impl Painted<'_> {
 
     /// Of pixels that touch, those that one color explains, where they are more than telling it as a thing costs.
     #[inline(never)]
-    fn seen(&self, pixels: &[usize], colors: &[Color]) -> Option<Seen> {
-        let marks: Vec<Mark> = pixels.iter().map(|&i| self.mark(i)).collect();
+    fn seen(&self, pixels: &[(usize, Mark)], colors: &[Color]) -> Option<Seen> {
         let least = least_seen();
-        if marks.iter().filter(|mark| mark.is_new).count() < least {
+        if pixels.iter().filter(|(_, mark)| mark.is_new).count() < least {
             return None;
         }
         // What lies along an edge is a sliver of something that is seen elsewhere; what lies on one color may have its own.
-        let is_own = marks.iter().any(|mark| mark.is_new && mark.is_flat);
+        let is_own = pixels.iter().any(|(_, mark)| mark.is_new && mark.is_flat);
         let least = if is_own { least } else { tuning::LEAST_SEAM };
-        let new = pixels.iter().zip(&marks).filter(|(_, mark)| mark.is_new && mark.is_flat == is_own);
+        let new = pixels.iter().filter(|(_, mark)| mark.is_new && mark.is_flat == is_own).map(|&(i, _)| i);
         let off = |i: usize| distance(color(&self.image, i), color(&self.painted, i));
-        let (&extreme, _) = new.max_by(|(i, _), (j, _)| off(**i).total_cmp(&off(**j)))?;
+        let extreme = new.max_by(|&i, &j| off(i).total_cmp(&off(j)))?;
         let of_color = |ink: Color| {
             let mut seen = Seen { color: ink, pixels: Vec::new(), count: 0 };
             let mut most: f64 = 0.0;
-            for (&i, mark) in pixels.iter().zip(&marks) {
+            for &(i, mark) in pixels {
                 if let Some(share) = self.share(i, ink) {
                     seen.pixels.push(i);
                     seen.count += usize::from(mark.is_new && mark.is_flat >= is_own);
@@ -162,18 +163,21 @@ impl Painted<'_> {
         let (x, y) = (i % width, i / width);
         let (pixel, under) = (color(&self.image, i), color(&self.painted, i));
         let mut is_flat = true;
-        let mut near = vec![self.scene.background.map(f64::from)];
+        // The background, and nine at most.
+        let mut near = [self.scene.background.map(f64::from); 10];
+        let mut count = 1;
         for row in y.saturating_sub(1)..(y + 2).min(height) {
             for column in x.saturating_sub(1)..(x + 2).min(width) {
                 let color = color(&self.painted, row * width + column);
                 is_flat &= distance(color, under) <= self.step;
-                if !near.contains(&color) {
-                    near.push(color);
+                if !near[..count].contains(&color) {
+                    near[count] = color;
+                    count += 1;
                 }
             }
         }
-        let mut pairs = near.iter().enumerate().flat_map(|(k, &a)| near[..=k].iter().map(move |&b| (a, b)));
-        Mark { is_new: pairs.all(|(a, b)| mixture(pixel, a, b).1 > self.step), is_flat }
+        let mut pairs = (0..count).flat_map(|k| (0..=k).map(move |l| (k, l)));
+        Mark { is_new: pairs.all(|(k, l)| mixture(pixel, near[k], near[l]).1 > self.step), is_flat }
     }
 
     /// How much of a color is seen in a pixel over what is painted there; none if it is not that color, or if it is painted already.
@@ -220,13 +224,6 @@ impl Painted<'_> {
 /// Fewest pixels that show something new for it to be a thing: fewer cost less than that there is one.
 fn least_seen() -> usize {
     (tuning::THING_BITS / tuning::PIXEL_BITS).ceil() as usize
-}
-
-/// How much of `to` a pixel shows over `from`, [0, 1], and the most that a channel differs from that mixture.
-fn mixture(pixel: Color, from: Color, to: Color) -> (f64, f64) {
-    let share = coverage(pixel, from, to).clamp(0.0, 1.0);
-    let off = (0..3).map(|c| (pixel[c] - from[c] - share * (to[c] - from[c])).abs());
-    (share, off.fold(0.0, f64::max))
 }
 
 /// The color of a pixel.

@@ -10,22 +10,29 @@ use dvp_core::geometry::DisjointSets;
 /// Pixels that are compared at once.
 const STRETCH: usize = 256;
 
-/// The pixels (indices, ascending) of two images of one size, of those `within`, some channel of which differs by more than `step`.
+/// The three channels of the pixels `within` an image.
+#[must_use]
+pub fn channels<'a>(image: &ImageView<'a, f32>, within: &Range<usize>) -> [&'a [f32]; 3] {
+    [0, 1, 2].map(|c| &image.channel(c)[within.clone()])
+}
+
+/// The pixels (indices, ascending) some channel of which differs by more than `step` between two images, both given by as many pixels from `first` on.
 #[must_use]
 #[inline(never)]
-pub fn differing(one: &ImageView<'_, f32>, other: &ImageView<'_, f32>, step: f32, within: Range<usize>) -> Vec<usize> {
-    let channels = [0, 1, 2].map(|c| (one.channel(c), other.channel(c)));
+pub fn differing(one: [&[f32]; 3], other: [&[f32]; 3], step: f32, first: usize) -> Vec<usize> {
+    let pairs = [0, 1, 2].map(|c| (one[c], other[c]));
+    let count = one[0].len();
     let mut found = Vec::new();
     // Most stretches are alike: they are compared as a whole.
-    for start in within.clone().step_by(STRETCH) {
-        let stretch = start..(start + STRETCH).min(within.end);
-        let off = channels.map(|(one, other)| {
-            let pairs = one[stretch.clone()].iter().zip(&other[stretch.clone()]);
-            pairs.fold(false, |is_off, (one, other)| is_off | ((one - other).abs() > step))
+    for start in (0..count).step_by(STRETCH) {
+        let stretch = start..(start + STRETCH).min(count);
+        let off = pairs.map(|(one, other)| {
+            let values = one[stretch.clone()].iter().zip(&other[stretch.clone()]);
+            values.fold(false, |is_off, (one, other)| is_off | ((one - other).abs() > step))
         });
         if off.contains(&true) {
-            let is_off = |&i: &usize| channels.iter().any(|(one, other)| (one[i] - other[i]).abs() > step);
-            found.extend(stretch.filter(is_off));
+            let is_off = |&i: &usize| pairs.iter().any(|(one, other)| (one[i] - other[i]).abs() > step);
+            found.extend(stretch.filter(is_off).map(|i| first + i));
         }
     }
     found

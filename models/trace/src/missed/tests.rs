@@ -7,7 +7,7 @@ use dvp_core::{Image, ImageSize, Vec2};
 use proptest::prelude::*;
 
 use super::level::outlines;
-use super::{differing, touching};
+use super::{channels, differing, touching};
 use crate::layers::polygon;
 use crate::ruler::Ruler;
 
@@ -63,8 +63,9 @@ proptest! {
         let mut expected: Vec<usize> = changes.iter().map(|&(i, _)| i).filter(|&i| i >= from).collect();
         expected.sort_unstable();
         expected.dedup();
-        prop_assert_eq!(differing(&one.view(), &other.view(), 0.4, from..900), expected);
-        prop_assert!(differing(&one.view(), &other.view(), 0.6, 0..900).is_empty());
+        let off = |step: f32| differing(channels(&one.view(), &(from..900)), channels(&other.view(), &(from..900)), step, from);
+        prop_assert_eq!(off(0.4), expected);
+        prop_assert!(off(0.6).is_empty());
     }
 }
 

@@ -81,6 +81,17 @@ impl Chain {
         })
     }
 
+    /// How wide the line is across at each of its windows, pixels.
+    pub(super) fn widths(&self) -> Vec<f64> {
+        let n = self.marks.len();
+        let width = |k: usize| {
+            let step = self.marks[(k + 3).min(n - 1)].point - self.marks[k.saturating_sub(3)].point;
+            let along = step.normalized().unwrap_or_default();
+            self.marks[k].width * along.perp().dot(self.marks[k].axis()).abs().max(0.6)
+        };
+        (0..n).map(width).collect()
+    }
+
     /// The way from each of its windows to the next.
     fn steps(&self) -> impl Iterator<Item = [Vec2<f64>; 2]> + Clone {
         self.marks.windows(2).map(|pair| [pair[0].point, pair[1].point])
@@ -107,6 +118,13 @@ impl Chain {
         let [end, inner] = [end, inner].map(|k| self.marks[k].point);
         [end, (end - inner).normalized().unwrap_or_default()]
     }
+}
+
+/// The middle one of some values, in order of their size; 0 if there are none.
+pub(super) fn median(values: &[f64]) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_unstable_by(f64::total_cmp);
+    sorted.get(sorted.len() / 2).copied().unwrap_or(0.0)
 }
 
 /// Ends of chains, by their number: twice the chain's, and one more for its finish.

@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use super::Color;
 use super::cross::{Along, Canvas, Cross};
-use super::mix::coverage;
+use super::mix::{coverage, misfit};
 use super::palette::distance;
 use crate::tuning;
 
@@ -71,7 +71,7 @@ pub(super) fn colors(canvas: &Canvas<'_>, crosses: &mut [Vec<Vec<Cross>>; 2], pa
 }
 
 /// Most colors: bits of [`Cross::colors`].
-const MOST: usize = 128;
+pub(super) const MOST: usize = 128;
 
 impl<'a> Window<'a> {
     fn of(canvas: &Canvas<'_>, along: Along, cross: &'a mut Cross, palette: &[Color]) -> Option<Self> {
@@ -112,8 +112,7 @@ fn modal(colors: impl Iterator<Item = Color>) -> [u8; 3] {
 fn farthest(side: Color, through: Color, colors: impl Iterator<Item = Color>, noise: f64) -> Color {
     let on_ray = |color: &Color| {
         let t = coverage(*color, side, through);
-        let misfit = (0..3).map(|c| (color[c] - side[c] - t * (through[c] - side[c])).abs()).fold(0.0, f64::max);
-        (misfit <= noise && t >= 1.0).then_some((t, *color))
+        (t >= 1.0 && misfit(*color, side, through, t) <= noise).then_some((t, *color))
     };
     colors.filter_map(|color| on_ray(&color)).max_by(|a, b| a.0.total_cmp(&b.0)).map_or(through, |(_, color)| color)
 }

@@ -200,9 +200,7 @@ pub(super) fn best_mixture(pixel: Color, colors: &[u16], palette: &[Color]) -> O
 
 /// A pixel as a mixture of two colors.
 fn pair(pixel: Color, a: u16, b: u16, palette: &[Color]) -> Mixture {
-    let (from, to) = (palette[a as usize], palette[b as usize]);
-    let share = coverage(pixel, from, to).clamp(0.0, 1.0);
-    let misfit = (0..3).map(|c| (pixel[c] - from[c] - share * (to[c] - from[c])).abs()).fold(0.0, f64::max);
+    let (share, misfit) = mixture(pixel, palette[a as usize], palette[b as usize]);
     if share > 0.5 { Mixture { color: b, share, misfit } } else { Mixture { color: a, share: 1.0 - share, misfit } }
 }
 
@@ -215,6 +213,17 @@ pub(crate) fn coverage(pixel: Color, from: Color, to: Color) -> f64 {
         square += difference * difference;
     }
     if square > 0.0 { dot / square } else { 0.0 }
+}
+
+/// How much of `to` a pixel shows over `from`, [0, 1], and the most that a channel differs from that mixture.
+pub(crate) fn mixture(pixel: Color, from: Color, to: Color) -> (f64, f64) {
+    let share = coverage(pixel, from, to).clamp(0.0, 1.0);
+    (share, misfit(pixel, from, to, share))
+}
+
+/// The most that a channel of a pixel differs from `from` with a `share` of `to`, which may be more than all of it.
+pub(super) fn misfit(pixel: Color, from: Color, to: Color, share: f64) -> f64 {
+    (0..3).map(|c| (pixel[c] - from[c] - share * (to[c] - from[c])).abs()).fold(0.0, f64::max)
 }
 
 /// A pixel as a mixture of three colors; none if they lie on a line or a share is negative.

@@ -20,6 +20,7 @@ mod pair;
 mod palette;
 mod runs;
 mod seam;
+mod shade;
 mod sliver;
 #[cfg(test)]
 mod tests;
@@ -34,7 +35,7 @@ use crate::tuning;
 pub use faces::Face;
 use flat::Noise;
 use found::Found;
-pub(crate) use mix::coverage;
+pub(crate) use mix::{coverage, mixture};
 pub(crate) use palette::distance;
 pub(crate) use seam::{BEHIND, Seam};
 pub use thin::ThinLine;

@@ -8,11 +8,11 @@ use num_traits::Float as _;
 
 use dvp_core::sort;
 
-use super::chain::{Chain, Mark, crossings, hidden_crossings, join, read_once};
+use super::chain::{Chain, Mark, crossings, hidden_crossings, join, median, read_once};
 use super::cross::{Along, Canvas, Cross};
 use super::mix::coverage;
 use super::palette::distance;
-use super::{Color, ink, pair};
+use super::{Color, ink, pair, shade};
 use crate::stroke::{ThinChain, ThinSample};
 use crate::tuning;
 
@@ -31,10 +31,12 @@ pub struct ThinLine {
 /// Finds thin lines. `palette`: the colors of flat pixels, those of thick regions first.
 pub(super) fn find(canvas: &Canvas<'_>, palette: &[Color]) -> Vec<(ThinLine, Chain)> {
     let mut crosses = [Along::Columns, Along::Rows].map(|along| canvas.crosses(along));
-    let colors = ink::colors(canvas, &mut crosses, palette);
+    let mut colors = ink::colors(canvas, &mut crosses, palette);
+    let axes = [Along::Columns, Along::Rows];
+    let mut linked = [0, 1].map(|k| link(canvas, axes[k], &crosses[k], &colors, palette));
+    shade::settle(canvas, &mut linked, &mut colors, palette);
     let mut chains = Vec::new();
-    for (along, crosses) in [Along::Columns, Along::Rows].into_iter().zip(&crosses) {
-        let mut linked = link(canvas, along, crosses, &colors, palette);
+    for ((along, crosses), mut linked) in axes.into_iter().zip(&crosses).zip(linked) {
         pair::grow(canvas, along, &mut linked, crosses, [palette, &colors]);
         chains.extend(linked.into_iter().flat_map(level_parts));
     }
@@ -165,18 +167,7 @@ fn constant(chain: &mut Chain, widest: f64) -> Option<ThinChain> {
         return None;
     }
     let at = |k: usize| &chain.marks[k];
-    let widths: Vec<f64> = (0..n)
-        .map(|k| {
-            let step = at((k + 3).min(n - 1)).point - at(k.saturating_sub(3)).point;
-            let along = step.normalized().unwrap_or_default();
-            at(k).width * along.perp().dot(at(k).axis()).abs().max(0.6)
-        })
-        .collect();
-    let median = |values: &[f64]| {
-        let mut sorted = values.to_vec();
-        sorted.sort_unstable_by(f64::total_cmp);
-        sorted[sorted.len() / 2]
-    };
+    let widths = chain.widths();
     let width = median(&widths);
     let tolerance = tuning::THIN_TOLERANCE * width + 0.08;
     let off = widths.iter().filter(|&&one| (one - width).abs() > tolerance).count();

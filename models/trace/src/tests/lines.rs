@@ -6,6 +6,8 @@ use alloc::vec::Vec;
 use dvp_core::ImageSize;
 use dvp_core::shape::{AnyShape, Cap, FillRule, Join, Path, PathRing, Segment, Stroke};
 
+use proptest::prelude::*;
+
 use super::{BLUE, RED, WHITE, error, found, object, paint, paint_at, rectangle, scene};
 
 /// A line of a pen with flat ends, points in pixels.
@@ -164,4 +166,53 @@ fn a_line_at_45_degrees_is_no_ring() {
 fn a_gap_thinner_than_a_pixel_is_no_line() {
     let found = found(&paint(&scene(BLUE, triangles(24.0, 0.375, None))));
     assert_eq!(found.objects.len(), 2, "{:?}", found.objects);
+}
+
+/// Strokes that were found, from that with the lowest top on: their color and width, pixels.
+fn pens(found: &dvp_core::Scene<f32>) -> Vec<([f32; 3], f64)> {
+    let pen = |object: &dvp_core::Object<f32>| match &object.shape {
+        AnyShape::Stroke(stroke) => {
+            Some((object.color(), f64::from(stroke.width * object.pose.scale) * super::SIZE as f64))
+        }
+        _ => None,
+    };
+    found.objects.iter().filter_map(pen).collect()
+}
+
+/// How far a color is from another one.
+fn away(one: [f32; 3], other: [f32; 3]) -> f32 {
+    one.iter().zip(other).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
+}
+
+const BLACK: [f32; 3] = [0.0; 3];
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+    /// A gray line that is nowhere full shows as much as a hairline of the black that is seen beside it; where it passes between pixels tells them apart.
+    #[test]
+    fn lines_have_the_color_that_makes_them_smooth(gray in 0.4..0.75_f32, width in 0.7..1.3_f64, shift in 0.0..1.0_f64, rise in 6.0..30.0_f64) {
+        let gray = [gray; 3];
+        let bar = object(rectangle(30.0, 12.0), [40.0, 84.0], 0.0, BLACK);
+        let points = [[8.0, 12.0 + shift], [46.0, 12.0 + shift + 0.4 * rise], [88.0, 12.0 + shift + rise]];
+        let found = found(&paint(&scene(WHITE, vec![bar, line(&points, width, gray)])));
+        let pens = pens(&found);
+        prop_assert_eq!(pens.len(), 1, "{:?}", found.objects);
+        prop_assert!(away(pens[0].0, gray) < 0.08, "{:?} for {gray:?}", pens[0]);
+        prop_assert!((pens[0].1 - width).abs() < 0.2, "{:?} for {width}", pens[0]);
+    }
+
+    /// Lines along the picture's axes tell nothing: one between two rows of pixels looks gray, and as wide as both. It has the color of those that show
+    /// as much.
+    #[test]
+    fn the_sides_of_a_frame_are_of_one_color(left in 10.0..11.0_f64, top in 10.0..11.0_f64, wide in 60.0..61.0_f64, high in 60.0..61.0_f64) {
+        let [right, bottom] = [left + wide, top + high];
+        let side = |from: [f64; 2], to: [f64; 2]| line(&[from, to], 0.9, BLACK);
+        let corners = [[left, top], [right, top], [right, bottom], [left, bottom]];
+        let mut objects: Vec<_> = (0..4).map(|k| side(corners[k], corners[(k + 1) % 4])).collect();
+        objects.push(object(super::circle(8.0), [40.0, 40.0], 0.0, BLACK));
+        let found = found(&paint(&scene(WHITE, objects)));
+        for object in &found.objects {
+            prop_assert!(away(object.color(), BLACK) < 0.02, "{object:?}");
+        }
+    }
 }

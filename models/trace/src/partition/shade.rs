@@ -1,0 +1,336 @@
+//! How dark thin lines are, and so how wide.
+//!
+//! A line that is narrower than a pixel shows as much as a wider one of a lighter color, and a window across it does not tell them apart. But from
+//! window to window its middle moves, and the narrower it is, the more often a single pixel has all of it. The color that makes windows side by side
+//! those of one smooth band is the line's.
+
+use alloc::vec::Vec;
+
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
+
+use super::Color;
+use super::chain::{Chain, Mark, median};
+use super::cross::{Canvas, LONGEST};
+use super::ink::MOST;
+use super::mix::{coverage, misfit};
+use super::palette::distance;
+use crate::tuning;
+
+/// Windows on both sides of one that say where the middle of a line is in it.
+const REACH: usize = 3;
+/// Their weights for the middle: the parabola of least squares through seven (Savitzky and Golay, 1964).
+const MIDDLE: [f64; 2 * REACH + 1] =
+    [-2.0 / 21.0, 3.0 / 21.0, 6.0 / 21.0, 7.0 / 21.0, 6.0 / 21.0, 3.0 / 21.0, -2.0 / 21.0];
+/// Least square sum of the steps to them.
+const SQUARES: f64 = 28.0;
+/// Windows of a line that are asked at most, about.
+const MOST_VIEWS: usize = 32;
+/// Places in a pixel's side at which a band is looked at.
+const PLACES: usize = 4;
+/// Steps to the middle of a band at most, and how near is near enough, pixels.
+const MOST_STEPS: usize = 12;
+const NEAR: f64 = 1e-3;
+/// How much darker one color is than the next that is tried.
+const STEP: f64 = 1.06;
+
+/// A window with what its neighbors say of the line in it.
+struct View {
+    /// How much of the line's color pixels show, over what it lies on.
+    shares: [f64; LONGEST],
+    count: usize,
+    /// Middle of the line, pixels from the first one, and by how much it moves to the next window.
+    middle: f64,
+    slope: f64,
+    /// How much of all pixels the line covers, of its neighbors' too.
+    mass: f64,
+    /// How far these are apart, windows.
+    apart: f64,
+}
+
+/// The windows of a chain that lie on one color.
+struct Band {
+    /// That color, and the one which the chain has.
+    side: Color,
+    color: Color,
+    views: Vec<View>,
+    /// The color that leaves least, as a share of the chain's.
+    best: f64,
+}
+
+/// What is known of the color of a line.
+struct Line<'a> {
+    chain: &'a mut Chain,
+    /// What it lies on.
+    side: Color,
+    /// Its color, and the index of that in the list of colors.
+    color: Color,
+    index: usize,
+    /// Whether its windows tell that it has this one.
+    is_told: bool,
+    /// The colors that its windows leave open, bits of the list.
+    open: u128,
+    /// How wide it is in this color, pixels.
+    width: f64,
+}
+
+/// Gives chains the color that makes them smooth, where their own clearly does not. Windows of lines along the picture's axes, and of short ones, tell
+/// nothing: such a line has the color of one that shows as much, whose windows tell it, or else that which explains most lines that show as much. New
+/// colors are put last.
+#[inline(never)]
+pub(super) fn settle(canvas: &Canvas<'_>, chains: &mut [Vec<Chain>; 2], colors: &mut Vec<Color>, palette: &[Color]) {
+    let mut chains: Vec<&mut Chain> = chains.iter_mut().flatten().collect();
+    dvp_core::sort::descending(&mut chains, |chain| chain.marks.len() as f64);
+    let mut lines: Vec<Line<'_>> = Vec::new();
+    let mut bands = Vec::new();
+    for chain in chains {
+        let index = chain.colors.trailing_zeros() as usize;
+        let Some(ground) = chain.ground() else { continue };
+        let (side, color, width) = (palette[ground as usize], colors[index], median(&chain.widths()));
+        let band = Band::of(canvas, chain, ground, color, palette);
+        let mut line = Line { chain, side, color, index, is_told: false, open: u128::MAX, width };
+        if let Some(band) = &band {
+            line.smooth(band, colors);
+            line.chain.give(canvas, (line.index, line.color), palette);
+        }
+        lines.push(line);
+        bands.push(band);
+    }
+    for (line, band) in lines.iter_mut().zip(&bands) {
+        let Some(band) = band else { continue };
+        let bit = |(index, color): (usize, &Color)| u128::from(band.may_be_of(*color, canvas.noise)) << index;
+        line.open = colors.iter().enumerate().map(bit).sum();
+        line.is_told = line.open.is_power_of_two();
+    }
+    for k in 0..lines.len() {
+        if lines[k].is_told {
+            continue;
+        }
+        let told = lines.iter().filter(|line| line.is_told && lines[k].shows_as_much(line, canvas.noise));
+        let told = told.map(|line| (line.index, line.color)).find(|&which| lines[k].may_have(canvas, which, palette));
+        let (index, color) = told.unwrap_or_else(|| {
+            let alike: Vec<&Line<'_>> =
+                lines.iter().filter(|line| lines[k].shows_as_much(line, canvas.noise)).collect();
+            let windows = |index: usize, color: Color| -> usize {
+                let explained = alike.iter().filter(|line| line.index == index || line.may_be_darker(index, color));
+                explained.map(|line| line.chain.marks.len()).sum()
+            };
+            let own = (lines[k].index, lines[k].color);
+            let mut best = (own, windows(own.0, own.1));
+            for line in &alike {
+                let explained = windows(line.index, line.color);
+                if explained > best.1 && lines[k].may_have(canvas, (line.index, line.color), palette) {
+                    best = ((line.index, line.color), explained);
+                }
+            }
+            best.0
+        });
+        if index != lines[k].index {
+            let line = &mut lines[k];
+            line.chain.give(canvas, (index, color), palette);
+            (line.index, line.color, line.width) = (index, color, median(&line.chain.widths()));
+        }
+    }
+}
+
+impl Line<'_> {
+    /// Gives the line a color that makes it smooth, if its own does not: one of those that there are, or a new one.
+    fn smooth(&mut self, band: &Band, colors: &mut Vec<Color>) {
+        let may_be_of = |color: &Color| band.may_be_of(*color, tuning::LEAST_CONTRAST);
+        if may_be_of(&self.color) || colors.len() == MOST {
+            return;
+        }
+        let index = colors.iter().position(may_be_of).unwrap_or(colors.len());
+        if index == colors.len() {
+            colors.push(mixed(band.side, band.color, band.best));
+        }
+        (self.index, self.color) = (index, colors[index]);
+        self.width /= coverage(self.color, band.side, band.color);
+    }
+
+    /// Whether it would be as wide as another line in the color of that.
+    fn shows_as_much(&self, other: &Line<'_>, noise: f64) -> bool {
+        share_on_way(other.color, [self.side, self.color], noise)
+            .is_some_and(|share| (self.width / share - other.width).abs() <= tuning::THIN_TOLERANCE * other.width)
+    }
+
+    /// Whether its windows leave open that it has a color that is farther from what it lies on.
+    fn may_be_darker(&self, index: usize, color: Color) -> bool {
+        !self.is_told && self.open >> index & 1 == 1 && distance(color, self.side) > distance(self.color, self.side)
+    }
+
+    /// Whether a color explains all its windows, which do not tell another one.
+    fn may_have(&self, canvas: &Canvas<'_>, (index, color): (usize, Color), palette: &[Color]) -> bool {
+        let mut marks = self.chain.marks.iter();
+        self.open >> index & 1 == 1
+            && marks.all(|mark| {
+                let measured = canvas.measure(mark.along, &mark.cross, color, palette);
+                measured.is_some_and(|[_, _, misfit]| misfit <= canvas.noise)
+            })
+    }
+}
+
+/// How far a color is on the way from one to the other, or beyond it; none if it is beside.
+fn share_on_way(color: Color, [from, to]: [Color; 2], noise: f64) -> Option<f64> {
+    let share = coverage(color, from, to);
+    (share > 0.0 && misfit(color, from, to, share) <= noise).then_some(share)
+}
+
+/// Two colors mixed.
+fn mixed(from: Color, to: Color, share: f64) -> Color {
+    [0, 1, 2].map(|c| from[c] + share * (to[c] - from[c]))
+}
+
+impl Band {
+    /// Windows of a chain on one color, with as many beside them as say where its middle is; none if there are few.
+    fn of(canvas: &Canvas<'_>, chain: &Chain, side: u16, color: Color, palette: &[Color]) -> Option<Self> {
+        let ground = palette[side as usize];
+        let shares = |mark: &Mark| {
+            let [from, to] = mark.cross.run;
+            let mut shares = [0.0; LONGEST];
+            for (share, at) in shares.iter_mut().zip(from..to) {
+                *share = coverage(canvas.color(mark.along, mark.cross.line, at), ground, color);
+            }
+            shares
+        };
+        // How much all pixels of a window show, and their middle.
+        let seen = |mark: &Mark| {
+            let shares = shares(mark);
+            let all: f64 = shares.iter().sum();
+            let at: f64 = shares.iter().enumerate().map(|(k, share)| share * (k as f64 + 0.5)).sum();
+            [all, at / all + mark.cross.run[0] as f64]
+        };
+        let all: Vec<[f64; 2]> = chain.marks.iter().map(seen).collect();
+        let count = all.len();
+        let moves: f64 = all.windows(2).map(|pair| (pair[1][1] - pair[0][1]).abs()).sum();
+        // The windows that are looked at together see a line move by a pixel, if it is long enough for several such.
+        let needed = (count as f64 / (moves * 2.0 * REACH as f64)).ceil();
+        let apart = if needed * 4.0 * REACH as f64 <= count as f64 { needed as usize } else { 1 };
+        let is_next = |from: &Mark, mark: &Mark| {
+            let is_of_it = is_even(mark) && mark.cross.sides[0] == side;
+            is_of_it && mark.along == from.along && mark.cross.line.abs_diff(from.cross.line) == apart
+        };
+        let first = (0..count.saturating_sub(2 * REACH * apart)).step_by(count / MOST_VIEWS + 1);
+        let views = first.filter_map(|first| {
+            let at = |k: usize| first + k * apart;
+            if !(0..2 * REACH).all(|k| is_next(&chain.marks[at(k)], &chain.marks[at(k + 1)])) {
+                return None;
+            }
+            let here = &chain.marks[at(REACH)];
+            let [from, to] = here.cross.run;
+            let (mut middle, mut slope, mut mass) = (0.0, 0.0, 0.0);
+            for (k, weight) in MIDDLE.iter().enumerate() {
+                let [shown, place] = all[at(k)];
+                middle += weight * (place - from as f64);
+                slope += (k as f64 - REACH as f64) * place / (SQUARES * apart as f64);
+                mass += shown / MIDDLE.len() as f64;
+            }
+            Some(View { shares: shares(here), count: to - from, middle, slope, mass, apart: apart as f64 })
+        });
+        let views: Vec<View> = views.collect();
+        if views.len() < tuning::SHADE_LEAST || views.iter().any(|view| view.mass <= 0.0) {
+            return None;
+        }
+        let band = Self { side: ground, color, views, best: 1.0 };
+        Some(Self { best: band.best(), ..band })
+    }
+
+    /// Difference between the color and what it lies on.
+    fn contrast(&self) -> f64 {
+        distance(self.side, self.color)
+    }
+
+    /// Mean square of what windows differ, of the middle one, from a band whose color has `share` of the chain's over what it lies on.
+    fn misfit(&self, share: f64) -> f64 {
+        let contrast = self.contrast();
+        let of_view = |view: &View| {
+            let bands = view.bands(share);
+            let off = |k: usize| {
+                let covered = bands.map(|[from, to]| (to.min(k as f64 + 1.0) - from.max(k as f64)).max(0.0));
+                let covered = covered.iter().sum::<f64>() / PLACES as f64;
+                (contrast * (view.shares[k] - share * covered)).powi(2)
+            };
+            (0..view.count).map(off).sum::<f64>()
+        };
+        median(&self.views.iter().map(of_view).collect::<Vec<_>>())
+    }
+
+    /// Whether a color, not farther than `noise` from the way between the two, makes the band about as smooth as one can.
+    fn may_be_of(&self, color: Color, noise: f64) -> bool {
+        let most = tuning::SHADE_CLEARLY * self.misfit(self.best).max(tuning::SHADE_FLOOR);
+        share_on_way(color, [self.side, self.color], noise).is_some_and(|share| self.misfit(share) <= most)
+    }
+
+    /// The color that leaves least, as a share of the chain's: between what is seen and what no channel can be beyond.
+    fn best(&self) -> f64 {
+        let seen = self.views.iter().flat_map(|view| view.shares).fold(0.0, f64::max);
+        let room = (0..3).map(|c| match self.color[c] - self.side[c] {
+            step if step > 0.0 => (1.0 - self.side[c]) / step,
+            step if step < 0.0 => -self.side[c] / step,
+            _ => f64::INFINITY,
+        });
+        let most = room.fold(f64::INFINITY, f64::min);
+        let steps = ((most / seen).ln() / STEP.ln()).ceil().max(0.0) as i32;
+        let tried = (0..=steps).map(|k| (seen * STEP.powi(k)).min(most)).map(|share| (share, self.misfit(share)));
+        tried.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(1.0, |(best, _)| best)
+    }
+}
+
+impl View {
+    /// From where to where the line reaches at places across the window, if its color has `share` of the chain's.
+    fn bands(&self, share: f64) -> [[f64; 2]; PLACES] {
+        let reach = 0.5 * self.mass / share;
+        let at = |middle: f64, line: f64| -> [[f64; 2]; PLACES] {
+            core::array::from_fn(|place| {
+                let middle = middle + self.slope * (line + (place as f64 + 0.5) / PLACES as f64 - 0.5);
+                [middle - reach, middle + reach]
+            })
+        };
+        // What pixels say of the middle of a band is not quite where it is: by as much as they would be off here.
+        let told = |[from, to]: [f64; 2]| {
+            let (first, last) = (from.floor(), (to - 1.0).floor());
+            if last < first {
+                return first + 0.5;
+            }
+            // The pixels at both ends count by what is covered of them, those between as they are.
+            let (before, behind) = (first + 1.0 - from, to - last - 1.0);
+            let between = 0.5 * ((last + 1.0).powi(2) - (first + 1.0).powi(2));
+            (before * (first + 0.5) + between + behind * (last + 1.5)) / (to - from)
+        };
+        let mut middle = self.middle;
+        for _ in 0..MOST_STEPS {
+            let seen = MIDDLE.iter().enumerate().map(|(k, weight)| {
+                let bands = at(middle, (k as f64 - REACH as f64) * self.apart);
+                weight * bands.map(told).iter().sum::<f64>() / PLACES as f64
+            });
+            let off = self.middle - seen.sum::<f64>();
+            middle += off;
+            if off.abs() < NEAR {
+                break;
+            }
+        }
+        at(middle, 0.0)
+    }
+}
+
+/// Whether a window has one color on both sides, and one line in it.
+fn is_even(mark: &Mark) -> bool {
+    mark.cross.sides[0] == mark.cross.sides[1] && !mark.is_shared
+}
+
+impl Chain {
+    /// The palette's color of what it lies on.
+    fn ground(&self) -> Option<u16> {
+        self.marks.iter().find(|mark| is_even(mark)).map(|mark| mark.cross.sides[0])
+    }
+
+    /// Gives a chain a color, and its windows what they are in it.
+    fn give(&mut self, canvas: &Canvas<'_>, (index, color): (usize, Color), palette: &[Color]) {
+        for mark in &mut self.marks {
+            if let Some([center, width, _]) = canvas.measure(mark.along, &mark.cross, color, palette) {
+                mark.place(center, width);
+            }
+        }
+        self.colors = 1 << index;
+    }
+}
