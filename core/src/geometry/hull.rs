@@ -4,6 +4,7 @@ use alloc::vec::Vec;
 
 use super::Vec2;
 use crate::real::Real;
+use crate::sort;
 
 /// The corners of the convex hull, in the direction of a turn from +x toward +y (clockwise on a screen), without points
 /// on its sides; fewer than three if all points lie on a line, anything of points that are not finite.
@@ -18,8 +19,8 @@ use crate::real::Real;
 #[must_use]
 pub fn convex_hull<T: Real>(points: &[[T; 2]]) -> Vec<[T; 2]> {
     let mut sorted = points.to_vec();
-    let order = |a: T, b: T| a.as_f64().total_cmp(&b.as_f64());
-    sorted.sort_by(|a, b| order(a[0], b[0]).then_with(|| order(a[1], b[1])));
+    sort::ascending(&mut sorted, |point| point[1].as_f64());
+    sort::ascending(&mut sorted, |point| point[0].as_f64());
     sorted.dedup();
     if sorted.len() < 2 {
         return sorted;

@@ -12,7 +12,7 @@ use alloc::vec::Vec;
 
 use dvp_core::render::Compositing;
 use dvp_core::scene::Layer;
-use dvp_core::{Drawing, ImageSize, ImageView, Real, simd};
+use dvp_core::{Drawing, ImageSize, ImageView, Real, simd, sort};
 
 /// Where a row enters or leaves an object: its first pixel with a center beyond the crossing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -84,7 +84,7 @@ pub(crate) fn squared_errors<T: Real>(
 /// Indices by falling value.
 pub(crate) fn ranking(values: &[f64]) -> Vec<usize> {
     let mut ranked: Vec<usize> = (0..values.len()).collect();
-    ranked.sort_by(|&a, &b| values[b].total_cmp(&values[a]));
+    sort::descending(&mut ranked, |&k| values[k]);
     ranked
 }
 

@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 
 use dvp_core::shape::{OutlineBasis, SYMMETRY_TOLERANCE, ShapeError, Symmetry};
-use dvp_core::{Efd, ImageSize, Real};
+use dvp_core::{Efd, ImageSize, Real, sort};
 
 use super::equations::{Robustness, SampleLanes};
 use super::field::OutlineField;
@@ -123,7 +123,7 @@ pub(crate) fn search<T: Real>(
         }
     }
     // The best of the rough ones are worth all samples.
-    sort(out);
+    sort::ascending(out, |candidate| candidate.cost.as_f64());
     let Some(best) = out.first().map(|candidate| candidate.cost) else { return };
     let worth = if effort == Effort::Wide { T::of(0.4) } else { T::of(0.01) };
     out.retain(|candidate| candidate.cost <= T::of(8.0) * best + worth);
@@ -142,11 +142,7 @@ pub(crate) fn search<T: Real>(
         }
     }
     out.truncate(kept);
-    sort(out);
-}
-
-fn sort<T: Real>(candidates: &mut [Candidate<T>]) {
-    candidates.sort_by(|a, b| a.cost.partial_cmp(&b.cost).unwrap_or(core::cmp::Ordering::Equal));
+    sort::ascending(out, |candidate| candidate.cost.as_f64());
 }
 
 fn same<T: Real>(a: &Candidate<T>, b: &Candidate<T>) -> bool {

@@ -276,7 +276,7 @@ fn push<T: Real>(bank: &mut Bank<T>, name: String, form: &Form, upright: bool) {
 fn neighbor_distances(distances: &DistanceMatrix, rank: usize) -> Vec<f64> {
     let nearest = |i: usize| {
         let mut row = distances.row(i).to_vec();
-        row.sort_by(f64::total_cmp);
+        sort::ascending(&mut row, |&distance| distance);
         // The nearest of all is the thing itself.
         row.get(rank).copied().unwrap_or(f64::INFINITY)
     };
@@ -284,7 +284,5 @@ fn neighbor_distances(distances: &DistanceMatrix, rank: usize) -> Vec<f64> {
 }
 
 fn median(values: &[f64]) -> f64 {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    sorted.get(sorted.len() / 2).copied().unwrap_or(0.0)
+    sort::median_by(&mut values.to_vec(), |&value| value).unwrap_or(0.0)
 }

@@ -50,7 +50,7 @@ impl Body {
         }
         crossings.sort_unstable_by(f64::total_cmp);
         spans.extend(crossings.as_chunks().0);
-        spans.sort_unstable_by(|a, b| a[0].total_cmp(&b[0]));
+        sort::ascending(spans, |span| span[0]);
         spans.dedup_by(|next, span| {
             let meet = next[0] <= span[1];
             if meet {
@@ -117,7 +117,7 @@ pub(super) fn shared_regions(bodies: &[&Body], width: f64, height: f64) -> Share
             }
         }
         y += step;
-        events.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        sort::ascending(&mut events, |event| event.0);
         let mut inside = BTreeSet::new();
         for (here, next) in events.iter().zip(events.iter().skip(1)) {
             if !inside.remove(&here.1) {

@@ -124,8 +124,8 @@ impl Tip {
         let (of_end, last) = if at_finish { (&chain.marks[n - reach..], n - 1) } else { (&chain.marks[..reach], 0) };
         let [ground, other] = chain.marks[last].cross.sides;
         let mut widths: Vec<f64> = of_end.iter().map(|mark| mark.width / stretch).collect();
-        widths.sort_unstable_by(f64::total_cmp);
-        (ground == other).then_some(Self { at_finish, width: widths[widths.len() / 2], ground })
+        let width = sort::median_by(&mut widths, |&width| width)?;
+        (ground == other).then_some(Self { at_finish, width, ground })
     }
 
     /// The next window of the line that it shares with another one, or fills alone.

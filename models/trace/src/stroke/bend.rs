@@ -36,8 +36,8 @@ pub(super) fn round_corners(drawing: &Drawing, border: &Border) -> Option<Drawin
         // From the end, so that the numbers of the corners to come stay.
         for corner in (0..gaps.len()).rev() {
             let gaps = &mut gaps[corner];
-            gaps.sort_unstable_by(f64::total_cmp);
-            let Some(&gap) = gaps.first().filter(|_| gaps.len() >= LEAST_MARKS) else { continue };
+            let least = gaps.iter().copied().min_by(f64::total_cmp);
+            let Some(gap) = least.filter(|_| gaps.len() >= LEAST_MARKS) else { continue };
             if let Some(rounded) = (-gap > 2.0 * tuning::STROKE_OFFSET).then(|| rounded(line, corner, -gap)).flatten() {
                 *line = rounded;
                 is_changed = true;

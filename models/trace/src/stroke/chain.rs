@@ -3,8 +3,8 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use dvp_core::Vec2;
 use dvp_core::geometry::LineSegment;
+use dvp_core::{Vec2, sort};
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
@@ -131,7 +131,9 @@ fn passages(branches: &[Branch], node: &Node, width: f64) -> Vec<Passage> {
         .flat_map(|i| (i + 1..ends.len()).map(move |k| [i, k]))
         .map(|pair| Passage::new(branches, pair.map(|i| ends[i]), width))
         .collect();
-    all.sort_by(|a, b| b.is_straight.cmp(&a.is_straight).then(a.turn.total_cmp(&b.turn)));
+    // What turns least first, of what is straight and then of the rest.
+    sort::ascending(&mut all, |passage| passage.turn);
+    sort::descending(&mut all, |passage| f64::from(u8::from(passage.is_straight)));
     let mut taken: Vec<End> = Vec::new();
     all.retain(|passage| {
         let is_free = passage.ends.iter().all(|end| !taken.contains(end));

@@ -2,8 +2,8 @@
 
 use alloc::vec::Vec;
 
-use dvp_core::Vec2;
 use dvp_core::shape::{Cap, PathRing, Piece};
+use dvp_core::{Vec2, sort};
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
@@ -125,7 +125,7 @@ impl Line {
             (!is_covered).then(|| ((point - shape.point(t)).length(), piece, t))
         });
         let mut near: Vec<_> = near.filter(|near| near.0 < limit + half).collect();
-        near.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        sort::ascending(&mut near, |near| near.0);
         let &(distance, piece, t) = near.first()?;
         let body = Reading { gap: distance - half, foot: Foot::Body { piece, t }, next: f64::INFINITY };
         let other = |foot: Foot, reading: Reading| reading.against(gap(&self.pieces, foot, point, half), foot);
