@@ -9,6 +9,8 @@ use alloc::vec::Vec;
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
+use dvp_core::sort;
+
 use super::Color;
 use super::chain::{Chain, Mark, median};
 use super::cross::{Canvas, LONGEST};
@@ -66,21 +68,19 @@ struct Line<'a> {
     /// Its color, and the index of that in the list of colors.
     color: Color,
     index: usize,
-    /// Whether its windows tell that it has this one.
-    is_told: bool,
     /// The colors that its windows leave open, bits of the list.
     open: u128,
     /// How wide it is in this color, pixels.
     width: f64,
 }
 
-/// Gives chains the color that makes them smooth, where their own clearly does not. Windows of lines along the picture's axes, and of short ones, tell
-/// nothing: such a line has the color of one that shows as much, whose windows tell it, or else that which explains most lines that show as much. New
-/// colors are put last.
+/// Gives chains the color that makes them smooth, where their own clearly does not. Windows of lines along the picture's axes, and of short ones, leave
+/// several open: such a line has the color of one that shows as much, whose windows tell it, or else that which explains most lines that show as much.
+/// New colors are put last.
 #[inline(never)]
 pub(super) fn settle(canvas: &Canvas<'_>, chains: &mut [Vec<Chain>; 2], colors: &mut Vec<Color>, palette: &[Color]) {
     let mut chains: Vec<&mut Chain> = chains.iter_mut().flatten().collect();
-    dvp_core::sort::descending(&mut chains, |chain| chain.marks.len() as f64);
+    sort::descending(&mut chains, |chain| chain.marks.len() as f64);
     let mut lines: Vec<Line<'_>> = Vec::new();
     let mut bands = Vec::new();
     for chain in chains {
@@ -88,10 +88,14 @@ pub(super) fn settle(canvas: &Canvas<'_>, chains: &mut [Vec<Chain>; 2], colors: 
         let Some(ground) = chain.ground() else { continue };
         let (side, color, width) = (palette[ground as usize], colors[index], median(&chain.widths()));
         let band = Band::of(canvas, chain, ground, color, palette);
-        let mut line = Line { chain, side, color, index, is_told: false, open: u128::MAX, width };
-        if let Some(band) = &band {
-            line.smooth(band, colors);
-            line.chain.give(canvas, (line.index, line.color), palette);
+        let mut line = Line { chain, side, color, index, open: u128::MAX, width };
+        let is_smooth = |color: &Color| band.as_ref().is_none_or(|band| band.may_be_of(*color, tuning::LEAST_CONTRAST));
+        if let Some(band) = band.as_ref().filter(|_| !is_smooth(&color) && colors.len() < MOST) {
+            let index = colors.iter().position(is_smooth).unwrap_or(colors.len());
+            if index == colors.len() {
+                colors.push(mixed(band.side, band.color, band.best));
+            }
+            line.give(canvas, (index, colors[index]), palette);
         }
         lines.push(line);
         bands.push(band);
@@ -100,52 +104,50 @@ pub(super) fn settle(canvas: &Canvas<'_>, chains: &mut [Vec<Chain>; 2], colors: 
         let Some(band) = band else { continue };
         let bit = |(index, color): (usize, &Color)| u128::from(band.may_be_of(*color, canvas.noise)) << index;
         line.open = colors.iter().enumerate().map(bit).sum();
-        line.is_told = line.open.is_power_of_two();
     }
     for k in 0..lines.len() {
-        if lines[k].is_told {
-            continue;
-        }
-        let told = lines.iter().filter(|line| line.is_told && lines[k].shows_as_much(line, canvas.noise));
-        let told = told.map(|line| (line.index, line.color)).find(|&which| lines[k].may_have(canvas, which, palette));
-        let (index, color) = told.unwrap_or_else(|| {
-            let alike: Vec<&Line<'_>> =
-                lines.iter().filter(|line| lines[k].shows_as_much(line, canvas.noise)).collect();
-            let windows = |index: usize, color: Color| -> usize {
-                let explained = alike.iter().filter(|line| line.index == index || line.may_be_darker(index, color));
-                explained.map(|line| line.chain.marks.len()).sum()
-            };
-            let own = (lines[k].index, lines[k].color);
-            let mut best = (own, windows(own.0, own.1));
-            for line in &alike {
-                let explained = windows(line.index, line.color);
-                if explained > best.1 && lines[k].may_have(canvas, (line.index, line.color), palette) {
-                    best = ((line.index, line.color), explained);
-                }
-            }
-            best.0
-        });
-        if index != lines[k].index {
-            let line = &mut lines[k];
-            line.chain.give(canvas, (index, color), palette);
-            (line.index, line.color, line.width) = (index, color, median(&line.chain.widths()));
+        if let Some(color) = likelier(&lines, k, canvas, palette) {
+            lines[k].give(canvas, color, palette);
         }
     }
 }
 
+/// A color that is likelier for line `k` than its own, with the index of it, for what other lines have that show as much.
+fn likelier(lines: &[Line<'_>], k: usize, canvas: &Canvas<'_>, palette: &[Color]) -> Option<(usize, Color)> {
+    let line = &lines[k];
+    if line.is_told() {
+        return None;
+    }
+    let alike: Vec<&Line<'_>> = lines.iter().filter(|other| line.shows_as_much(other, canvas.noise)).collect();
+    let mut told = alike.iter().filter(|other| other.is_told()).map(|other| (other.index, other.color));
+    if let Some(color) = told.find(|&color| line.may_have(canvas, color, palette)) {
+        return Some(color);
+    }
+    let explained = |(index, color): (usize, Color)| -> usize {
+        let explained = alike.iter().filter(|other| other.index == index || other.may_be_darker(index, color));
+        explained.map(|other| other.chain.marks.len()).sum()
+    };
+    let own = explained((line.index, line.color));
+    let others = alike.iter().map(|other| (other.index, other.color)).map(|color| (explained(color), color));
+    let likelier = others.filter(|&(explained, color)| explained > own && line.may_have(canvas, color, palette));
+    likelier.rev().max_by_key(|&(explained, _)| explained).map(|(_, color)| color)
+}
+
 impl Line<'_> {
-    /// Gives the line a color that makes it smooth, if its own does not: one of those that there are, or a new one.
-    fn smooth(&mut self, band: &Band, colors: &mut Vec<Color>) {
-        let may_be_of = |color: &Color| band.may_be_of(*color, tuning::LEAST_CONTRAST);
-        if may_be_of(&self.color) || colors.len() == MOST {
-            return;
+    /// Gives the line a color, and its windows what they are in it.
+    fn give(&mut self, canvas: &Canvas<'_>, (index, color): (usize, Color), palette: &[Color]) {
+        for mark in &mut self.chain.marks {
+            if let Some([center, width, _]) = canvas.measure(mark.along, &mark.cross, color, palette) {
+                mark.place(center, width);
+            }
         }
-        let index = colors.iter().position(may_be_of).unwrap_or(colors.len());
-        if index == colors.len() {
-            colors.push(mixed(band.side, band.color, band.best));
-        }
-        (self.index, self.color) = (index, colors[index]);
-        self.width /= coverage(self.color, band.side, band.color);
+        self.chain.colors = 1 << index;
+        (self.index, self.color, self.width) = (index, color, median(&self.chain.widths()));
+    }
+
+    /// Whether its windows tell its color.
+    fn is_told(&self) -> bool {
+        self.open.is_power_of_two()
     }
 
     /// Whether it would be as wide as another line in the color of that.
@@ -156,7 +158,7 @@ impl Line<'_> {
 
     /// Whether its windows leave open that it has a color that is farther from what it lies on.
     fn may_be_darker(&self, index: usize, color: Color) -> bool {
-        !self.is_told && self.open >> index & 1 == 1 && distance(color, self.side) > distance(self.color, self.side)
+        self.open >> index & 1 == 1 && distance(color, self.side) > distance(self.color, self.side)
     }
 
     /// Whether a color explains all its windows, which do not tell another one.
@@ -322,15 +324,5 @@ impl Chain {
     /// The palette's color of what it lies on.
     fn ground(&self) -> Option<u16> {
         self.marks.iter().find(|mark| is_even(mark)).map(|mark| mark.cross.sides[0])
-    }
-
-    /// Gives a chain a color, and its windows what they are in it.
-    fn give(&mut self, canvas: &Canvas<'_>, (index, color): (usize, Color), palette: &[Color]) {
-        for mark in &mut self.marks {
-            if let Some([center, width, _]) = canvas.measure(mark.along, &mark.cross, color, palette) {
-                mark.place(center, width);
-            }
-        }
-        self.colors = 1 << index;
     }
 }
