@@ -30,9 +30,8 @@ const SQUARES: f64 = 28.0;
 const MOST_VIEWS: usize = 32;
 /// Places in a pixel's side at which a band is looked at.
 const PLACES: usize = 4;
-/// Steps to the middle of a band at most, and how near is near enough, pixels.
-const MOST_STEPS: usize = 12;
-const NEAR: f64 = 1e-3;
+/// How often the stretch that the middle of a band may lie in is halved, from a pixel on.
+const HALVINGS: usize = 10;
 /// How much darker one color is than the next that is tried.
 const STEP: f64 = 1.06;
 
@@ -58,6 +57,8 @@ struct Band {
     views: Vec<View>,
     /// The color that leaves least, as a share of the chain's.
     best: f64,
+    /// Whether all that leave about as little are like it.
+    is_told: bool,
 }
 
 /// What is known of the color of a line.
@@ -68,8 +69,9 @@ struct Line<'a> {
     /// Its color, and the index of that in the list of colors.
     color: Color,
     index: usize,
-    /// The colors that its windows leave open, bits of the list.
+    /// The colors that its windows leave open, bits of the list, and whether they tell which it is.
     open: u128,
+    is_told: bool,
     /// How wide it is in this color, pixels.
     width: f64,
 }
@@ -88,7 +90,7 @@ pub(super) fn settle(canvas: &Canvas<'_>, chains: &mut [Vec<Chain>; 2], colors: 
         let Some(ground) = chain.ground() else { continue };
         let (side, color, width) = (palette[ground as usize], colors[index], median(&chain.widths()));
         let band = Band::of(canvas, chain, ground, color, palette);
-        let mut line = Line { chain, side, color, index, open: u128::MAX, width };
+        let mut line = Line { chain, side, color, index, open: u128::MAX, is_told: false, width };
         let is_smooth = |color: &Color| band.as_ref().is_none_or(|band| band.may_be_of(*color, tuning::LEAST_CONTRAST));
         if let Some(band) = band.as_ref().filter(|_| !is_smooth(&color) && colors.len() < MOST) {
             let index = colors.iter().position(is_smooth).unwrap_or(colors.len());
@@ -104,6 +106,7 @@ pub(super) fn settle(canvas: &Canvas<'_>, chains: &mut [Vec<Chain>; 2], colors: 
         let Some(band) = band else { continue };
         let bit = |(index, color): (usize, &Color)| u128::from(band.may_be_of(*color, canvas.noise)) << index;
         line.open = colors.iter().enumerate().map(bit).sum();
+        line.is_told = band.is_told;
     }
     for k in 0..lines.len() {
         if let Some(color) = likelier(&lines, k, canvas, palette) {
@@ -115,11 +118,11 @@ pub(super) fn settle(canvas: &Canvas<'_>, chains: &mut [Vec<Chain>; 2], colors: 
 /// A color that is likelier for line `k` than its own, with the index of it, for what other lines have that show as much.
 fn likelier(lines: &[Line<'_>], k: usize, canvas: &Canvas<'_>, palette: &[Color]) -> Option<(usize, Color)> {
     let line = &lines[k];
-    if line.is_told() {
+    if line.is_told {
         return None;
     }
     let alike: Vec<&Line<'_>> = lines.iter().filter(|other| line.shows_as_much(other, canvas.noise)).collect();
-    let mut told = alike.iter().filter(|other| other.is_told()).map(|other| (other.index, other.color));
+    let mut told = alike.iter().filter(|other| other.is_told).map(|other| (other.index, other.color));
     if let Some(color) = told.find(|&color| line.may_have(canvas, color, palette)) {
         return Some(color);
     }
@@ -145,11 +148,6 @@ impl Line<'_> {
         (self.index, self.color, self.width) = (index, color, median(&self.chain.widths()));
     }
 
-    /// Whether its windows tell its color.
-    fn is_told(&self) -> bool {
-        self.open.is_power_of_two()
-    }
-
     /// Whether it would be as wide as another line in the color of that.
     fn shows_as_much(&self, other: &Line<'_>, noise: f64) -> bool {
         share_on_way(other.color, [self.side, self.color], noise)
@@ -158,7 +156,8 @@ impl Line<'_> {
 
     /// Whether its windows leave open that it has a color that is farther from what it lies on.
     fn may_be_darker(&self, index: usize, color: Color) -> bool {
-        self.open >> index & 1 == 1 && distance(color, self.side) > distance(self.color, self.side)
+        let is_open = !self.is_told && self.open >> index & 1 == 1;
+        is_open && distance(color, self.side) > distance(self.color, self.side)
     }
 
     /// Whether a color explains all its windows, which do not tell another one.
@@ -233,8 +232,9 @@ impl Band {
         if views.len() < tuning::SHADE_LEAST || views.iter().any(|view| view.mass <= 0.0) {
             return None;
         }
-        let band = Self { side: ground, color, views, best: 1.0 };
-        Some(Self { best: band.best(), ..band })
+        let mut band = Self { side: ground, color, views, best: 1.0, is_told: false };
+        band.tell();
+        Some(band)
     }
 
     /// Difference between the color and what it lies on.
@@ -259,12 +259,12 @@ impl Band {
 
     /// Whether a color, not farther than `noise` from the way between the two, makes the band about as smooth as one can.
     fn may_be_of(&self, color: Color, noise: f64) -> bool {
-        let most = tuning::SHADE_CLEARLY * self.misfit(self.best).max(tuning::SHADE_FLOOR);
+        let most = least_clear(self.misfit(self.best));
         share_on_way(color, [self.side, self.color], noise).is_some_and(|share| self.misfit(share) <= most)
     }
 
-    /// The color that leaves least, as a share of the chain's: between what is seen and what no channel can be beyond.
-    fn best(&self) -> f64 {
+    /// Looks for the color that leaves least: between what is seen and what no channel can be beyond.
+    fn tell(&mut self) {
         let seen = self.views.iter().flat_map(|view| view.shares).fold(0.0, f64::max);
         let room = (0..3).map(|c| match self.color[c] - self.side[c] {
             step if step > 0.0 => (1.0 - self.side[c]) / step,
@@ -274,8 +274,17 @@ impl Band {
         let most = room.fold(f64::INFINITY, f64::min);
         let steps = ((most / seen).ln() / STEP.ln()).ceil().max(0.0) as i32;
         let tried = (0..=steps).map(|k| (seen * STEP.powi(k)).min(most)).map(|share| (share, self.misfit(share)));
-        tried.min_by(|a, b| a.1.total_cmp(&b.1)).map_or(1.0, |(best, _)| best)
+        let tried: Vec<(f64, f64)> = tried.collect();
+        let Some(&(best, least)) = tried.iter().min_by(|a, b| a.1.total_cmp(&b.1)) else { return };
+        let is_other = |share: f64| (share / best - 1.0).abs() > tuning::THIN_TOLERANCE;
+        let is_told = tried.iter().all(|&(share, misfit)| !is_other(share) || misfit > least_clear(least));
+        (self.best, self.is_told) = (best, is_told);
     }
+}
+
+/// What leaves more than this leaves clearly more.
+fn least_clear(misfit: f64) -> f64 {
+    tuning::SHADE_CLEARLY * misfit.max(tuning::SHADE_FLOOR)
 }
 
 impl View {
@@ -299,19 +308,21 @@ impl View {
             let between = 0.5 * ((last + 1.0).powi(2) - (first + 1.0).powi(2));
             (before * (first + 0.5) + between + behind * (last + 1.5)) / (to - from)
         };
-        let mut middle = self.middle;
-        for _ in 0..MOST_STEPS {
-            let seen = MIDDLE.iter().enumerate().map(|(k, weight)| {
+        // It lies within a pixel of that, and what pixels say moves with it, if not as fast.
+        let [mut low, mut high] = [self.middle - 0.5, self.middle + 0.5];
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            let said = MIDDLE.iter().enumerate().map(|(k, weight)| {
                 let bands = at(middle, (k as f64 - REACH as f64) * self.apart);
                 weight * bands.map(told).iter().sum::<f64>() / PLACES as f64
             });
-            let off = self.middle - seen.sum::<f64>();
-            middle += off;
-            if off.abs() < NEAR {
-                break;
+            if said.sum::<f64>() < self.middle {
+                low = middle;
+            } else {
+                high = middle;
             }
         }
-        at(middle, 0.0)
+        at(0.5 * (low + high), 0.0)
     }
 }
 
