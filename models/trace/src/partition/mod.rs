@@ -1,9 +1,11 @@
 //! Pixels to faces: which color each pixel belongs to, and by how much.
 //!
 //! Every pixel is pure (of one face) or mixed (of two, rarely three, with shares). `flat` finds what is of one color beyond doubt,
-//! `palette` the colors, `seam` mends what renderers let through between things side by side, `thin` (windows of `cross`, colors of `ink`, joined
-//! by `chain`, and by `pair` where two lines fill a window; all `found` together) finds and `erase` takes out lines without a pixel of their own (`sliver` puts some back), `mix` explains every other pixel as a mixture of colors nearby, `faces`
-//! joins pixels to faces, but not across the corners of `checker`. `runs` are what all read instead of single pixels.
+//! `palette` the colors, `seam` mends what renderers let through between things side by side, `thin` (windows of `cross`, colors of `ink`
+//! and, where windows side by side tell better, of `shade`, joined by `chain`, and by `pair` where two lines fill a window; all `found`
+//! together) finds and `erase` takes out lines without a pixel of their own (`sliver` puts some back), `mix` explains every other pixel as
+//! a mixture of colors nearby, `faces` joins pixels to faces, but not across the corners of `checker`. `runs` are what all read instead
+//! of single pixels.
 
 mod chain;
 mod checker;
