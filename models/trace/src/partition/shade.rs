@@ -34,6 +34,8 @@ const PLACES: usize = 4;
 const HALVINGS: usize = 10;
 /// How much darker one color is than the next that is tried.
 const STEP: f64 = 1.06;
+/// Steps at most: as much darker as no picture of 8 bits tells.
+const MOST_TRIED: f64 = 128.0;
 
 /// A window with what its neighbors say of the line in it.
 struct View {
@@ -272,7 +274,7 @@ impl Band {
             _ => f64::INFINITY,
         });
         let most = room.fold(f64::INFINITY, f64::min);
-        let steps = ((most / seen).ln() / STEP.ln()).ceil().max(0.0) as i32;
+        let steps = ((most / seen).ln() / STEP.ln()).ceil().clamp(0.0, MOST_TRIED) as i32;
         let tried = (0..=steps).map(|k| (seen * STEP.powi(k)).min(most)).map(|share| (share, self.misfit(share)));
         let tried: Vec<(f64, f64)> = tried.collect();
         let Some(&(best, least)) = tried.iter().min_by(|a, b| a.1.total_cmp(&b.1)) else { return };

@@ -168,7 +168,7 @@ fn a_gap_thinner_than_a_pixel_is_no_line() {
     assert_eq!(found.objects.len(), 2, "{:?}", found.objects);
 }
 
-/// Strokes that were found, from that with the lowest top on: their color and width, pixels.
+/// Color and width, pixels, of the strokes that were found.
 fn pens(found: &dvp_core::Scene<f32>) -> Vec<([f32; 3], f64)> {
     let pen = |object: &dvp_core::Object<f32>| match &object.shape {
         AnyShape::Stroke(stroke) => {
