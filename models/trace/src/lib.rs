@@ -211,13 +211,14 @@ fn draw(read: Read, size: ImageSize, known: &Known) -> Result<Traced, NoDrawing>
     // Renderers that count few places in each pixel are as steep as those with a profile of their own.
     let stained = if wobble < -tuning::SURE_WOBBLE { stained.max(tuning::UNKNOWN_STAINED) } else { stained };
     let matte = known.matte.map(|matte| matte.map(f64::from));
-    let mut layers = layers::layers(&partition, &rings, matte);
+    let memo = layers::Memo::default();
+    let mut layers = layers::layers(&partition, &rings, matte, &memo);
     // What slivers are, lines that cross, and gaps, the shorter description tells.
     let with_slivers = core::iter::once(&partition).chain(&others).filter_map(Partition::with_slivers);
     let mut read = &partition;
     let others: Vec<Partition> = with_slivers.collect::<Vec<_>>().into_iter().chain(others).collect();
     for other in &others {
-        let of_other = layers::layers(other, &boundary::rings(other), matte);
+        let of_other = layers::layers(other, &boundary::rings(other), matte, &memo);
         // Stairs say less, and cost less, than edges that are known: they are the last thing to believe.
         let key = |read: &Partition, layers: &layers::Layers| (read.is_hard, layers.bits_of_things());
         if key(other, &of_other) < key(read, &layers) {

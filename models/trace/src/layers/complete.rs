@@ -1,8 +1,9 @@
 //! The outlines of what is painted together, in an order of painting.
 
 use alloc::collections::{BTreeMap, BTreeSet};
+use alloc::rc::Rc;
 use alloc::vec::Vec;
-use core::cell::RefCell;
+use core::cell::{Cell, RefCell};
 
 use dvp_core::Vec2;
 use dvp_core::shape::{PathRing, Segment};
@@ -22,9 +23,6 @@ use crate::tuning;
 
 /// By how much opposite sides of a parallelogram may differ, per length.
 const ALMOST: f64 = 0.02;
-
-/// The faces painted together, and those in front of them.
-type Place = (Vec<u32>, Vec<u32>);
 
 /// What outlines follow from.
 pub(super) struct Completion<'a> {
@@ -48,10 +46,37 @@ pub(super) struct Completion<'a> {
     pub(super) united: Vec<(u32, u32)>,
     /// Whether orders are searched for: then nothing is fitted any more once that has taken too long.
     pub(super) is_searching: bool,
-    /// Outlines that were found, by the faces painted together and those in front of them.
-    pub(super) known: RefCell<BTreeMap<Place, Completed>>,
+    /// Outlines that were found, by the faces painted together (ascending).
+    pub(super) known: RefCell<BTreeMap<Vec<u32>, Vec<Known>>>,
     /// Outlines that were fitted.
-    pub(super) memo: Memo,
+    pub(super) memo: &'a Memo,
+}
+
+/// Outlines, and what they depend on.
+pub(super) struct Known {
+    completed: Rc<Completed>,
+    /// The faces whose place was asked for, and whether they lay in front.
+    asked: BTreeMap<u32, bool>,
+    /// Whether they are a thing as people draw them, once that was asked.
+    is_whole: Cell<Option<bool>>,
+}
+
+/// Where faces are painted together, and which others it was asked of whether they lie in front.
+pub(super) struct Place<'a> {
+    pub(super) faces: &'a [u32],
+    /// Place of the hindmost of them in the order of painting.
+    pub(super) rank: usize,
+    rank_of: &'a [usize],
+    asked: RefCell<BTreeMap<u32, bool>>,
+}
+
+impl Place<'_> {
+    /// Whether a layer here may hide a face, which lies in front of it.
+    pub(super) fn is_behind(&self, face: u32) -> bool {
+        let is_behind = self.rank_of[face as usize] > self.rank;
+        self.asked.borrow_mut().insert(face, is_behind);
+        is_behind
+    }
 }
 
 /// Outlines, and bits of their numbers and misfits.
@@ -191,23 +216,50 @@ impl Completion<'_> {
     /// The outlines of faces that are painted together, at the place of the hindmost of them.
     ///
     /// What others hide may go anywhere, as long as it hides nothing itself: where it would, it goes along what hides it.
-    pub(super) fn outlines(&self, group: &[u32]) -> Completed {
-        let rank = self.hindmost(group);
-        let mut faces = group.to_vec();
-        faces.sort_unstable();
-        let is_in_front = |face: &u32| self.rank(*face) > rank && faces.binary_search(face).is_err();
-        let front = (0..self.rank.len() as u32).filter(is_in_front).collect();
-        let key = (faces, front);
-        if let Some(known) = self.known.borrow().get(&key) {
-            return known.clone();
+    pub(super) fn outlines(&self, group: &[u32]) -> Rc<Completed> {
+        if let Some(known) = self.known(group, |known| Rc::clone(&known.completed)) {
+            return known;
         }
         // What is being tried when that is spent may take as much again.
         if self.is_searching && self.is_spent_times(2) {
-            return Completed::unknown();
+            return Rc::new(Completed::unknown());
         }
-        let completed = self.completed(group, rank);
-        self.known.borrow_mut().insert(key, completed.clone());
+        let place = self.place(group);
+        for &other in group.iter().flat_map(|&face| &self.neighbors[face as usize]) {
+            place.is_behind(other);
+        }
+        let completed = Rc::new(self.completed(&place));
+        let known =
+            Known { completed: Rc::clone(&completed), asked: place.asked.into_inner(), is_whole: Cell::default() };
+        self.known.borrow_mut().entry(sorted(group)).or_default().push(known);
         completed
+    }
+
+    /// What was found of a group, if all that was asked for it is as it was.
+    fn known<T>(&self, group: &[u32], of: impl Fn(&Known) -> T) -> Option<T> {
+        let rank = self.hindmost(group);
+        let is_same =
+            |known: &&Known| known.asked.iter().all(|(&face, &is_behind)| is_behind == (self.rank(face) > rank));
+        self.known.borrow().get(&sorted(group))?.iter().rev().find(is_same).map(of)
+    }
+
+    /// Whether a group with these outlines is a thing as people draw them, which depends on what its outlines do: where those are known it is asked once.
+    pub(super) fn is_whole(&self, group: &[u32], completed: &Rc<Completed>, is_whole: impl Fn() -> bool) -> bool {
+        let of_these = |known: &Known| Rc::ptr_eq(&known.completed, completed).then(|| known.is_whole.get());
+        match self.known(group, of_these).flatten() {
+            Some(Some(known)) => known,
+            Some(None) => {
+                let is_whole = is_whole();
+                self.known(group, |known| known.is_whole.set(Some(is_whole)));
+                is_whole
+            }
+            None => is_whole(),
+        }
+    }
+
+    /// Where a group is painted.
+    pub(super) fn place<'b>(&'b self, faces: &'b [u32]) -> Place<'b> {
+        Place { faces, rank: self.hindmost(faces), rank_of: &self.rank, asked: RefCell::default() }
     }
 
     /// The boundaries of a group at place `rank`.
@@ -219,24 +271,17 @@ impl Completion<'_> {
         rings.map(|ring| Walk::new(ring, ring.steps.iter().map(hidden).collect())).collect()
     }
 
-    /// Whether a layer of the faces `group` at place `rank` must show a face, must not hide it, or may (none).
-    pub(super) fn wanted(&self, face: u32, group: &[u32], rank: usize) -> Option<bool> {
-        let is_own = group.contains(&face);
-        (is_own || self.rank(face) <= rank).then_some(is_own)
-    }
-
     /// Whether what was completed still covers what it should and hides nothing; what the order did not change since is as it was.
-    pub(super) fn holds(&self, group: &[u32], completed: &Completed) -> bool {
-        let rank = self.hindmost(group);
+    pub(super) fn holds(&self, group: &[u32], completed: &Rc<Completed>) -> bool {
         !completed.agrees
             || completed.outlines.is_empty()
-            || self.check(&completed.outlines, |face| self.wanted(face, group, rank)).is_ok()
+            || self.known(group, |known| Rc::ptr_eq(&known.completed, completed)) == Some(true)
+            || self.shows_only(group, completed)
     }
 
     /// Whether outlines cover what they should, and nothing else.
     pub(super) fn shows_only(&self, group: &[u32], completed: &Completed) -> bool {
-        let rank = self.hindmost(group);
-        self.check(&completed.outlines, |face| self.wanted(face, group, rank)).is_ok()
+        self.check(&completed.outlines, &self.place(group)).is_ok()
     }
 
     pub(super) fn hindmost(&self, faces: &[u32]) -> usize {
@@ -258,14 +303,21 @@ impl Completion<'_> {
         }
     }
 
-    pub(super) fn check(
-        &self,
-        outlines: &[Outline],
-        wanted: impl Fn(u32) -> Option<bool>,
-    ) -> Result<(), Vec<[usize; 2]>> {
+    /// Whether outlines cover all of the faces of a place and hide nothing; else the pixels that are wrong.
+    pub(super) fn check(&self, outlines: &[Outline], place: &Place<'_>) -> Result<(), Vec<[usize; 2]>> {
         let polygons: Vec<Vec<[f64; 2]>> = outlines.iter().filter_map(raster::polygon).collect();
-        if polygons.is_empty() { Err(Vec::new()) } else { raster::check(self.partition, &polygons, wanted) }
+        if polygons.is_empty() {
+            return Err(Vec::new());
+        }
+        raster::check(self.partition, &polygons, place.faces, |face| !place.is_behind(face))
     }
+}
+
+/// Faces, ascending.
+fn sorted(faces: &[u32]) -> Vec<u32> {
+    let mut faces = faces.to_vec();
+    faces.sort_unstable();
+    faces
 }
 
 /// Whether a ring is four straight lines, opposite ones about equal.

@@ -1,6 +1,7 @@
 //! Faces of one color that are one thing behind another, where that is the shorter description.
 
 use alloc::collections::{BTreeMap, BTreeSet};
+use alloc::rc::Rc;
 use alloc::vec;
 use alloc::vec::Vec;
 
@@ -40,7 +41,7 @@ pub(super) fn painted(completion: &mut Completion<'_>) -> Vec<Group> {
             // One thing they still are, in outlines of their own.
             let alone = |&face: &u32| completion.outlines(&[face]);
             let apart = again.faces.iter().map(alone).fold(Completed::none(), |all, part| all.with(&part));
-            painted.push((rank, Group { faces: again.faces, completed: apart }));
+            painted.push((rank, Group { faces: again.faces, completed: Rc::new(apart) }));
         }
     }
     sort::ascending(&mut painted, |&(rank, _)| rank as f64);
@@ -58,13 +59,13 @@ pub(super) fn total(completion: &mut Completion<'_>) -> f64 {
 /// Faces that are painted together, with their outlines (none for what a pen draws).
 pub(super) struct Group {
     pub(super) faces: Vec<u32>,
-    pub(super) completed: Completed,
+    pub(super) completed: Rc<Completed>,
 }
 
 impl Group {
     fn of(completion: &Completion<'_>, faces: Vec<u32>) -> Self {
         let completed = match completion.pen(&faces) {
-            Some(pen) => Completed { bits: pen.bits + pen.misfit, ..Completed::none() },
+            Some(pen) => Rc::new(Completed { bits: pen.bits + pen.misfit, ..Completed::none() }),
             None => completion.outlines(&faces),
         };
         Self { faces, completed }
@@ -74,8 +75,13 @@ impl Group {
     fn is_whole(&self, completion: &Completion<'_>) -> bool {
         let is_whole = match completion.pen(&self.faces) {
             // What a pen has drawn is whole if its ends are seen.
-            Some(_) => self.is_all_seen(&completion.outlines(&self.faces), completion),
-            None => self.completed.is_whole() || self.is_all_seen(&self.completed, completion),
+            Some(_) => {
+                let completed = completion.outlines(&self.faces);
+                completion.is_whole(&self.faces, &completed, || self.is_all_seen(&completed, completion))
+            }
+            None => completion.is_whole(&self.faces, &self.completed, || {
+                self.completed.is_whole() || self.is_all_seen(&self.completed, completion)
+            }),
         };
         is_whole && !self.faces.iter().all(|&face| completion.is_small(face))
     }
@@ -109,7 +115,7 @@ impl Group {
             let next = polygon.iter().cycle().skip(1);
             polygon.iter().zip(next).all(|(&from, &to)| is_seen(from.into(), to.into()))
         });
-        all_seen && raster::check(completion.partition, &polygons, |face| Some(self.faces.contains(&face))).is_ok()
+        all_seen && raster::check(completion.partition, &polygons, &self.faces, |_| true).is_ok()
     }
 
     /// Both as one, at the place of the hindmost in the order, with the bits that are saved; none if that is no shorter.
@@ -143,7 +149,8 @@ impl Group {
             return None;
         }
         // What no outline through both explains is one thing in two outlines.
-        let joined = if has_pen || completed.agrees && completed.bits <= apart.bits { completed } else { apart };
+        let joined =
+            if has_pen || completed.agrees && completed.bits <= apart.bits { completed } else { Rc::new(apart) };
         let saved = alone - joined.bits;
         (saved > tuning::LEAST_SAVED).then_some((saved, Self { faces, completed: joined }))
     }
@@ -202,7 +209,7 @@ fn together(completion: &mut Completion<'_>, groups: Vec<Group>) -> Vec<Group> {
         return vec![Group { faces, completed }];
     }
     if !are_whole {
-        return vec![Group { faces, completed: apart }];
+        return vec![Group { faces, completed: Rc::new(apart) }];
     }
     for (&face, rank) in faces.iter().zip(ranks) {
         completion.rank[face as usize] = rank;

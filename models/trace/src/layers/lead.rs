@@ -9,7 +9,7 @@ use dvp_core::shape::PathRing;
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
-use super::complete::{Completed, Completion};
+use super::complete::{Completed, Completion, Place};
 use super::walk::{self, Walk};
 use super::{link, raster, sheet, visible};
 use crate::boundary::Ring;
@@ -41,18 +41,19 @@ struct Wrong {
 }
 
 impl Completion<'_> {
-    /// [`Completion::outlines`] of a group at place `rank` that was not asked for before.
-    pub(super) fn completed(&self, group: &[u32], rank: usize) -> Completed {
-        let wanted = |label: u32| self.wanted(label, group, rank);
+    /// [`Completion::outlines`] of a group that was not asked for at a place like this before.
+    pub(super) fn completed(&self, place: &Place<'_>) -> Completed {
+        let (group, rank) = (place.faces, place.rank);
         let samples = walk::samples(&self.walks(group, rank));
         // What is not hidden has no boundary but its own.
-        let is_seen = |at: Vec2<f64>| self.pure_face(at).is_some_and(|face| wanted(face).is_some());
+        let is_seen =
+            |at: Vec2<f64>| self.pure_face(at).is_some_and(|face| group.contains(&face) || !place.is_behind(face));
         let most = if group.len() > 1 { MOST_LINKED } else { 1 };
         let linked = link::relinked(&samples, is_seen, most).into_iter().map(|samples| self.framed(&samples));
-        let agrees = |completed: &Completed| self.check(&completed.outlines, wanted).is_ok();
+        let agrees = |completed: &Completed| self.check(&completed.outlines, place).is_ok();
         let mut found = shortest(linked.filter(agrees));
         let walked = self.fit(&samples);
-        let pixels = match self.check(&walked.outlines, wanted) {
+        let pixels = match self.check(&walked.outlines, place) {
             Ok(()) => return found.filter(|linked| linked.bits <= walked.bits).unwrap_or(walked),
             Err(pixels) => pixels,
         };
@@ -64,7 +65,7 @@ impl Completion<'_> {
         // not in pictures with long boundaries, where few of those that fail do so for want of a short side.
         let ways: &[bool] = if self.has_time() { &[false, true] } else { &[false] };
         for &fills in ways {
-            if let Some(led) = self.led(self.walks(group, rank), pixels.clone(), fills, wanted) {
+            if let Some(led) = self.led(self.walks(group, rank), pixels.clone(), fills, place) {
                 found = shortest(found.into_iter().chain(led.found));
                 wrong.extend(led.wrong);
                 walks = led.walks;
@@ -73,7 +74,7 @@ impl Completion<'_> {
                 break;
             }
         }
-        found.unwrap_or_else(|| self.cheapest(walks, wrong, wanted))
+        found.unwrap_or_else(|| self.cheapest(walks, wrong, place))
     }
 
     /// Outlines that are led around what they must not hide, from those on that get `pixels` wrong; none where nothing is to be filled though it
@@ -83,7 +84,7 @@ impl Completion<'_> {
         mut walks: Vec<Walk<'a>>,
         mut pixels: Vec<[usize; 2]>,
         fills: bool,
-        wanted: impl Fn(u32) -> Option<bool> + Copy,
+        place: &Place<'_>,
     ) -> Option<Led<'a>> {
         let mut is_filled = fills && walk::fill(&mut walks, &pixels);
         if fills && !is_filled {
@@ -98,7 +99,7 @@ impl Completion<'_> {
                 break;
             }
             let completed = self.fit(&walk::samples(&walks));
-            match self.check(&completed.outlines, wanted) {
+            match self.check(&completed.outlines, place) {
                 Ok(()) => return Some(Led { walks, found: Some(completed), wrong }),
                 Err(still) => pixels.clone_from(&still),
             }
@@ -109,12 +110,7 @@ impl Completion<'_> {
     }
 
     /// The cheapest of outlines of which none agrees, with what their wrong pixels cost, and of polygons through the samples themselves.
-    fn cheapest(
-        &self,
-        mut walks: Vec<Walk<'_>>,
-        wrong: Vec<Wrong>,
-        wanted: impl Fn(u32) -> Option<bool> + Copy,
-    ) -> Completed {
+    fn cheapest(&self, mut walks: Vec<Walk<'_>>, wrong: Vec<Wrong>, place: &Place<'_>) -> Completed {
         walks.retain(|walk| !walk.is_filled);
         let traced = Completed::new(walks.iter().map(|walk| self.traced(walk.ring)).collect(), false);
         // Of many boundaries most are right as they are.
@@ -124,20 +120,19 @@ impl Completion<'_> {
             false => self.memo.fit_closed(&walk.samples(), &self.ruler),
         });
         let parts = Completed::new(parts.collect(), false);
-        let parts = self.check(&parts.outlines, wanted).is_ok().then_some(parts);
-        let priced = wrong.into_iter().map(|wrong| self.priced(wrong, wanted)).chain(parts);
+        let parts = self.check(&parts.outlines, place).is_ok().then_some(parts);
+        let priced = wrong.into_iter().map(|wrong| self.priced(wrong, place.faces)).chain(parts);
         priced.fold(traced, |best, other| if other.bits < best.bits { other } else { best })
     }
 
     /// Outlines that get pixels wrong, with what these cost: where colors are alike, or a coder has changed them, less than the corners of a
     /// polygon that gets them right.
-    fn priced(&self, Wrong { completed, pixels: wrong }: Wrong, wanted: impl Fn(u32) -> Option<bool>) -> Completed {
+    fn priced(&self, Wrong { completed, pixels: wrong }: Wrong, own: &[u32]) -> Completed {
         let mut pixels: BTreeMap<u32, usize> = BTreeMap::new();
         wrong.iter().for_each(|&at| *pixels.entry(self.partition.face_at(at)).or_default() += 1);
-        let own: Vec<u32> = (0..self.rank.len() as u32).filter(|&face| wanted(face) == Some(true)).collect();
         let chi2 = |(&face, &count): (&u32, &usize)| {
             // What else may be shown where its own face is missed is not known: the worst of what is beside.
-            let shown = if own.contains(&face) { &self.neighbors[face as usize] } else { &own };
+            let shown = if own.contains(&face) { &self.neighbors[face as usize][..] } else { own };
             let color = self.partition.color(face);
             let contrast2 = |other: &u32| (0..3).map(|c| (self.partition.color(*other)[c] - color[c]).powi(2)).sum();
             count as f64 * shown.iter().map(contrast2).fold(0.0, f64::max) / self.partition.sigma.powi(2)

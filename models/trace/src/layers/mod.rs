@@ -49,7 +49,7 @@ use crate::stroke::fit_thin;
 use crate::tuning;
 use complete::Completion;
 use edge_to_edge::EdgeToEdge;
-use memo::Memo;
+pub(crate) use memo::Memo;
 use order::Order;
 pub(crate) use raster::polygon;
 
@@ -98,13 +98,13 @@ impl Layers {
     }
 }
 
-/// The layers of a picture. `matte`: the color of what shows nothing, if the picture has such.
+/// The layers of a reading of a picture. `matte`: the color of what shows nothing, if the picture has such; `memo`: outlines of other readings of it.
 #[must_use]
-pub fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<Color>) -> Layers {
+pub(crate) fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<Color>, memo: &Memo) -> Layers {
     let ruler = Ruler { extent: partition.size[0].max(partition.size[1]) as f64 };
     let background = background(partition, rings, matte.map(|matte| partition.as_palette(matte)));
-    let memo = Memo::default();
-    let mut pens = pen::find(partition, rings, background, &ruler, &memo);
+    memo.begin();
+    let mut pens = pen::find(partition, rings, background, &ruler, memo);
     let edge_to_edge = EdgeToEdge::of(partition, rings);
     let order = Order::of(partition, rings, background, matte.is_some(), &mut pens, &edge_to_edge.votes);
     let rank = order.rank.clone();
@@ -128,7 +128,7 @@ pub fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<Color>) 
     let mut layers = Vec::new();
     let mut groups = join::painted(&mut completion);
     repeat::repeat(&mut completion, &mut groups);
-    for join::Group { faces: group, completed: complete::Completed { outlines, .. } } in groups {
+    for join::Group { faces: group, completed } in groups {
         let color = partition.rgb(partition.color(group[0]));
         match completion.pen(&group) {
             Some(pen) => {
@@ -141,6 +141,7 @@ pub fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<Color>) 
                 }));
             }
             None => {
+                let outlines = completed.outlines.clone();
                 let bits = outlines.iter().map(|outline| outline.bits + outline.misfit).sum();
                 layers.push(Layer { color, form: Form::Filled(outlines), faces: group, bits });
             }

@@ -27,18 +27,20 @@ pub(super) fn is_nothing(outline: &Outline) -> bool {
     polygon(outline).is_none_or(|points| signed_area(&points).abs() < 1.0 / 255.0)
 }
 
-/// Whether what polygons (pixels, even-odd) cover is what they should cover, but for few pixels: of all pixels that are `wanted`
-/// (Some(true)), and of every face that is not (Some(false)), however small it is. Mixed pixels count for nothing. Else the pixels
+/// Whether what polygons (pixels, even-odd) cover is what they should cover, but for few pixels: of all pixels of their `own` faces, and of none of
+/// any face, however small it is, that must stay seen (`is_seen`, asked of those that are covered). Mixed pixels count for nothing. Else the pixels
 /// [column, row] that are wrong.
 pub(super) fn check(
     partition: &Partition,
     polygons: &[Vec<[f64; 2]>],
-    wanted: impl Fn(u32) -> Option<bool>,
+    own: &[u32],
+    is_seen: impl Fn(u32) -> bool,
 ) -> Result<(), Vec<[usize; 2]>> {
     let width = partition.size[0];
-    // Of every face once: pixels are many.
-    let wanted: Vec<Option<bool>> = (0..partition.faces.len() as u32).map(wanted).collect();
-    let [columns, rows] = reach(partition, polygons, &wanted);
+    let mut wanted = vec![Wanted::NotAsked; partition.faces.len()];
+    own.iter().for_each(|&face| wanted[face as usize] = Wanted::Own);
+    let own = || own.iter().map(|&face| &partition.faces[face as usize]);
+    let [columns, rows] = reach(partition, polygons, own());
     let mut wrong = Vec::new();
     let mut missed = 0;
     let mut hidden: BTreeMap<u32, usize> = BTreeMap::new();
@@ -53,9 +55,14 @@ pub(super) fn check(
                 crossed += 1;
             }
             let i = y * width + x;
-            let is_missed = match (wanted.get(partition.labels[i] as usize), crossed % 2 == 1) {
-                (Some(Some(true)), false) => true,
-                (Some(Some(false)), true) => false,
+            let (label, is_covered) = (partition.labels[i], crossed % 2 == 1);
+            let Some(wanted) = wanted.get_mut(label as usize) else { continue };
+            if is_covered && *wanted == Wanted::NotAsked {
+                *wanted = if is_seen(label) { Wanted::Seen } else { Wanted::Any };
+            }
+            let is_missed = match (*wanted, is_covered) {
+                (Wanted::Own, false) => true,
+                (Wanted::Seen, true) => false,
                 _ => continue,
             };
             if partition.shares[i] < tuning::PURE_SHARE {
@@ -68,7 +75,7 @@ pub(super) fn check(
             if is_missed {
                 missed += 1;
             } else {
-                *hidden.entry(partition.labels[i]).or_default() += 1;
+                *hidden.entry(label).or_default() += 1;
             }
             wrong.push([x, y]);
         }
@@ -76,7 +83,7 @@ pub(super) fn check(
     let few = |count: usize, area: usize| {
         (count as f64) <= (tuning::MOST_WRONG * area as f64).clamp(1.0, tuning::MOST_WRONG_PIXELS)
     };
-    let area = own(partition, &wanted).map(|face| face.area).sum::<usize>();
+    let area = own().map(|face| face.area).sum::<usize>();
     let agrees =
         few(missed, area) && hidden.iter().all(|(&face, &count)| few(count, partition.faces[face as usize].area));
     if agrees { Ok(()) } else { Err(wrong) }
@@ -107,15 +114,27 @@ fn is_at_edge(partition: &Partition, [x, y]: [usize; 2]) -> bool {
     beside.into_iter().map(|at| partition.face_at(at)).any(|face| face != own && face != OUTSIDE)
 }
 
-/// The faces that are wanted.
-fn own<'a>(partition: &'a Partition, wanted: &'a [Option<bool>]) -> impl Iterator<Item = &'a Face> {
-    partition.faces.iter().zip(wanted).filter(|&(_, &wanted)| wanted == Some(true)).map(|(face, _)| face)
+/// What a layer should show of a face.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Wanted {
+    NotAsked,
+    /// All of it.
+    Own,
+    /// Nothing: it must stay seen.
+    Seen,
+    /// Whatever is easiest, since something else hides it.
+    Any,
 }
 
-/// The columns and rows that the polygons, or faces that are wanted, reach.
-fn reach(partition: &Partition, polygons: &[Vec<[f64; 2]>], wanted: &[Option<bool>]) -> [Range<usize>; 2] {
+/// The columns and rows that the polygons, or their own faces, reach.
+fn reach<'a>(
+    partition: &Partition,
+    polygons: &[Vec<[f64; 2]>],
+    own: impl Iterator<Item = &'a Face> + Clone,
+) -> [Range<usize>; 2] {
     [0, 1].map(|axis| {
-        let (mut low, mut high) = own(partition, wanted)
+        let (mut low, mut high) = own
+            .clone()
             .fold((usize::MAX, 0), |(low, high), face| (low.min(face.bounds[axis]), high.max(face.bounds[axis + 2])));
         for point in polygons.iter().flatten() {
             let at = point[axis].max(0.0) as usize;

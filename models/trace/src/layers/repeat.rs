@@ -5,6 +5,7 @@
 //! covers what it should and three numbers in place of an outline are the shorter description. Things may be upside down or mirrored, but are
 //! not turned.
 
+use alloc::rc::Rc;
 use alloc::vec::Vec;
 
 use dvp_core::Vec2;
@@ -55,7 +56,7 @@ pub(super) fn repeat(completion: &mut Completion<'_>, groups: &mut Vec<Group>) {
     unite(completion, groups);
     for at in 0..groups.len() {
         if let Some(found) = best(completion, groups, &groups[at].faces, groups[at].completed.bits, &[at]) {
-            groups[at].completed = found;
+            groups[at].completed = Rc::new(found);
         }
     }
     let painted_ground = |at: &usize| completion.shows_background(groups[*at].faces[0]);
@@ -100,7 +101,7 @@ fn unite(completion: &mut Completion<'_>, groups: &mut Vec<Group>) {
         };
         let united = best(completion, groups, &faces, apart - tuning::THING_BITS, &of_color);
         if let Some(completed) = united.filter(|_| is_seen(completion)) {
-            groups[first] = Group { faces, completed };
+            groups[first] = Group { faces, completed: Rc::new(completed) };
             of_color[1..].iter().rev().for_each(|&at| drop(groups.remove(at)));
         } else {
             faces.iter().zip(ranks).for_each(|(&face, rank)| completion.rank[face as usize] = rank);
@@ -110,7 +111,8 @@ fn unite(completion: &mut Completion<'_>, groups: &mut Vec<Group>) {
 
 /// The outlines of another thing, moved, that faces are described by in less than `most` bits; `own`: the things that they are now.
 fn best(completion: &Completion<'_>, groups: &[Group], faces: &[u32], most: f64, own: &[usize]) -> Option<Completed> {
-    let rank = completion.hindmost(faces);
+    let place = completion.place(faces);
+    let rank = place.rank;
     let mut walks = completion.walks(faces, rank);
     walks.retain(|walk| !walk.is_filled);
     let is_hidden = walks.iter().any(|walk| walk.hidden.contains(&Some(Hidden::Free)));
@@ -122,7 +124,7 @@ fn best(completion: &Completion<'_>, groups: &[Group], faces: &[u32], most: f64,
     let stretches = stretches(&runs);
     let samples: Vec<Sample> = runs.into_iter().flatten().copied().collect();
     let mut best: Option<Completed> = None;
-    let others = (0..groups.len()).filter(|at| !own.contains(at)).map(|at| &groups[at].completed);
+    let others = (0..groups.len()).filter(|at| !own.contains(at)).map(|at| &*groups[at].completed);
     let agreeing = others.filter(|template| !template.outlines.is_empty() && template.agrees);
     let with_edges = agreeing.map(|template| {
         let polygons = template.outlines.iter().filter_map(raster::polygon);
@@ -158,7 +160,7 @@ fn best(completion: &Completion<'_>, groups: &[Group], faces: &[u32], most: f64,
             covariance: Vec::new(),
         };
         let outlines: Vec<Outline> = template.outlines.iter().map(moved).collect();
-        if completion.check(&outlines, |face| completion.wanted(face, faces, rank)).is_ok() {
+        if completion.check(&outlines, &place).is_ok() {
             best = Some(Completed::new(outlines, true));
         }
     }

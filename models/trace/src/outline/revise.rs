@@ -13,7 +13,7 @@ use super::cubic;
 use super::figure::as_f64;
 use super::gauge::Gauge;
 use super::solve::{Fitted, samples_of, spoiled_chi2};
-use super::ties::tie;
+use super::ties::{saved, tie};
 use super::track::Track;
 use crate::ruler::Ruler;
 use crate::tuning;
@@ -92,27 +92,39 @@ impl Reviser<'_> {
     fn shorter(&self, part: &Chain, others: impl IntoIterator<Item = Chain>) -> Option<Chain> {
         let mut others = others.into_iter().peekable();
         others.peek()?;
-        let (_, limit) = self.bits(part.clone(), f64::INFINITY)?;
-        let mut best = (None, limit - tuning::OUTLINE_PIECE_BITS);
+        // As a part of the whole chain it is nearly as its samples want it: others that are no shorter than that are not asked for more.
+        let as_it_is = Fitted::as_it_is(part.clone(), self.track, self.ruler)?;
+        let mut most = self.bits(&as_it_is) - tuning::OUTLINE_PIECE_BITS;
+        let mut best = None;
         for other in others {
-            if let Some((chain, bits)) = self.bits(other, best.1) {
-                best = (Some(chain), bits);
+            let fitted = Fitted::of(other, self.track, self.ruler, &[]);
+            let Some(fitted) = fitted.filter(|fitted| self.bits(fitted) < most) else { continue };
+            let (chain, bits) = self.tied(fitted);
+            if bits < most {
+                (best, most) = (Some(chain), bits);
             }
         }
-        best.0
+        let best = best?;
+        let own = Fitted::of(part.clone(), self.track, self.ruler, &[])?;
+        (most < self.tied(own).1 - tuning::OUTLINE_PIECE_BITS).then_some(best)
     }
 
-    /// The chain as the samples want it, and its bits; none if they are not fewer than `most`.
-    fn bits(&self, chain: Chain, most: f64) -> Option<(Chain, f64)> {
-        let fitted = Fitted::of(chain, self.track, self.ruler, &[])?;
-        let pieces = tuning::OUTLINE_PIECE_BITS * as_f64(fitted.chain.curves.len());
-        // Ties spare numbers, but make no chain come nearer.
-        if fitted.misfit(self.ruler) + pieces >= most {
-            return None;
-        }
+    /// Bits of a chain, were ties to come at no misfit.
+    fn bits(&self, fitted: &Fitted) -> f64 {
+        let numbers = fitted.number_bits(self.ruler) - saved(fitted, self.ruler);
+        fitted.misfit(self.ruler) + numbers + self.piece_bits(&fitted.chain)
+    }
+
+    /// A chain with its ties, and its bits.
+    fn tied(&self, fitted: Fitted) -> (Chain, f64) {
         let tied = tie(fitted, self.track, self.ruler);
-        let bits = tied.fitted.misfit(self.ruler) + tied.number_bits + pieces;
-        (bits < most).then_some((tied.fitted.chain, bits))
+        let bits = tied.fitted.misfit(self.ruler) + tied.number_bits + self.piece_bits(&tied.fitted.chain);
+        (tied.fitted.chain, bits)
+    }
+
+    /// What a chain costs for its pieces alone.
+    fn piece_bits(&self, chain: &Chain) -> f64 {
+        tuning::OUTLINE_PIECE_BITS * as_f64(chain.curves.len())
     }
 
     /// A line or an arc in place of a curve of more numbers.
@@ -234,7 +246,7 @@ impl Reviser<'_> {
         two.firsts[2] = usize::midpoint(two.firsts[1], two.firsts[2]);
         two.firsts.remove(1);
         // It is made better by a fit, but not by that much.
-        let misfit = self.ruler.misfit(Fitted::chi2_of(two.clone(), self.track)?);
+        let misfit = Fitted::as_it_is(two.clone(), self.track, self.ruler)?.misfit(self.ruler);
         (misfit < 20.0 * self.ruler.number(self.track.sigma)).then_some(two)
     }
 }

@@ -6,7 +6,7 @@ use core::ops::Range;
 use num_traits::Float as _;
 
 use super::chain::{Chain, Curve};
-use super::equations::Problem;
+use super::equations::{Equations, Problem};
 use super::skyline::Skyline;
 use super::ties::Tie;
 use super::track::Track;
@@ -35,7 +35,7 @@ impl Fitted {
     /// The chain of these curves, with `ties` held, that misses the samples least; none if nothing can be computed.
     pub(super) fn of(mut chain: Chain, track: &Track, ruler: &Ruler, ties: &[(Tie, f64)]) -> Option<Self> {
         let mut problem = Problem::new(&chain, track, ties);
-        let ridge = ruler.extent.max(1.0).powi(-2);
+        let ridge = ridge(ruler);
         let mut now = problem.room(&chain);
         let (mut then, mut factor) = (now.clone(), now.normal.clone());
         problem.assign(&mut chain);
@@ -71,21 +71,27 @@ impl Fitted {
                 break;
             }
         }
-        // Damping only where rounding makes the equations indefinite.
-        [0.0, 1e-9, 1e-6].into_iter().find_map(|damping| {
-            factor.clone_from(&now.normal);
-            factor.factorize(damping, ridge)
-        })?;
-        Some(Self { chain, chi2: now.chi2, factor })
+        Self::at(chain, &now, factor, ridge)
     }
 
-    /// Sum of squared misfits of a chain as it is, without fitting.
-    pub(super) fn chi2_of(mut chain: Chain, track: &Track) -> Option<f64> {
+    /// A chain as it is, without fitting.
+    pub(super) fn as_it_is(mut chain: Chain, track: &Track, ruler: &Ruler) -> Option<Self> {
         let mut problem = Problem::new(&chain, track, &[]);
         let mut equations = problem.room(&chain);
         problem.assign(&mut chain);
         problem.write(&mut chain, &mut equations)?;
-        Some(equations.chi2)
+        let room = equations.normal.clone();
+        Self::at(chain, &equations, room, ridge(ruler))
+    }
+
+    /// A chain with its equations, for which there is `room` to factorize them.
+    fn at(chain: Chain, equations: &Equations, mut factor: Skyline, ridge: f64) -> Option<Self> {
+        // Damping only where rounding makes the equations indefinite.
+        [0.0, 1e-9, 1e-6].into_iter().find_map(|damping| {
+            factor.clone_from(&equations.normal);
+            factor.factorize(damping, ridge)
+        })?;
+        Some(Self { chain, chi2: equations.chi2, factor })
     }
 
     /// Bits of the misfit.
@@ -112,6 +118,11 @@ impl Fitted {
         }
         bits
     }
+}
+
+/// What keeps numbers that no sample tells within the picture, 1/px^2.
+fn ridge(ruler: &Ruler) -> f64 {
+    ruler.extent.max(1.0).powi(-2)
 }
 
 /// Whether each curve is about as long as the walk along its samples: no loop, no spike.

@@ -140,10 +140,7 @@ impl Chain {
 /// Accepts the ties that make the description of a chain shorter.
 pub(super) fn tie(fitted: Fitted, track: &Track, ruler: &Ruler) -> Tied {
     let number_bits = fitted.number_bits(ruler);
-    let places = fitted.chain.places();
-    let mut judge = Judge { fitted: &fitted, ruler, places, moved: fitted.chain.clone(), held: Vec::new() };
-    let proposed = [axis_ties, smooth_ties, radius_ties].into_iter().flat_map(|propose| propose(&fitted.chain));
-    let accepted: Vec<Verdict> = proposed.filter_map(|tie| judge.verdict(tie)).collect();
+    let accepted = accepted(&fitted, ruler);
     // All of them or, if together they pull harder than expected, those along the axes alone.
     let plain = |verdict: &&Verdict| matches!(verdict.tie, Tie::Horizontal { .. } | Tie::Vertical { .. });
     let sets = [accepted.iter().collect::<Vec<_>>(), accepted.iter().filter(plain).collect()];
@@ -157,6 +154,19 @@ pub(super) fn tie(fitted: Fitted, track: &Track, ruler: &Ruler) -> Tied {
         }
     }
     Tied { fitted, ties: Vec::new(), number_bits }
+}
+
+/// Bits of the numbers that ties spare, were all of them to hold together.
+pub(super) fn saved(fitted: &Fitted, ruler: &Ruler) -> f64 {
+    accepted(fitted, ruler).iter().map(|verdict| verdict.price).sum()
+}
+
+/// The ties that each shorten the description, given those before.
+fn accepted(fitted: &Fitted, ruler: &Ruler) -> Vec<Verdict> {
+    let chain = &fitted.chain;
+    let mut judge = Judge { fitted, ruler, places: chain.places(), moved: chain.clone(), held: Vec::new() };
+    let proposed = [axis_ties, smooth_ties, radius_ties].into_iter().flat_map(|propose| propose(chain));
+    proposed.filter_map(|tie| judge.verdict(tie)).collect()
 }
 
 /// A tie that is accepted.

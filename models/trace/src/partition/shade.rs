@@ -32,10 +32,12 @@ const MOST_VIEWS: usize = 32;
 const PLACES: usize = 4;
 /// How often the stretch that the middle of a band may lie in is halved, from a pixel on.
 const HALVINGS: usize = 10;
-/// How much darker one color is than the next that is tried.
-const STEP: f64 = 1.06;
+/// How much darker one color is than the next that is tried first: less than what makes it another one, `THIN_TOLERANCE`.
+const STEP: f64 = 1.12;
 /// Steps at most: as much darker as no picture of 8 bits tells.
-const MOST_TRIED: f64 = 128.0;
+const MOST_TRIED: f64 = 64.0;
+/// How often the stretch that the best of them leaves open is made a third shorter.
+const THIRDS: usize = 8;
 
 /// A window with what its neighbors say of the line in it.
 struct View {
@@ -57,8 +59,9 @@ struct Band {
     side: Color,
     color: Color,
     views: Vec<View>,
-    /// The color that leaves least, as a share of the chain's.
+    /// The color that leaves least, as a share of the chain's, and most that any may leave that is not clearly worse.
     best: f64,
+    most: f64,
     /// Whether all that leave about as little are like it.
     is_told: bool,
 }
@@ -93,9 +96,8 @@ pub(super) fn settle(canvas: &Canvas<'_>, chains: &mut [Vec<Chain>; 2], colors: 
         let (side, color, width) = (palette[ground as usize], colors[index], median(&chain.widths()));
         let band = Band::of(canvas, chain, ground, color, palette);
         let mut line = Line { chain, side, color, index, open: u128::MAX, is_told: false, width };
-        let is_smooth = |color: &Color| band.as_ref().is_none_or(|band| band.may_be_of(*color, tuning::LEAST_CONTRAST));
-        if let Some(band) = band.as_ref().filter(|_| !is_smooth(&color) && colors.len() < MOST) {
-            let index = colors.iter().position(is_smooth).unwrap_or(colors.len());
+        if let Some(band) = band.as_ref().filter(|band| !band.may_be_of(color) && colors.len() < MOST) {
+            let index = colors.iter().position(|&color| band.may_be_of(color)).unwrap_or(colors.len());
             if index == colors.len() {
                 colors.push(mixed(band.side, band.color, band.best));
             }
@@ -106,7 +108,7 @@ pub(super) fn settle(canvas: &Canvas<'_>, chains: &mut [Vec<Chain>; 2], colors: 
     }
     for (line, band) in lines.iter_mut().zip(&bands) {
         let Some(band) = band else { continue };
-        let bit = |(index, color): (usize, &Color)| u128::from(band.may_be_of(*color, canvas.noise)) << index;
+        let bit = |(index, color): (usize, &Color)| u128::from(band.may_be_of(*color)) << index;
         line.open = colors.iter().enumerate().map(bit).sum();
         line.is_told = band.is_told;
     }
@@ -123,7 +125,7 @@ fn likelier(lines: &[Line<'_>], k: usize, canvas: &Canvas<'_>, palette: &[Color]
     if line.is_told {
         return None;
     }
-    let alike: Vec<&Line<'_>> = lines.iter().filter(|other| line.shows_as_much(other, canvas.noise)).collect();
+    let alike: Vec<&Line<'_>> = lines.iter().filter(|other| line.shows_as_much(other)).collect();
     let mut told = alike.iter().filter(|other| other.is_told).map(|other| (other.index, other.color));
     if let Some(color) = told.find(|&color| line.may_have(canvas, color, palette)) {
         return Some(color);
@@ -133,7 +135,10 @@ fn likelier(lines: &[Line<'_>], k: usize, canvas: &Canvas<'_>, palette: &[Color]
         explained.map(|other| other.chain.marks.len()).sum()
     };
     let own = explained((line.index, line.color));
-    let others = alike.iter().map(|other| (other.index, other.color)).map(|color| (explained(color), color));
+    let mut others: Vec<(usize, Color)> = alike.iter().map(|other| (other.index, other.color)).collect();
+    others.sort_unstable_by_key(|&(index, _)| index);
+    others.dedup_by_key(|&mut (index, _)| index);
+    let others = others.into_iter().map(|color| (explained(color), color));
     let likelier = others.filter(|&(explained, color)| explained > own && line.may_have(canvas, color, palette));
     likelier.rev().max_by_key(|&(explained, _)| explained).map(|(_, color)| color)
 }
@@ -151,8 +156,8 @@ impl Line<'_> {
     }
 
     /// Whether it would be as wide as another line in the color of that.
-    fn shows_as_much(&self, other: &Line<'_>, noise: f64) -> bool {
-        share_on_way(other.color, [self.side, self.color], noise)
+    fn shows_as_much(&self, other: &Line<'_>) -> bool {
+        share_on_way(other.color, [self.side, self.color])
             .is_some_and(|share| (self.width / share - other.width).abs() <= tuning::THIN_TOLERANCE * other.width)
     }
 
@@ -174,9 +179,9 @@ impl Line<'_> {
 }
 
 /// How far a color is on the way from one to the other, or beyond it; none if it is beside.
-fn share_on_way(color: Color, [from, to]: [Color; 2], noise: f64) -> Option<f64> {
+fn share_on_way(color: Color, [from, to]: [Color; 2]) -> Option<f64> {
     let share = coverage(color, from, to);
-    (share > 0.0 && misfit(color, from, to, share) <= noise).then_some(share)
+    (share > 0.0 && misfit(color, from, to, share) <= tuning::LEAST_CONTRAST).then_some(share)
 }
 
 /// Two colors mixed.
@@ -209,9 +214,12 @@ impl Band {
         // The windows that are looked at together see a line move by a pixel, if it is long enough for several such.
         let needed = (count as f64 / (moves * 2.0 * REACH as f64)).ceil();
         let apart = if needed * 4.0 * REACH as f64 <= count as f64 { needed as usize } else { 1 };
+        let is_of_it = |mark: &Mark| is_even(mark) && mark.cross.sides[0] == side;
         let is_next = |from: &Mark, mark: &Mark| {
-            let is_of_it = is_even(mark) && mark.cross.sides[0] == side;
-            is_of_it && mark.along == from.along && mark.cross.line.abs_diff(from.cross.line) == apart
+            is_of_it(from)
+                && is_of_it(mark)
+                && mark.along == from.along
+                && mark.cross.line.abs_diff(from.cross.line) == apart
         };
         let first = (0..count.saturating_sub(2 * REACH * apart)).step_by(count / MOST_VIEWS + 1);
         let views = first.filter_map(|first| {
@@ -234,19 +242,14 @@ impl Band {
         if views.len() < tuning::SHADE_LEAST || views.iter().any(|view| view.mass <= 0.0) {
             return None;
         }
-        let mut band = Self { side: ground, color, views, best: 1.0, is_told: false };
+        let mut band = Self { side: ground, color, views, best: 1.0, most: f64::INFINITY, is_told: false };
         band.tell();
         Some(band)
     }
 
-    /// Difference between the color and what it lies on.
-    fn contrast(&self) -> f64 {
-        distance(self.side, self.color)
-    }
-
     /// Mean square of what windows differ, of the middle one, from a band whose color has `share` of the chain's over what it lies on.
     fn misfit(&self, share: f64) -> f64 {
-        let contrast = self.contrast();
+        let contrast = distance(self.side, self.color);
         let of_view = |view: &View| {
             let bands = view.bands(share);
             let off = |k: usize| {
@@ -259,10 +262,9 @@ impl Band {
         median(&self.views.iter().map(of_view).collect::<Vec<_>>())
     }
 
-    /// Whether a color, not farther than `noise` from the way between the two, makes the band about as smooth as one can.
-    fn may_be_of(&self, color: Color, noise: f64) -> bool {
-        let most = least_clear(self.misfit(self.best));
-        share_on_way(color, [self.side, self.color], noise).is_some_and(|share| self.misfit(share) <= most)
+    /// Whether a color on the way between the two, give or take what makes a color of its own, makes the band about as smooth as one can.
+    fn may_be_of(&self, color: Color) -> bool {
+        share_on_way(color, [self.side, self.color]).is_some_and(|share| self.misfit(share) <= self.most)
     }
 
     /// Looks for the color that leaves least: between what is seen and what no channel can be beyond.
@@ -277,16 +279,22 @@ impl Band {
         let steps = ((most / seen).ln() / STEP.ln()).ceil().clamp(0.0, MOST_TRIED) as i32;
         let tried = (0..=steps).map(|k| (seen * STEP.powi(k)).min(most)).map(|share| (share, self.misfit(share)));
         let tried: Vec<(f64, f64)> = tried.collect();
-        let Some(&(best, least)) = tried.iter().min_by(|a, b| a.1.total_cmp(&b.1)) else { return };
-        let is_other = |share: f64| (share / best - 1.0).abs() > tuning::THIN_TOLERANCE;
-        let is_told = tried.iter().all(|&(share, misfit)| !is_other(share) || misfit > least_clear(least));
-        (self.best, self.is_told) = (best, is_told);
+        let Some(&(near, _)) = tried.iter().min_by(|a, b| a.1.total_cmp(&b.1)) else { return };
+        let [mut low, mut high] = [near / STEP, (near * STEP).min(most)];
+        for _ in 0..THIRDS {
+            let [first, second] = [1.0, 2.0].map(|thirds| low + thirds / 3.0 * (high - low));
+            if self.misfit(first) <= self.misfit(second) {
+                high = second;
+            } else {
+                low = first;
+            }
+        }
+        // What leaves more than this leaves clearly more.
+        self.best = 0.5 * (low + high);
+        self.most = tuning::SHADE_CLEARLY * self.misfit(self.best).max(tuning::SHADE_FLOOR);
+        let is_other = |share: f64| (share / self.best - 1.0).abs() > tuning::THIN_TOLERANCE;
+        self.is_told = tried.iter().all(|&(share, misfit)| !is_other(share) || misfit > self.most);
     }
-}
-
-/// What leaves more than this leaves clearly more.
-fn least_clear(misfit: f64) -> f64 {
-    tuning::SHADE_CLEARLY * misfit.max(tuning::SHADE_FLOOR)
 }
 
 impl View {
