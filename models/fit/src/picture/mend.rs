@@ -16,8 +16,8 @@ use dvp_core::contour::{perimeter, signed_area};
 use dvp_core::geometry::DisjointSets;
 use dvp_core::{Drawing, Image, ImageSize, ImageView, Object, Real as _, Scene};
 use dvp_trace::Traced;
-use dvp_trace::missed::{Missed, Painted, channels, differing, touching};
-use dvp_trace::tuning::{CODED_CONTRAST, LEAST_CONTRAST, PIXEL_BITS};
+use dvp_trace::missed::{Missed, Painted, channels, differing, misfit_bits, touching};
+use dvp_trace::tuning::{CODED_CONTRAST, LEAST_CONTRAST};
 
 use crate::FitError;
 use crate::paint::Canvas;
@@ -257,12 +257,12 @@ impl Parts {
         self.sets.root(part) as usize
     }
 
-    /// By how many bits less the second image misses the picture, part by part. A pixel that is off by `step` is off by one sigma.
+    /// By how many bits less the second image misses the picture, part by part.
     fn nearer(&mut self, image: [&[f32]; 3], [before, after]: [[&[f32]; 3]; 2], step: f64) -> Vec<f64> {
         let mut nearer = vec![0.0; self.sets.len()];
         let bits = |painted: [&[f32]; 3], i: usize| {
             let off = (0..3).map(|c| (image[c][i] - painted[c][i]).abs()).fold(0.0, f32::max);
-            (0.5 * core::f64::consts::LOG2_E * (f64::from(off) / step).powi(2)).min(PIXEL_BITS)
+            misfit_bits(f64::from(off), step)
         };
         for (&i, &part) in self.pixels.iter().zip(&self.part) {
             let i = i - self.first;

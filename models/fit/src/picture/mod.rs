@@ -36,6 +36,7 @@ use num_traits::Float as _;
 use dvp_core::loss::{ImagePair, Loss as _};
 use dvp_core::render::{Compositing, EdgeLaw, EdgeProfile, PixelLoss};
 use dvp_core::{Drawing, Image, ImageView, Real as _, Scene};
+use dvp_trace::tuning::{DOUBTFUL_STAINED, WIDE_BLUR};
 use dvp_trace::{NoDrawing, PoseCovariance, Traced, noise};
 
 use crate::options::check_values;
@@ -280,7 +281,7 @@ fn settled(
 fn drawn(mut traced: Traced, image: ImageView<'_, f32>, scratch: &mut PictureScratch) -> Result<Fit<f32>, FitError> {
     let (canvas, size) = (&mut scratch.canvas, image.size());
     let (mut painted, mut drawing) = canvas.paint(&traced.scene, size)?;
-    let is_clear = traced.blur == 0.0 && traced.noise == 0.0;
+    let is_clear = traced.blur <= WIDE_BLUR && traced.noise == 0.0;
     if let Some(wrong) = is_clear.then(|| Wrong::of(&traced, &drawing, painted, &image)).flatten() {
         wrong.mend(&mut traced, &drawing, image, canvas)?;
         (painted, drawing) = canvas.paint(&traced.scene, size)?;
@@ -363,7 +364,7 @@ fn likelier(first: Fit<f32>, second: Fit<f32>) -> Fit<f32> {
 /// Whether edges leave a doubt that a picture is a drawing. Stains of either sign: blur and profiles of their own leave too much of the other
 /// side beyond edges, filters that sharpen too little.
 fn leaves_doubt(traced: &Traced) -> bool {
-    traced.stained.abs() > dvp_trace::tuning::DOUBTFUL_STAINED
+    traced.stained.abs() > DOUBTFUL_STAINED
 }
 
 /// What is known of poses as a fit says it: covariances of (x, y, log scale, rotation, log stretch), NaN where nothing is known, and which

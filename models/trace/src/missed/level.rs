@@ -13,6 +13,7 @@ use crate::layers::polygon;
 use crate::outline::{Outline, OutlineShape, fit_closed};
 use crate::ruler::Ruler;
 use crate::sample::{RingSamples, Sample};
+use crate::stroke::{StrokeFit, fit_strokes};
 use crate::tuning;
 
 /// Places of the finer grid along the side of a pixel.
@@ -28,41 +29,78 @@ const MOST_OFF: f64 = 0.2;
 /// How far apart samples of outlines are, pixels.
 const SPACING: f64 = 0.3;
 
-/// The outlines of what covers as much of every pixel of a window as `coverage` says, [0, 1], row by row; `corner` is where the window begins. None if
-/// the window is empty.
-#[inline(never)]
-pub(super) fn outlines(coverage: &[f64], window: ImageSize, corner: Vec2<f64>, ruler: &Ruler) -> Option<Vec<Outline>> {
-    let (field, fine) = sharpened(coverage, window)?;
-    let loops = trace_level(&field, fine, 0.5, Connectivity::Four).ok()?;
-    Some(loops.iter().filter_map(|points| outline(points, corner, ruler)).collect())
+/// Most closed lines of what a pen is asked for: as a grid of eight by eight has. The time that strokes take grows with the square of that.
+const MOST_OF_PEN: usize = 64;
+
+/// Closed lines around what covers pixels in part.
+pub(super) struct Level {
+    lines: Vec<Line>,
 }
 
-/// The outline along a closed line of the fine grid.
-fn outline(points: &[[f32; 2]], corner: Vec2<f64>, ruler: &Ruler) -> Option<Outline> {
-    let fine = FINE as f64;
-    let points = resample(points, (f64::from(perimeter(points)) / (fine * SPACING)).ceil().max(4.0) as usize);
-    let n = points.len();
-    let place = |point: [f32; 2]| Vec2::from(point.map(f64::from)) * fine.recip() + corner;
-    let at = |k: usize| place(points[k % n]);
-    let sample = |k: usize| {
-        let axis = (at(k + 1) - at(k + n - 1)).perp().normalized().unwrap_or(Vec2::new(1.0, 0.0));
-        Sample::new(at(k), axis, tuning::LEVEL_SIGMA)
-    };
-    let ring = RingSamples { runs: vec![(0..n).map(sample).collect()], closed: true };
-    let area = f64::from(signed_area(&points).abs()) / (fine * fine);
-    let is_as_large = |outline: &Outline| {
-        polygon(outline).is_some_and(|points| (signed_area(&points).abs() - area).abs() <= MOST_OFF * area)
-    };
-    fit_closed(&ring, ruler).map(|fitted| {
-        if is_as_large(&fitted) {
-            return fitted;
+/// A closed line, and its places as samples.
+struct Line {
+    points: Vec<[f64; 2]>,
+    samples: RingSamples,
+}
+
+impl Level {
+    /// Around what covers as much of every pixel of a window as `coverage` says, [0, 1], row by row; `corner` is where the window begins. None if the
+    /// window is empty.
+    #[inline(never)]
+    pub(super) fn of(coverage: &[f64], window: ImageSize, corner: Vec2<f64>) -> Option<Self> {
+        let (field, fine) = sharpened(coverage, window)?;
+        let loops = trace_level(&field, fine, 0.5, Connectivity::Four).ok()?;
+        Some(Self { lines: loops.iter().map(|points| Line::of(points, corner)).collect() })
+    }
+
+    /// The outlines along them.
+    pub(super) fn outlines(&self, ruler: &Ruler) -> Vec<Outline> {
+        self.lines.iter().filter_map(|line| line.outline(ruler)).collect()
+    }
+
+    /// The strokes of a pen that drew what is between them, if that is how it was drawn.
+    pub(super) fn pen(&self, ruler: &Ruler) -> Option<StrokeFit> {
+        if self.lines.len() > MOST_OF_PEN {
+            return None;
         }
-        let few = resample(&points, (n as f64 * SPACING).ceil().max(4.0) as usize);
-        let points: Vec<[f64; 2]> = few.iter().map(|&point| place(point).to_array()).collect();
-        let bits = 2.0 * points.len() as f64 * ruler.number(tuning::LEVEL_SIGMA);
-        let shape = OutlineShape::Path(PathRing::polygon(points));
-        Outline { shape, bits, misfit: 0.0, covariance: Vec::new() }
-    })
+        let rings: Vec<RingSamples> = self.lines.iter().map(|line| line.samples.clone()).collect();
+        fit_strokes(&rings, ruler)
+    }
+}
+
+impl Line {
+    /// A line of the finer grid.
+    fn of(points: &[[f32; 2]], corner: Vec2<f64>) -> Self {
+        let fine = FINE as f64;
+        let points = resample(points, (f64::from(perimeter(points)) / (fine * SPACING)).ceil().max(4.0) as usize);
+        let place = |&point: &[f32; 2]| (Vec2::from(point.map(f64::from)) * fine.recip() + corner).to_array();
+        let points: Vec<[f64; 2]> = points.iter().map(place).collect();
+        let n = points.len();
+        let at = |k: usize| Vec2::from(points[k % n]);
+        let sample = |k: usize| {
+            let axis = (at(k + 1) - at(k + n - 1)).perp().normalized().unwrap_or(Vec2::new(1.0, 0.0));
+            Sample::new(at(k), axis, tuning::LEVEL_SIGMA)
+        };
+        let samples = RingSamples { runs: vec![(0..n).map(sample).collect()], closed: true };
+        Self { points, samples }
+    }
+
+    /// The outline along it: of few numbers, or, where that is far off, itself.
+    fn outline(&self, ruler: &Ruler) -> Option<Outline> {
+        let area = signed_area(&self.points).abs();
+        let is_as_large = |outline: &Outline| {
+            polygon(outline).is_some_and(|points| (signed_area(&points).abs() - area).abs() <= MOST_OFF * area)
+        };
+        fit_closed(&self.samples, ruler).map(|fitted| {
+            if is_as_large(&fitted) {
+                return fitted;
+            }
+            let points = resample(&self.points, (self.points.len() as f64 * SPACING).ceil().max(4.0) as usize);
+            let bits = 2.0 * points.len() as f64 * ruler.number(tuning::LEVEL_SIGMA);
+            let shape = OutlineShape::Path(PathRing::polygon(points));
+            Outline { shape, bits, misfit: 0.0, covariance: Vec::new() }
+        })
+    }
 }
 
 /// A field of coverage on a finer grid, where it is 0 or 1 nearly everywhere and whose means over pixels are the coverage: what it is off by there is

@@ -29,10 +29,14 @@ use crate::partition::{Color, distance, mixture};
 use crate::ruler::Ruler;
 use crate::scene;
 use crate::tuning;
+use level::Level;
 pub use pixels::{channels, differing, touching};
 
 /// Largest window that is searched for one thing, pixels: the finer grid takes 128 bytes for each.
 const MOST_PIXELS: usize = 1 << 18;
+
+/// How wide a line is, pixels, that has a color of its own: what is thinner shows half of it nowhere.
+const LEAST_WIDTH: f64 = 0.5;
 
 /// A picture beside what a drawing of it paints.
 #[derive(Debug)]
@@ -135,25 +139,41 @@ impl Painted<'_> {
         let new = pixels.iter().filter(|(_, mark)| mark.is_new && mark.is_flat == is_own).map(|&(i, _)| i);
         let off = |i: usize| distance(color(&self.image, i), color(&self.painted, i));
         let extreme = new.max_by(|&i, &j| off(i).total_cmp(&off(j)))?;
-        let of_color = |ink: Color| {
-            let mut seen = Seen { color: ink, pixels: Vec::new(), count: 0 };
-            let mut most: f64 = 0.0;
-            for &(i, mark) in pixels {
-                if let Some(share) = self.share(i, ink) {
-                    seen.pixels.push(i);
-                    seen.count += usize::from(mark.is_new && mark.is_flat >= is_own);
-                    most = most.max(share);
-                }
-            }
-            (seen, most)
-        };
+        let of_color = |ink: Color| self.of_color(ink, pixels, is_own);
         let own = is_own.then(|| of_color(color(&self.image, extreme)).0);
         // A color of the drawing explains as much, and one that is nowhere half seen on another one is none.
         let fewest = own.as_ref().map_or(least, |own| own.count - own.count / 10);
         let known = colors.iter().filter(|&&ink| self.share(extreme, ink).is_some()).map(|&ink| of_color(ink));
-        let known = known.filter(|(seen, most)| seen.count >= fewest && (*most >= 0.5 || !is_own));
+        let known = known.filter(|(seen, most)| seen.count >= fewest && (*most >= LEAST_WIDTH || !is_own));
         let best = known.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(seen, _)| seen).or(own)?;
         (best.count >= least).then_some(best)
+    }
+
+    /// Of pixels that touch, those that show things of one color which are half a pixel wide at least, and the most that is seen of it in one of them.
+    ///
+    /// *Why*: a thin line of a lighter color shows as much as one of this color that is thinner still, and what lies across it would take all of it for
+    /// its own.
+    #[inline(never)]
+    fn of_color(&self, ink: Color, pixels: &[(usize, Mark)], is_own: bool) -> (Seen, f64) {
+        let width = self.image.size().width();
+        let shares: Vec<(usize, f64)> = pixels.iter().filter_map(|&(i, _)| Some((i, self.share(i, ink)?))).collect();
+        let share = |i: usize| shares.binary_search_by_key(&i, |&(i, _)| i).map_or(0.0, |at| shares[at].1);
+        let around = |i: usize| (0..9).map(move |k| (i + k % 3 + k / 3 * width).wrapping_sub(width + 1));
+        // Wherever such a line runs, it covers as much of three times three pixels; the end of one, and a dot, cover a pixel by half.
+        let is_wide =
+            |&(i, own): &(usize, f64)| own >= LEAST_WIDTH || around(i).map(share).sum::<f64>() >= 3.0 * LEAST_WIDTH;
+        let wide: Vec<usize> = shares.iter().copied().filter(is_wide).map(|(i, _)| i).collect();
+        let mut seen = Seen { color: ink, pixels: Vec::new(), count: 0 };
+        let mut most: f64 = 0.0;
+        for &(i, mark) in pixels {
+            let share = share(i);
+            if share > 0.0 && around(i).any(|i| wide.binary_search(&i).is_ok()) {
+                seen.pixels.push(i);
+                seen.count += usize::from(mark.is_new && mark.is_flat >= is_own);
+                most = most.max(share);
+            }
+        }
+        (seen, most)
     }
 
     /// What is painted around a pixel tells of it.
@@ -188,9 +208,9 @@ impl Painted<'_> {
         (misfit <= 0.5 * self.step && distance(under, ink) > self.step).then_some(share)
     }
 
-    /// The outlines of a thing, if it costs less than its pixels.
+    /// A thing, as strokes of a pen or in outlines, if it costs less than its pixels; else nothing.
     #[inline(never)]
-    fn traced(&self, Seen { color, pixels, count }: Seen) -> Option<Missed> {
+    fn traced(&self, Seen { color, pixels, count }: Seen) -> Vec<Missed> {
         let [width, height] = [self.image.size().width(), self.image.size().height()];
         // Two pixels more on every side; what lies at the border of the picture goes on beyond it.
         let reach = |of: &dyn Fn(usize) -> usize| {
@@ -198,7 +218,8 @@ impl Painted<'_> {
             low..high + 5
         };
         let [columns, rows] = [reach(&|i| i % width), reach(&|i| i / width)];
-        let window = ImageSize::new(columns.len(), rows.len()).ok().filter(|window| window.pixels() <= MOST_PIXELS)?;
+        let window = ImageSize::new(columns.len(), rows.len()).ok().filter(|window| window.pixels() <= MOST_PIXELS);
+        let Some(window) = window else { return Vec::new() };
         let corner = Vec2::new(columns.start as f64 - 2.0, rows.start as f64 - 2.0);
         // What lies beside shows a little of it, too.
         let is_own = |x: usize, y: usize| x < width && y < height && pixels.binary_search(&(y * width + x)).is_ok();
@@ -210,15 +231,31 @@ impl Painted<'_> {
         };
         let field: Vec<f64> = rows.flat_map(|y| columns.clone().map(move |x| share((x, y)))).collect();
         let ruler = Ruler { extent: width.max(height) as f64 };
-        let outlines = level::outlines(&field, window, corner, &ruler)?;
-        let bits: f64 = outlines.iter().map(|outline| outline.bits + outline.misfit).sum();
-        if bits + tuning::THING_BITS > count as f64 * tuning::PIXEL_BITS {
-            return None;
+        let Some(level) = Level::of(&field, window, corner) else { return Vec::new() };
+        let outlines = level.outlines(&ruler);
+        let mut bits: f64 = outlines.iter().map(|outline| outline.bits + outline.misfit).sum();
+        let mut forms = vec![Form::Filled(outlines)];
+        if let Some(pen) = level.pen(&ruler).filter(|pen| pen.bits + pen.misfit < bits) {
+            bits = pen.bits + pen.misfit;
+            forms = pen.strokes.into_iter().map(Form::Stroked).collect();
         }
-        let layer = Layer { color, form: Form::Filled(outlines), faces: Vec::new(), bits };
-        let object = scene::object(&layer, self.image.size().unit_px() as f64)?;
-        Some(Missed { object, bits })
+        // What its pixels cost now, or if each new one of them were told as it is.
+        let off = |&i: &usize| distance(self::color(&self.image, i), self::color(&self.painted, i));
+        let missed: f64 = pixels.iter().map(|i| misfit_bits(off(i), self.step)).sum();
+        if bits + tuning::THING_BITS > missed.max(count as f64 * tuning::PIXEL_BITS) {
+            return Vec::new();
+        }
+        let bits = bits / forms.len() as f64;
+        let unit = self.image.size().unit_px() as f64;
+        let layers = forms.into_iter().map(|form| Layer { color, form, faces: Vec::new(), bits });
+        layers.filter_map(|layer| Some(Missed { object: scene::object(&layer, unit)?, bits })).collect()
     }
+}
+
+/// Bits that a pixel costs a channel of which is `off` by so much: off by `step` it is off by one sigma, and it is told as it is if that is less.
+#[must_use]
+pub fn misfit_bits(off: f64, step: f64) -> f64 {
+    (0.5 * core::f64::consts::LOG2_E * (off / step).powi(2)).min(tuning::PIXEL_BITS)
 }
 
 /// Fewest pixels that show something new for it to be a thing: fewer cost less than that there is one.

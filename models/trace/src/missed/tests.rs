@@ -6,7 +6,7 @@ use dvp_core::contour::{Connectivity, label};
 use dvp_core::{Image, ImageSize, Vec2};
 use proptest::prelude::*;
 
-use super::level::outlines;
+use super::level::Level;
 use super::{channels, differing, touching};
 use crate::layers::polygon;
 use crate::ruler::Ruler;
@@ -83,7 +83,8 @@ fn outlines_cover_what_is_covered() {
         let (middle, turn) = (Vec2::new(between(9.0, 15.0), between(9.0, 15.0)), between(0.0, core::f64::consts::PI));
         let half = Vec2::from_angle(turn) * (0.5 * between(4.0, 10.0));
         let wanted = drawn(middle - half, middle + half, between(0.8, 2.5));
-        let found = outlines(&wanted, ImageSize::new(SIDE, SIDE).unwrap(), Vec2::new(0.0, 0.0), &ruler).unwrap();
+        let level = Level::of(&wanted, ImageSize::new(SIDE, SIDE).unwrap(), Vec2::new(0.0, 0.0)).unwrap();
+        let found = level.outlines(&ruler);
         let polygons: Vec<Vec<[f64; 2]>> = found.iter().filter_map(polygon).collect();
         let shown = covered(&polygons);
         worst.push(wanted.iter().zip(&shown).map(|(wanted, shown)| (wanted - shown).abs()).fold(0.0, f64::max));
