@@ -1,15 +1,18 @@
 //! Pixels that touch, and outlines that cover as much as was said.
 
+use alloc::vec;
 use alloc::vec::Vec;
 
 use dvp_core::contour::{Connectivity, label};
-use dvp_core::{Image, ImageSize, Vec2};
+use dvp_core::shape::Circle;
+use dvp_core::{Image, ImageSize, Object, Paint, Pose, Scene, Vec2};
 use proptest::prelude::*;
 
 use super::level::Level;
-use super::{channels, differing, touching};
+use super::{Painted, channels, differing, touching};
 use crate::layers::polygon;
 use crate::ruler::Ruler;
+use crate::tuning;
 
 /// Columns and rows of the windows.
 const SIDE: usize = 24;
@@ -91,4 +94,50 @@ fn outlines_cover_what_is_covered() {
     }
     worst.sort_unstable_by(f64::total_cmp);
     assert!(worst[100] < 0.05 && worst[190] < 0.3, "{} {}", worst[100], worst[190]);
+}
+
+/// Of lines with round ends a pen tells where they lie, and how wide they are to a tenth, in fewer numbers than any outline: of most of them.
+#[test]
+fn a_pen_is_told_by_what_it_covers() {
+    let ruler = Ruler { extent: SIDE as f64 };
+    let mut found = 0;
+    for k in 0..24 {
+        let (width, turn) = (0.9 + 0.05 * f64::from(k), 0.26 * f64::from(k));
+        let middle = Vec2::new(11.0 + 0.13 * f64::from(k), 12.3);
+        let half = Vec2::from_angle(turn) * 7.0;
+        let wanted = drawn(middle - half, middle + half, width);
+        let level = Level::of(&wanted, ImageSize::new(SIDE, SIDE).unwrap(), Vec2::new(0.0, 0.0)).unwrap();
+        let outlines: f64 = level.outlines(&ruler).iter().map(|outline| outline.bits + outline.misfit).sum();
+        let Some(pen) = level.pen(&ruler).filter(|pen| pen.bits + pen.misfit < outlines) else { continue };
+        found += 1;
+        let [stroke] = &pen.strokes[..] else { panic!("{k}: {pen:?}") };
+        assert!((stroke.width - width).abs() < 0.1 * width, "{k}: {} for {width}", stroke.width);
+    }
+    assert!(found > 12, "{found} of 24");
+}
+
+/// A gray line that begins at a black one shows as much as a black hairline would, and stays gray.
+#[test]
+fn what_lies_across_a_darker_line_keeps_its_color() {
+    let size = ImageSize::new(SIDE, SIDE).unwrap();
+    let (black, gray) = ([0.0_f32; 3], [0.7_f32; 3]);
+    let bar = drawn(Vec2::new(6.3, 4.0), Vec2::new(6.3, 20.0), 1.4);
+    let line = drawn(Vec2::new(6.0, 11.6), Vec2::new(22.0, 13.9), 0.9);
+    let pixel = |i: usize| {
+        let over = |under: f32, of: &[f64], ink: f32| under + of[i] as f32 * (ink - under);
+        [over(over(1.0, &line, gray[0]), &bar, black[0]); 3]
+    };
+    let pixels: Vec<f32> = (0..size.pixels()).flat_map(pixel).collect();
+    let image = Image::from_interleaved(size, &pixels).unwrap();
+    let white = Image::from_interleaved(size, &vec![1.0; 3 * size.pixels()]).unwrap();
+    // Both colors are seen elsewhere.
+    let thing = |color: [f32; 3]| {
+        let pose = Pose { translation: [0.0; 2], scale: 1.0, rotation: 0.0 };
+        Object { shape: Circle { radius: 0.01 }.into(), pose, paint: color.into(), confidence: 1.0 }
+    };
+    let scene = Scene { objects: vec![thing(black), thing(gray)], ..Scene::empty([1.0; 3]) };
+    let painted = Painted { scene: &scene, image: image.view(), painted: white.view(), step: tuning::LEAST_CONTRAST };
+    let missed = painted.missed(&painted.off(&(0..size.pixels())));
+    let colors: Vec<Paint<f32>> = missed.iter().map(|missed| missed.object.paint.clone()).collect();
+    assert_eq!(colors, [black, gray].map(Paint::Flat), "{missed:?}");
 }
