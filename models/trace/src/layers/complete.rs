@@ -61,7 +61,7 @@ pub(super) struct Known {
     is_whole: Cell<Option<bool>>,
 }
 
-/// Where faces are painted together, and which others it was asked of whether they lie in front.
+/// Where faces are painted together, and of which others it was asked whether they lie in front.
 pub(super) struct Place<'a> {
     pub(super) faces: &'a [u32],
     /// Place of the hindmost of them in the order of painting.
@@ -71,7 +71,7 @@ pub(super) struct Place<'a> {
 }
 
 impl Place<'_> {
-    /// Whether a layer here may hide a face, which lies in front of it.
+    /// Whether what is painted here lies behind a face: it may go on there as it likes.
     pub(super) fn is_behind(&self, face: u32) -> bool {
         let is_behind = self.rank_of[face as usize] > self.rank;
         self.asked.borrow_mut().insert(face, is_behind);
@@ -243,7 +243,8 @@ impl Completion<'_> {
         self.known.borrow().get(&sorted(group))?.iter().rev().find(is_same).map(of)
     }
 
-    /// Whether a group with these outlines is a thing as people draw them, which depends on what its outlines do: where those are known it is asked once.
+    /// Whether a group with these outlines is a thing as people draw them (`is_whole`), which depends on no more than its outlines do: where those are
+    /// known it is asked once.
     pub(super) fn is_whole(&self, group: &[u32], completed: &Rc<Completed>, is_whole: impl Fn() -> bool) -> bool {
         let of_these = |known: &Known| Rc::ptr_eq(&known.completed, completed).then(|| known.is_whole.get());
         match self.known(group, of_these).flatten() {

@@ -138,6 +138,6 @@ fn what_lies_across_a_darker_line_keeps_its_color() {
     let scene = Scene { objects: vec![thing(black), thing(gray)], ..Scene::empty([1.0; 3]) };
     let painted = Painted { scene: &scene, image: image.view(), painted: white.view(), step: tuning::LEAST_CONTRAST };
     let missed = painted.missed(&painted.off(&(0..size.pixels())));
-    let colors: Vec<Paint<f32>> = missed.iter().map(|missed| missed.object.paint.clone()).collect();
+    let colors: Vec<Paint<f32>> = missed.iter().map(|missed| missed.object.paint).collect();
     assert_eq!(colors, [black, gray].map(Paint::Flat), "{missed:?}");
 }
