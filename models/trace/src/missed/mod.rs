@@ -235,13 +235,13 @@ impl Painted<'_> {
         let outlines = level.outlines(&ruler);
         let mut bits: f64 = outlines.iter().map(|outline| outline.bits + outline.misfit).sum();
         let mut forms = vec![Form::Filled(outlines)];
-        if let Some(pen) = level.pen(&ruler).filter(|pen| pen.bits + pen.misfit < bits) {
+        if let Some(pen) = level.pen(&ruler).filter(|pen| pen.strokes.len() == 1 && pen.bits + pen.misfit < bits) {
             bits = pen.bits + pen.misfit;
             forms = pen.strokes.into_iter().map(Form::Stroked).collect();
         }
         // What its pixels cost now, or if each new one of them were told as it is.
         let off = |&i: &usize| distance(self::color(&self.image, i), self::color(&self.painted, i));
-        let missed: f64 = pixels.iter().map(|i| misfit_bits(off(i), self.step)).sum();
+        let missed: f64 = pixels.iter().filter(|&&i| self.mark(i).is_new).map(|i| misfit_bits(off(i), self.step)).sum();
         if bits + tuning::THING_BITS > missed.max(count as f64 * tuning::PIXEL_BITS) {
             return Vec::new();
         }

@@ -94,7 +94,8 @@ impl Reviser<'_> {
         others.peek()?;
         // As a part of the whole chain it is nearly as its samples want it: others that are no shorter than that are not asked for more.
         let as_it_is = Fitted::as_it_is(part.clone(), self.track, self.ruler)?;
-        let mut most = self.bits(&as_it_is) - tuning::OUTLINE_PIECE_BITS;
+        let untied = as_it_is.misfit(self.ruler) + as_it_is.number_bits(self.ruler) + self.piece_bits(&as_it_is.chain);
+        let mut most = untied - tuning::OUTLINE_PIECE_BITS;
         let mut best = None;
         for other in others {
             let fitted = Fitted::of(other, self.track, self.ruler, &[]);
