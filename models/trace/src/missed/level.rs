@@ -32,15 +32,9 @@ const SPACING: f64 = 0.3;
 /// Most closed lines of what a pen is asked for: as a grid of eight by eight has. The time that strokes take grows with the square of that.
 const MOST_OF_PEN: usize = 64;
 
-/// Closed lines around what covers pixels in part.
+/// Closed lines around what covers pixels in part, as samples.
 pub(super) struct Level {
-    lines: Vec<Line>,
-}
-
-/// A closed line, and its places as samples.
-struct Line {
-    points: Vec<[f64; 2]>,
-    samples: RingSamples,
+    lines: Vec<RingSamples>,
 }
 
 impl Level {
@@ -50,57 +44,49 @@ impl Level {
     pub(super) fn of(coverage: &[f64], window: ImageSize, corner: Vec2<f64>) -> Option<Self> {
         let (field, fine) = sharpened(coverage, window)?;
         let loops = trace_level(&field, fine, 0.5, Connectivity::Four).ok()?;
-        Some(Self { lines: loops.iter().map(|points| Line::of(points, corner)).collect() })
+        Some(Self { lines: loops.iter().map(|points| samples(points, corner)).collect() })
     }
 
     /// The outlines along them.
     pub(super) fn outlines(&self, ruler: &Ruler) -> Vec<Outline> {
-        self.lines.iter().filter_map(|line| line.outline(ruler)).collect()
+        self.lines.iter().filter_map(|line| outline(line, ruler)).collect()
     }
 
     /// The strokes of a pen that drew what is between them, if that is how it was drawn.
     pub(super) fn pen(&self, ruler: &Ruler) -> Option<StrokeFit> {
-        if self.lines.len() > MOST_OF_PEN {
-            return None;
-        }
-        let rings: Vec<RingSamples> = self.lines.iter().map(|line| line.samples.clone()).collect();
-        fit_strokes(&rings, ruler)
+        if self.lines.len() <= MOST_OF_PEN { fit_strokes(&self.lines, ruler) } else { None }
     }
 }
 
-impl Line {
-    /// A line of the finer grid.
-    fn of(points: &[[f32; 2]], corner: Vec2<f64>) -> Self {
-        let fine = FINE as f64;
-        let points = resample(points, (f64::from(perimeter(points)) / (fine * SPACING)).ceil().max(4.0) as usize);
-        let place = |&point: &[f32; 2]| (Vec2::from(point.map(f64::from)) * fine.recip() + corner).to_array();
-        let points: Vec<[f64; 2]> = points.iter().map(place).collect();
-        let n = points.len();
-        let at = |k: usize| Vec2::from(points[k % n]);
-        let sample = |k: usize| {
-            let axis = (at(k + 1) - at(k + n - 1)).perp().normalized().unwrap_or(Vec2::new(1.0, 0.0));
-            Sample::new(at(k), axis, tuning::LEVEL_SIGMA)
-        };
-        let samples = RingSamples { runs: vec![(0..n).map(sample).collect()], closed: true };
-        Self { points, samples }
-    }
+/// Samples along a closed line of the finer grid.
+fn samples(points: &[[f32; 2]], corner: Vec2<f64>) -> RingSamples {
+    let fine = FINE as f64;
+    let points = resample(points, (f64::from(perimeter(points)) / (fine * SPACING)).ceil().max(4.0) as usize);
+    let n = points.len();
+    let at = |k: usize| Vec2::from(points[k % n].map(f64::from)) * fine.recip() + corner;
+    let sample = |k: usize| {
+        let axis = (at(k + 1) - at(k + n - 1)).perp().normalized().unwrap_or(Vec2::new(1.0, 0.0));
+        Sample::new(at(k), axis, tuning::LEVEL_SIGMA)
+    };
+    RingSamples { runs: vec![(0..n).map(sample).collect()], closed: true }
+}
 
-    /// The outline along it: of few numbers, or, where that is far off, itself.
-    fn outline(&self, ruler: &Ruler) -> Option<Outline> {
-        let area = signed_area(&self.points).abs();
-        let is_as_large = |outline: &Outline| {
-            polygon(outline).is_some_and(|points| (signed_area(&points).abs() - area).abs() <= MOST_OFF * area)
-        };
-        fit_closed(&self.samples, ruler).map(|fitted| {
-            if is_as_large(&fitted) {
-                return fitted;
-            }
-            let points = resample(&self.points, (self.points.len() as f64 * SPACING).ceil().max(4.0) as usize);
-            let bits = 2.0 * points.len() as f64 * ruler.number(tuning::LEVEL_SIGMA);
-            let shape = OutlineShape::Path(PathRing::polygon(points));
-            Outline { shape, bits, misfit: 0.0, covariance: Vec::new() }
-        })
-    }
+/// The outline along a closed line: of few numbers, or, where that is far off, the line itself.
+fn outline(line: &RingSamples, ruler: &Ruler) -> Option<Outline> {
+    let points: Vec<[f64; 2]> = line.runs.iter().flatten().map(|sample| sample.point.to_array()).collect();
+    let area = signed_area(&points).abs();
+    let is_as_large = |outline: &Outline| {
+        polygon(outline).is_some_and(|points| (signed_area(&points).abs() - area).abs() <= MOST_OFF * area)
+    };
+    fit_closed(line, ruler).map(|fitted| {
+        if is_as_large(&fitted) {
+            return fitted;
+        }
+        let points = resample(&points, (points.len() as f64 * SPACING).ceil().max(4.0) as usize);
+        let bits = 2.0 * points.len() as f64 * ruler.number(tuning::LEVEL_SIGMA);
+        let shape = OutlineShape::Path(PathRing::polygon(points));
+        Outline { shape, bits, misfit: 0.0, covariance: Vec::new() }
+    })
 }
 
 /// A field of coverage on a finer grid, where it is 0 or 1 nearly everywhere and whose means over pixels are the coverage: what it is off by there is

@@ -76,6 +76,8 @@ struct Seen {
     pixels: Vec<usize>,
     /// How many of them nothing that is painted beside them explains.
     count: usize,
+    /// Bits that those cost now, wherever they lie.
+    missed: f64,
 }
 
 impl Painted<'_> {
@@ -137,8 +139,7 @@ impl Painted<'_> {
         let is_own = pixels.iter().any(|(_, mark)| mark.is_new && mark.is_flat);
         let least = if is_own { least } else { tuning::LEAST_SEAM };
         let new = pixels.iter().filter(|(_, mark)| mark.is_new && mark.is_flat == is_own).map(|&(i, _)| i);
-        let off = |i: usize| distance(color(&self.image, i), color(&self.painted, i));
-        let extreme = new.max_by(|&i, &j| off(i).total_cmp(&off(j)))?;
+        let extreme = new.max_by(|&i, &j| self.distance(i).total_cmp(&self.distance(j)))?;
         let of_color = |ink: Color| self.of_color(ink, pixels, is_own);
         let own = is_own.then(|| of_color(color(&self.image, extreme)).0);
         // A color of the drawing explains as much, and one that is nowhere half seen on another one is none.
@@ -155,21 +156,27 @@ impl Painted<'_> {
     /// its own.
     #[inline(never)]
     fn of_color(&self, ink: Color, pixels: &[(usize, Mark)], is_own: bool) -> (Seen, f64) {
-        let width = self.image.size().width();
+        let [width, height] = [self.image.size().width(), self.image.size().height()];
         let shares: Vec<(usize, f64)> = pixels.iter().filter_map(|&(i, _)| Some((i, self.share(i, ink)?))).collect();
         let share = |i: usize| shares.binary_search_by_key(&i, |&(i, _)| i).map_or(0.0, |at| shares[at].1);
-        let around = |i: usize| (0..9).map(move |k| (i + k % 3 + k / 3 * width).wrapping_sub(width + 1));
+        // What lies at the border of the picture goes on beyond it.
+        let around = |i: usize| {
+            let [x, y] = [i % width, i / width];
+            let near = |at: usize, k: usize, side: usize| (at + k).saturating_sub(1).min(side - 1);
+            (0..9).map(move |k| near(y, k / 3, height) * width + near(x, k % 3, width))
+        };
         // Wherever such a line runs, it covers as much of three times three pixels; the end of one, and a dot, cover a pixel by half.
         let is_wide =
             |&(i, own): &(usize, f64)| own >= LEAST_WIDTH || around(i).map(share).sum::<f64>() >= 3.0 * LEAST_WIDTH;
         let wide: Vec<usize> = shares.iter().copied().filter(is_wide).map(|(i, _)| i).collect();
-        let mut seen = Seen { color: ink, pixels: Vec::new(), count: 0 };
+        let mut seen = Seen { color: ink, pixels: Vec::new(), count: 0, missed: 0.0 };
         let mut most: f64 = 0.0;
         for &(i, mark) in pixels {
             let share = share(i);
             if share > 0.0 && around(i).any(|i| wide.binary_search(&i).is_ok()) {
                 seen.pixels.push(i);
                 seen.count += usize::from(mark.is_new && mark.is_flat >= is_own);
+                seen.missed += if mark.is_new { misfit_bits(self.distance(i), self.step) } else { 0.0 };
                 most = most.max(share);
             }
         }
@@ -200,6 +207,11 @@ impl Painted<'_> {
         Mark { is_new: pairs.all(|(k, l)| mixture(pixel, near[k], near[l]).1 > self.step), is_flat }
     }
 
+    /// By how much a channel of a pixel differs at most.
+    fn distance(&self, i: usize) -> f64 {
+        distance(color(&self.image, i), color(&self.painted, i))
+    }
+
     /// How much of a color is seen in a pixel over what is painted there; none if it is not that color, or if it is painted already.
     #[inline(never)]
     fn share(&self, i: usize, ink: Color) -> Option<f64> {
@@ -210,7 +222,9 @@ impl Painted<'_> {
 
     /// A thing, as strokes of a pen or in outlines, if it costs less than its pixels; else nothing.
     #[inline(never)]
-    fn traced(&self, Seen { color, pixels, count }: Seen) -> Vec<Missed> {
+    fn traced(&self, Seen { color, pixels, count, missed }: Seen) -> Option<Missed> {
+        // What its pixels cost now, or if each new one of them were told as it is.
+        let worth = missed.max(count as f64 * tuning::PIXEL_BITS);
         let [width, height] = [self.image.size().width(), self.image.size().height()];
         // Two pixels more on every side; what lies at the border of the picture goes on beyond it.
         let reach = |of: &dyn Fn(usize) -> usize| {
@@ -218,8 +232,7 @@ impl Painted<'_> {
             low..high + 5
         };
         let [columns, rows] = [reach(&|i| i % width), reach(&|i| i / width)];
-        let window = ImageSize::new(columns.len(), rows.len()).ok().filter(|window| window.pixels() <= MOST_PIXELS);
-        let Some(window) = window else { return Vec::new() };
+        let window = ImageSize::new(columns.len(), rows.len()).ok().filter(|window| window.pixels() <= MOST_PIXELS)?;
         let corner = Vec2::new(columns.start as f64 - 2.0, rows.start as f64 - 2.0);
         // What lies beside shows a little of it, too.
         let is_own = |x: usize, y: usize| x < width && y < height && pixels.binary_search(&(y * width + x)).is_ok();
@@ -231,24 +244,20 @@ impl Painted<'_> {
         };
         let field: Vec<f64> = rows.flat_map(|y| columns.clone().map(move |x| share((x, y)))).collect();
         let ruler = Ruler { extent: width.max(height) as f64 };
-        let Some(level) = Level::of(&field, window, corner) else { return Vec::new() };
+        let level = Level::of(&field, window, corner)?;
         let outlines = level.outlines(&ruler);
-        let mut bits: f64 = outlines.iter().map(|outline| outline.bits + outline.misfit).sum();
-        let mut forms = vec![Form::Filled(outlines)];
-        if let Some(pen) = level.pen(&ruler).filter(|pen| pen.strokes.len() == 1 && pen.bits + pen.misfit < bits) {
-            bits = pen.bits + pen.misfit;
-            forms = pen.strokes.into_iter().map(Form::Stroked).collect();
+        let bits = outlines.iter().map(|outline| outline.bits + outline.misfit).sum();
+        // Lines with ends of two kinds would be two things.
+        let pen = level.pen(&ruler).filter(|pen| pen.strokes.len() == 1 && pen.bits + pen.misfit < bits);
+        let (form, bits) = match pen.and_then(|pen| Some((pen.bits + pen.misfit, pen.strokes.into_iter().next()?))) {
+            Some((bits, stroke)) => (Form::Stroked(stroke), bits),
+            None => (Form::Filled(outlines), bits),
+        };
+        if bits + tuning::THING_BITS > worth {
+            return None;
         }
-        // What its pixels cost now, or if each new one of them were told as it is.
-        let off = |&i: &usize| distance(self::color(&self.image, i), self::color(&self.painted, i));
-        let missed: f64 = pixels.iter().filter(|&&i| self.mark(i).is_new).map(|i| misfit_bits(off(i), self.step)).sum();
-        if bits + tuning::THING_BITS > missed.max(count as f64 * tuning::PIXEL_BITS) {
-            return Vec::new();
-        }
-        let bits = bits / forms.len() as f64;
-        let unit = self.image.size().unit_px() as f64;
-        let layers = forms.into_iter().map(|form| Layer { color, form, faces: Vec::new(), bits });
-        layers.filter_map(|layer| Some(Missed { object: scene::object(&layer, unit)?, bits })).collect()
+        let layer = Layer { color, form, faces: Vec::new(), bits };
+        Some(Missed { object: scene::object(&layer, self.image.size().unit_px() as f64)?, bits })
     }
 }
 

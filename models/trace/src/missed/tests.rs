@@ -116,28 +116,35 @@ fn a_pen_is_told_by_what_it_covers() {
     assert!(found > 12, "{found} of 24");
 }
 
+/// The colors of what is missed where a white drawing should show lines (how much each covers of every pixel, and its gray), whose grays are known.
+fn missed_grays(lines: &[(Vec<f64>, f32)]) -> Vec<Paint<f32>> {
+    let size = ImageSize::new(SIDE, SIDE).unwrap();
+    let over = |i: usize| lines.iter().fold(1.0_f32, |under, (line, gray)| under + line[i] as f32 * (gray - under));
+    let pixels: Vec<f32> = (0..size.pixels()).flat_map(|i| [over(i); 3]).collect();
+    let image = Image::from_interleaved(size, &pixels).unwrap();
+    let white = Image::from_interleaved(size, &vec![1.0; 3 * size.pixels()]).unwrap();
+    let thing = |&(_, gray): &(Vec<f64>, f32)| {
+        let pose = Pose { translation: [0.0; 2], scale: 1.0, rotation: 0.0 };
+        Object { shape: Circle { radius: 0.01 }.into(), pose, paint: [gray; 3].into(), confidence: 1.0 }
+    };
+    let scene = Scene { objects: lines.iter().map(thing).collect(), ..Scene::empty([1.0; 3]) };
+    let painted = Painted { scene: &scene, image: image.view(), painted: white.view(), step: tuning::LEAST_CONTRAST };
+    let missed = painted.missed(&painted.off(&(0..size.pixels())));
+    missed.iter().map(|missed| missed.object.paint).collect()
+}
+
 /// A gray line that begins at a black one shows as much as a black hairline would, and stays gray.
 #[test]
 fn what_lies_across_a_darker_line_keeps_its_color() {
-    let size = ImageSize::new(SIDE, SIDE).unwrap();
-    let (black, gray) = ([0.0_f32; 3], [0.7_f32; 3]);
     let bar = drawn(Vec2::new(6.3, 4.0), Vec2::new(6.3, 20.0), 1.4);
     let line = drawn(Vec2::new(6.0, 11.6), Vec2::new(22.0, 13.9), 0.9);
-    let pixel = |i: usize| {
-        let over = |under: f32, of: &[f64], ink: f32| under + of[i] as f32 * (ink - under);
-        [over(over(1.0, &line, gray[0]), &bar, black[0]); 3]
-    };
-    let pixels: Vec<f32> = (0..size.pixels()).flat_map(pixel).collect();
-    let image = Image::from_interleaved(size, &pixels).unwrap();
-    let white = Image::from_interleaved(size, &vec![1.0; 3 * size.pixels()]).unwrap();
-    // Both colors are seen elsewhere.
-    let thing = |color: [f32; 3]| {
-        let pose = Pose { translation: [0.0; 2], scale: 1.0, rotation: 0.0 };
-        Object { shape: Circle { radius: 0.01 }.into(), pose, paint: color.into(), confidence: 1.0 }
-    };
-    let scene = Scene { objects: vec![thing(black), thing(gray)], ..Scene::empty([1.0; 3]) };
-    let painted = Painted { scene: &scene, image: image.view(), painted: white.view(), step: tuning::LEAST_CONTRAST };
-    let missed = painted.missed(&painted.off(&(0..size.pixels())));
-    let colors: Vec<Paint<f32>> = missed.iter().map(|missed| missed.object.paint).collect();
-    assert_eq!(colors, [black, gray].map(Paint::Flat), "{missed:?}");
+    assert_eq!(missed_grays(&[(line, 0.7), (bar, 0.0)]), [0.0, 0.7].map(|gray| Paint::Flat([gray; 3])));
+}
+
+/// Of a line along the border less than half a pixel is seen; it goes on beyond, and is one with what begins there.
+#[test]
+fn what_lies_along_the_border_is_as_wide_as_what_leads_there() {
+    let along = drawn(Vec2::new(-0.1, -4.0), Vec2::new(-0.1, 30.0), 1.1);
+    let away = drawn(Vec2::new(0.0, 11.2), Vec2::new(20.0, 13.6), 1.2);
+    assert_eq!(missed_grays(&[(along, 0.0), (away, 0.0)]), [Paint::Flat([0.0; 3])]);
 }
