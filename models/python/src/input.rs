@@ -43,6 +43,8 @@ pub(crate) enum InputError {
     Image(#[from] ImageError),
     #[error("an array of {height} x {width} pixels, must be 1 to {limit}; scale it down or raise max_pixels")]
     Pixels { width: usize, height: usize, limit: usize },
+    #[error("a picture of {} x {} pixels for a scene of {} x {}", found.width(), found.height(), scene.width(), scene.height())]
+    Size { found: ImageSize, scene: ImageSize },
     #[error("an array of {channels} channels, must have 3 or 4")]
     Channels { channels: usize },
     #[error("{path}: holds {count} images, must be 1; load it with numpy and give them to fit_many", path = path.display())]

@@ -4,17 +4,17 @@ use alloc::sync::Arc;
 use core::time::Duration;
 use std::path::Path;
 
-use dvp::export::{ExportError, Found, MeasuredPicture, label_map, measure, normal_efd, whole_coverage};
+use dvp::export::{ExportError, Found, MeasuredPicture, label_map, label_map_in, measure, normal_efd, whole_coverage};
 use dvp::format::{FormatError, Picture, Place, SceneJson, bank_to_json};
 use dvp::paint::Painter;
 use dvp::svg::to_svg_numbered;
-use dvp_core::{Efd, ImageSize};
+use dvp_core::{Efd, Image, ImageSize};
 use dvp_fit::{Bank, Fit};
 use numpy::{IntoPyArray as _, PyArray1, PyArray2, PyArray3, PyArrayMethods as _, PyReadonlyArray2};
 use pyo3::prelude::*;
 
 use crate::border::{MOST_PIXELS, exception, refusal, unlocked};
-use crate::input;
+use crate::input::{self, InputError, PySource, Source};
 
 /// What errors call scenes that came as text.
 const TEXT: &str = "scene";
@@ -73,6 +73,12 @@ impl Scene {
         let size = json.size(place)?.ok_or_else(field)?;
         let numbers = (1..).take(scene.objects.len()).collect();
         Ok(Self { scene, json, size, covariance: Vec::new(), bank, numbers, mae: None, time: None })
+    }
+
+    /// A picture of the size of this scene.
+    fn image(&self, source: &Source) -> Result<Image<f32>, InputError> {
+        let image = source.picture(self.size.pixels(), false)?.image;
+        if image.size() == self.size { Ok(image) } else { Err(InputError::Size { found: image.size(), scene: self.size }) }
     }
 
     pub(crate) fn core(&self) -> &dvp_core::Scene<f32> {
@@ -191,9 +197,17 @@ impl Scene {
         values.into_pyarray(py).reshape([height, width, if rgba { 4 } else { 3 }])
     }
 
-    fn labels<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u32>>> {
+    /// Of the scene, or of the picture that it was read from.
+    fn labels<'py>(&self, py: Python<'py>, picture: Option<PySource<'py>>) -> PyResult<Bound<'py, PyArray2<u32>>> {
         let size = paintable(self.size.width(), self.size.height())?;
-        let labels = unlocked(py, || label_map(&self.scene, &self.numbers, size))?;
+        let labels = match picture.map(|picture| picture.to_owned()) {
+            None => unlocked(py, || label_map(&self.scene, &self.numbers, size))?,
+            Some(source) => {
+                let image = unlocked(py, || self.image(&source))?;
+                let noise = self.json.known.as_ref().and_then(|known| known.noise).unwrap_or(f64::NAN);
+                unlocked(py, || label_map_in(&self.scene, &self.numbers, image.view(), noise as f32))?
+            }
+        };
         labels.into_pyarray(py).reshape([size.height(), size.width()])
     }
 

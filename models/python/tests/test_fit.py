@@ -55,7 +55,7 @@ def test_the_command_writes_the_same_bytes(shipped: Path, tmp_path: Path, option
     assert (tmp_path / "shapes.json").read_text() == scene.to_json() + "\n"
     assert (tmp_path / "shapes.svg").read_text() == scene.to_svg()
     assert np.array_equal(np.asarray(Image.open(tmp_path / "shapes.png")), scene.render())
-    assert np.array_equal(np.asarray(Image.open(tmp_path / "shapes.labels.png")), scene.labels())
+    assert np.array_equal(np.asarray(Image.open(tmp_path / "shapes.labels.png")), scene.labels(shipped))
     header, *rows = (tmp_path / "t.csv").read_text().splitlines()
     columns = scene.measures(name=str(shipped))
     assert header.split(",") == list(columns)

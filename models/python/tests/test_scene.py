@@ -58,6 +58,19 @@ def test_every_object_is_whole() -> None:
     assert [(labels == k).sum() for k in (1, 2)] == [900 - 400, 900]
 
 
+def test_pixels_that_refute_the_scene_belong_to_what_they_show() -> None:
+    picture = np.full((64, 64, 3), 255, np.uint8)
+    picture[10:40, 10:40] = 0
+    scene = dvp.fit(picture)
+    # Of this pixel beside the square the picture has more than half.
+    picture[20, 40] = 100
+    assert scene.labels()[20, 40] == 0
+    labels = scene.labels(picture)
+    assert labels[20, 40] == 1 and (labels == 1).sum() == 900 + 1
+    with pytest.raises(dvp.DvpError, match="32 x 64 pixels for a scene of 64 x 64"):
+        scene.labels(picture[:, :32])
+
+
 def test_images_have_the_size_and_type_asked_for(square: Any) -> None:
     scene = dvp.fit(square)
     assert scene.render((128, 32)).shape == (32, 128, 3)

@@ -31,7 +31,7 @@ mod whole;
 pub use coco::coco;
 pub use dvp_formats::export::{
     ColumnValues, Deviations, ExportError, Found, HAS_PARQUET, MeasuredObject, MeasuredPicture, Polygon, Region, Scale,
-    TableColumn, geojson, label_map, measure, table_columns, table_csv, table_parquet,
+    TableColumn, geojson, label_map, label_map_in, measure, table_columns, table_csv, table_parquet,
 };
 pub use efd::{efd_csv, efd_nef, normal_efd};
 pub use label_map::label_map_png;

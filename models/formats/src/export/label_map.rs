@@ -3,8 +3,8 @@
 use dvp_core::metric::{Ownership, OwnershipRule};
 use dvp_core::render::{Compositing, ContourRenderer};
 use dvp_core::shape::REFERENCE_VERTICES;
-use dvp_core::{ImageSize, Scene};
-use dvp_fit::paint::drawing_of;
+use dvp_core::{Drawing, Image, ImageSize, ImageView, Scene};
+use dvp_fit::paint::{Canvas, drawing_of};
 
 use super::error::ExportError;
 
@@ -18,10 +18,93 @@ use super::error::ExportError;
 /// [`ExportError::Draw`] and [`ExportError::Owners`] if the scene cannot be drawn.
 pub fn label_map(scene: &Scene<f32>, numbers: &[u32], size: ImageSize) -> Result<Vec<u32>, ExportError> {
     let drawing = drawing_of(scene, size, REFERENCE_VERTICES).map_err(ExportError::Draw)?;
+    Ok(numbered(&owners(scene, &drawing, size)?, numbers))
+}
+
+/// As [`label_map`], but where the scene is refuted by the picture that it was read from, the picture says who is seen.
+///
+/// Outlines are smooth where the edges of a picture are jagged, so that pixels that are about half covered go to the wrong side. Such a pixel
+/// is more than [`REFUTED`] times the `noise` (standard deviation of a channel, \[0, 1\]) away from what the scene paints. It goes to the
+/// one with the larger share, if two of those beside it mix to its color. Scenes that `blend`, and objects that one can see
+/// through, are left as they are painted.
+///
+/// # Errors
+/// As [`label_map`].
+pub fn label_map_in(
+    scene: &Scene<f32>,
+    numbers: &[u32],
+    image: ImageView<'_, f32>,
+    noise: f32,
+) -> Result<Vec<u32>, ExportError> {
+    let size = image.size();
+    let drawing = drawing_of(scene, size, REFERENCE_VERTICES).map_err(ExportError::Draw)?;
+    let drawn = owners(scene, &drawing, size)?;
+    let mut painted = Image::zeros(size);
+    Canvas::default().paint_to(scene, &drawing, &mut painted)?;
+    let mut seen = drawn.clone();
+    if scene.compositing == Compositing::Over && noise.is_finite() {
+        let [width, height] = [size.width(), size.height()];
+        let difference = |p: [f32; 3], q: [f32; 3]| (0..3).map(|c| (p[c] - q[c]).abs()).fold(0.0, f32::max);
+        for (pixel, own) in seen.iter_mut().enumerate() {
+            let color = image.pixel(pixel);
+            if difference(color, painted.view().pixel(pixel)) <= REFUTED * noise {
+                continue;
+            }
+            // The pixel's own object first, so that it stays where another explains it no better.
+            let mut beside = vec![*own];
+            let [x, y] = [pixel % width, pixel / width];
+            for row in y.saturating_sub(1)..height.min(y + 2) {
+                for &other in &drawn[row * width + x.saturating_sub(1)..row * width + width.min(x + 2)] {
+                    if !beside.contains(&other) {
+                        beside.push(other);
+                    }
+                }
+            }
+            *own = larger_share(color, &beside, &drawing, REFUTED * noise).unwrap_or(*own);
+        }
+    }
+    Ok(numbered(&seen, numbers))
+}
+
+/// How many standard deviations of the noise a pixel is from what the scene paints, if it says otherwise.
+const REFUTED: f32 = 3.0;
+
+/// The larger of two objects (0: the background, else from 1) whose mixture is nearest to the color; none if no mixture comes within `tolerance`.
+fn larger_share(color: [f32; 3], beside: &[u32], drawing: &Drawing<f32>, tolerance: f32) -> Option<u32> {
+    let of = |object: u32| match (object as usize).checked_sub(1) {
+        None => Some(drawing.background),
+        Some(k) => (drawing.confidences[k] >= 1.0).then_some(drawing.colors[k]),
+    };
+    let mut best = (tolerance, None);
+    for (k, &a) in beside.iter().enumerate() {
+        for &b in &beside[k + 1..] {
+            let (Some(from), Some(to)) = (of(a), of(b)) else { continue };
+            let way = [0, 1, 2].map(|c| to[c] - from[c]);
+            let length: f32 = way.iter().map(|step| step * step).sum();
+            if length == 0.0 {
+                continue;
+            }
+            let along: f32 = (0..3).map(|c| (color[c] - from[c]) * way[c]).sum();
+            let share = (along / length).clamp(0.0, 1.0);
+            let misfit = (0..3).map(|c| (color[c] - from[c] - share * way[c]).abs()).fold(0.0, f32::max);
+            if misfit < best.0 {
+                best = (misfit, Some(if share < 0.5 { a } else { b }));
+            }
+        }
+    }
+    best.1
+}
+
+/// Per pixel 1 + the object that is seen, else 0.
+fn owners(scene: &Scene<f32>, drawing: &Drawing<f32>, size: ImageSize) -> Result<Vec<u32>, ExportError> {
     let renderer = ContourRenderer::new(scene.edge, scene.compositing);
     let mut owners = Ownership::default();
     let rule = OwnershipRule::Seen(Compositing::Over);
-    owners.fill_drawing(rule, &renderer, &drawing, size, &mut Default::default())?;
+    owners.fill_drawing(rule, &renderer, drawing, size, &mut Default::default())?;
+    Ok(owners.index().to_vec())
+}
+
+fn numbered(owners: &[u32], numbers: &[u32]) -> Vec<u32> {
     let number = |&index: &u32| (index as usize).checked_sub(1).and_then(|k| numbers.get(k)).copied();
-    Ok(owners.index().iter().map(|index| number(index).unwrap_or(0)).collect())
+    owners.iter().map(|index| number(index).unwrap_or(0)).collect()
 }

@@ -15,7 +15,7 @@
 //! | `measure.rs` | a scene and the covariance of its fit | [`MeasuredObject`]s |
 //! | `scale.rs` | `0.12mm/px` | [`Scale`] |
 //! | `table/` | objects of many pictures | a table: CSV, Parquet |
-//! | `label_map.rs` | a scene | which object is seen in each pixel |
+//! | `label_map.rs` | a scene, and the picture that it was read from | which object is seen in each pixel |
 //! | `geojson.rs` | objects | a GeoJSON collection of features |
 //! | `error.rs` | | [`ExportError`] |
 //!
@@ -32,7 +32,7 @@ mod table;
 
 pub use error::ExportError;
 pub use geojson::{decimals, geojson};
-pub use label_map::label_map;
+pub use label_map::{label_map, label_map_in};
 pub use measure::{Deviations, MeasuredObject, measure};
 pub use region::{Polygon, Region};
 pub use scale::Scale;

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from . import _dvp
 from ._dvp import DvpError
-from ._inputs import Bank, bank_text
+from ._inputs import Bank, Picture, bank_text, source
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -170,9 +170,12 @@ class Scene:
             return (image.astype(np.float64).clip(0, 1) * 255 + 0.5).astype(np.uint8)
         return image.astype(wanted, copy=False)
 
-    def labels(self) -> npt.NDArray[np.uint32]:
-        """Which object is seen in each pixel: 0 the background, else the number of the object; height x width."""
-        return self._native.labels()
+    def labels(self, picture: Picture = None) -> npt.NDArray[np.uint32]:
+        """Which object is seen in each pixel: 0 the background, else the number of the object; height x width.
+
+        With the ``picture`` that the scene was read from, pixels of its edges that refute the scene go to what they show.
+        """
+        return self._native.labels(None if picture is None else source(picture)[0])
 
     def whole(self) -> npt.NDArray[np.float32]:
         """The coverage of every object, hidden parts included, 0 to 1: objects x height x width."""

@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail};
 use clap::Args;
-use dvp_core::ImageSize;
+use dvp_core::{Image, ImageSize};
 use dvp_fit::{Bank, Fit};
 
 use super::report::Report;
 use crate::export::{
-    ExportError, Found, HAS_PARQUET, MeasuredPicture, Scale, coco, efd_csv, efd_nef, geojson, label_map, label_map_png,
-    measure, roi_zip, table_csv, table_parquet, whole_png,
+    ExportError, Found, HAS_PARQUET, MeasuredPicture, Scale, coco, efd_csv, efd_nef, geojson, label_map, label_map_in,
+    label_map_png, measure, roi_zip, table_csv, table_parquet, whole_png,
 };
 use crate::format::write_atomic;
 
@@ -60,18 +60,20 @@ pub(super) struct Measurable<'a> {
     pub(super) fit: &'a Fit<f32>,
     pub(super) bank: Option<&'a Bank<f32>>,
     pub(super) size: ImageSize,
+    /// What it was read from; none: a label map.
+    image: Option<&'a Image<f32>>,
     /// What its objects are called, one number per object; none: from 1 in the order of painting.
     numbers: Option<&'a [u32]>,
 }
 
 impl<'a> Measurable<'a> {
-    pub(super) fn new(fit: &'a Fit<f32>, bank: Option<&'a Bank<f32>>, size: ImageSize) -> Self {
-        Self { fit, bank, size, numbers: None }
+    pub(super) fn new(fit: &'a Fit<f32>, bank: Option<&'a Bank<f32>>, image: &'a Image<f32>) -> Self {
+        Self { fit, bank, size: image.size(), image: Some(image), numbers: None }
     }
 
     /// The objects of label maps keep their labels.
     pub(super) fn of_labels(fit: &'a Fit<f32>, size: ImageSize, labels: &'a [u32]) -> Self {
-        Self { fit, bank: None, size, numbers: Some(labels) }
+        Self { fit, bank: None, size, image: None, numbers: Some(labels) }
     }
 
     pub(super) fn numbers(&self) -> Vec<u32> {
@@ -121,16 +123,20 @@ impl ExportArguments {
         [picture, stem]: [&str; 2],
         files: &mut Vec<PictureFile>,
     ) -> Result<Option<MeasuredPicture>> {
-        let Measurable { fit: Fit { scene, covariance, .. }, bank, size, .. } = *of;
+        let Measurable { fit: Fit { scene, covariance, noise, .. }, bank, size, image, .. } = *of;
         let numbers = of.numbers();
         let measured = || -> Result<MeasuredPicture> {
             let found = Found { size, objects: measure(scene, covariance, bank, &numbers, size)? };
             Ok(MeasuredPicture::new(picture.to_owned(), stem.to_owned(), Ok(found)))
         };
         let measured = self.measures().then(measured).transpose()?;
+        let labels = || match image {
+            Some(image) => label_map_in(scene, &numbers, image.view(), *noise),
+            None => label_map(scene, &numbers, size),
+        };
         for ending in self.endings() {
             let bytes = match (ending, &measured) {
-                ("labels.png", _) => label_map_png(&label_map(scene, &numbers, size)?, size)?,
+                ("labels.png", _) => label_map_png(&labels()?, size)?,
                 ("whole.png", _) => whole_png(scene, size)?,
                 ("rois.zip", Some(measured)) => roi_zip(measured.objects())?,
                 ("geojson", Some(measured)) => geojson(measured, self.scale)?,

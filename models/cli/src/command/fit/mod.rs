@@ -242,7 +242,7 @@ fn try_fit(
         Some(frame) => stack_picture(stacks, &input.path, frame).context("image of the stack is gone")?,
     };
     let Solved { fit, time } = solver.solve(picture, &input.stem, memory)?;
-    let scene = Measurable::new(&fit, solver.bank(), picture.image.size());
+    let scene = Measurable::new(&fit, solver.bank(), &picture.image);
     finish(arguments, [&*input.name(), &input.stem], picture, &scene, time, memory.canvas())
 }
 

@@ -18,6 +18,33 @@ fn pixels_belong_to_the_last_object_that_covers_half() {
     assert_eq!((image.color(), image.to_luma8().into_raw()), (image::ColorType::L8, vec![1, 1, 2, 0]));
 }
 
+/// The outline of an object goes straight through jagged edges: pixels that it halves belong to what they show.
+#[test]
+fn pixels_that_refute_the_scene_belong_to_what_they_show() {
+    let size = ImageSize::new(6, 1).unwrap();
+    let scene = scene(vec![polygons(&[&corners([0.0, 0.0], [24.5, 10.0])], [0.0; 3])]);
+    // White, black up to 2.45 px; no mixture of the two is red.
+    let mut image = Painter::default().paint(&scene, size).unwrap();
+    let mut labels = |pixel: usize, color: [f32; 3], noise: f32| {
+        let pixels = size.pixels();
+        let was = [0, 1, 2].map(|c| core::mem::replace(&mut image.data_mut()[c * pixels + pixel], color[c]));
+        let labels = label_map_in(&scene, &[7], image.view(), noise).unwrap();
+        (0..3).for_each(|c| image.data_mut()[c * pixels + pixel] = was[c]);
+        labels
+    };
+    assert_eq!(labels(2, [0.55; 3], 0.01), [7, 7, 0, 0, 0, 0], "as drawn: 0.45 of it");
+    assert_eq!(labels(2, [0.44; 3], 0.01), [7, 7, 7, 0, 0, 0], "the picture has 0.56 of it");
+    assert_eq!(labels(2, [0.44; 3], 0.05), [7, 7, 0, 0, 0, 0], "that may be noise");
+    assert_eq!(labels(1, [0.7; 3], 0.01), [7, 0, 0, 0, 0, 0]);
+    assert_eq!(labels(2, [0.4, 0.0, 0.0], 0.01), [7, 7, 0, 0, 0, 0], "no mixture");
+    assert_eq!(labels(5, [0.1; 3], 0.01), [7, 7, 0, 0, 0, 0], "away from every edge");
+    let fit_is_unknown = labels(2, [0.44; 3], f32::NAN);
+    assert_eq!(fit_is_unknown, [7, 7, 0, 0, 0, 0]);
+    let mut thin = scene.clone();
+    thin.objects[0].confidence = 0.8;
+    assert_eq!(label_map_in(&thin, &[7], image.view(), 0.01).unwrap(), [7, 7, 0, 0, 0, 0], "one can see through it");
+}
+
 #[test]
 fn many_objects_take_16_bits_and_too_many_are_refused() {
     let size = ImageSize::new(2, 1).unwrap();
