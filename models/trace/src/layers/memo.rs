@@ -11,37 +11,32 @@ use crate::sample::RingSamples;
 /// The outlines of one picture, by the samples that they were fitted to. Where other readings of the picture have the same boundary, they are the same.
 #[derive(Default)]
 pub(crate) struct Memo {
-    known: RefCell<BTreeMap<Vec<u64>, Known>>,
-    /// Readings of the picture that were asked for before this one.
-    reading: Cell<usize>,
-    /// Samples that outlines of this reading were fitted to, or could have been.
+    known: RefCell<BTreeMap<Vec<u64>, Option<Outline>>>,
+    /// Samples that outlines were fitted to, of all that is bounded as one: the searches for an order of all readings, or what else is asked for.
     pub(super) spent: Cell<usize>,
-}
-
-/// An outline, if there is one, and the last reading that it was asked for.
-struct Known {
-    outline: Option<Outline>,
-    reading: usize,
+    /// Those of the searches so far, while something else is asked for.
+    searched: Cell<usize>,
 }
 
 impl Memo {
-    /// Another reading of the picture.
-    pub(super) fn begin(&self) {
-        self.reading.set(self.reading.get() + 1);
-        self.spent.set(0);
+    /// A search for an order begins, or goes on in another reading of the picture: all of them have one budget.
+    pub(super) fn search(&self) {
+        self.spent.set(self.searched.get());
+    }
+
+    /// It ends.
+    pub(super) fn found(&self) {
+        self.searched.set(self.spent.replace(0));
     }
 
     /// What [`fit_closed`] gives; the ruler is always the same.
     pub(super) fn fit_closed(&self, ring: &RingSamples, ruler: &Ruler) -> Option<Outline> {
         let mut known = self.known.borrow_mut();
-        let known =
-            known.entry(key(ring)).or_insert_with(|| Known { outline: fit_closed(ring, ruler), reading: usize::MAX });
-        // A search goes as far in every reading, whatever was known before.
-        if known.reading != self.reading.get() {
-            known.reading = self.reading.get();
+        let outline = known.entry(key(ring)).or_insert_with(|| {
             self.spent.set(self.spent.get() + ring.runs.iter().map(Vec::len).sum::<usize>());
-        }
-        known.outline.clone()
+            fit_closed(ring, ruler)
+        });
+        outline.clone()
     }
 }
 

@@ -103,7 +103,6 @@ impl Layers {
 pub(crate) fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<Color>, memo: &Memo) -> Layers {
     let ruler = Ruler { extent: partition.size[0].max(partition.size[1]) as f64 };
     let background = background(partition, rings, matte.map(|matte| partition.as_palette(matte)));
-    memo.begin();
     let mut pens = pen::find(partition, rings, background, &ruler, memo);
     let edge_to_edge = EdgeToEdge::of(partition, rings);
     let order = Order::of(partition, rings, background, matte.is_some(), &mut pens, &edge_to_edge.votes);
@@ -148,8 +147,7 @@ pub(crate) fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<C
         }
     }
     // Thin lines were taken out of what they lie on.
-    let lines = partition.lines.iter().filter(|line| !partition.is_gap(line));
-    let lines = lines.filter_map(|line| Some((line.color, fit_thin(&line.chain, &ruler)?)));
+    let lines = partition.lines.iter().filter_map(|line| Some((line.color, fit_thin(&line.chain, &ruler)?)));
     layers.extend(lines.map(|(color, (stroke, misfit))| {
         let points: usize = stroke.rings.iter().map(|ring| ring.points.len()).sum();
         // Where it passes and how wide it is can be seen, where it ends less so.
