@@ -31,7 +31,7 @@ pub(crate) struct Subsampling {
 
 impl Subsampling {
     /// The widest stride, a power of 2, whose pixels tell those between; none if that is every pixel.
-    pub(super) fn of<T: Real>(image: &ImageView<'_, T>) -> Option<Self> {
+    pub(crate) fn of<T: Real>(image: &ImageView<'_, T>) -> Option<Self> {
         let size = image.size();
         let mut stride = 1;
         while size.unit_px() / (2 * stride) >= SUBSAMPLED_UNIT_PX && has_wide_edges(image, stride) {
@@ -52,7 +52,7 @@ impl Subsampling {
     }
 
     /// The pixels looked at.
-    pub(super) fn image<T: Real>(&self, image: &ImageView<'_, T>) -> Image<T> {
+    pub(crate) fn image<T: Real>(&self, image: &ImageView<'_, T>) -> Image<T> {
         let mut out = Image::zeros(self.small);
         let (width, first) = (self.size.width(), self.stride / 2);
         for (channel, plane) in out.data_mut().chunks_exact_mut(self.small.pixels()).enumerate() {
@@ -74,7 +74,7 @@ impl Subsampling {
     }
 
     /// A fit of the pixels looked at, as one of the image.
-    pub(super) fn restore<T: Real>(&self, mut fit: Fit<T>) -> Fit<T> {
+    pub(crate) fn restore<T: Real>(&self, mut fit: Fit<T>) -> Fit<T> {
         let (stride, origin) = self.similarity::<T>();
         let [unit, small] = [self.size, self.small].map(|size| T::of_usize(size.unit_px()));
         let units = stride * small / unit;
@@ -95,6 +95,12 @@ impl Subsampling {
             }
         }
         fit
+    }
+
+    /// Whether a fit of the pixels looked at, which visibly misses `seen` of them, is one of the image, of which it misses `missed`.
+    pub(crate) fn holds(&self, seen: usize, missed: usize) -> bool {
+        let each = (self.stride * self.stride) as f64;
+        missed as f64 <= MISSES + MISSES_EACH * each * seen as f64
     }
 
     /// A sample of the pixels looked at, as one of the image.
@@ -131,9 +137,7 @@ impl<T: Real> Fitter<T> {
         scratch.subsampling = Some(taken);
         let (loss, missed) = self.misses(&best, &image, scratch)?;
         best.loss = loss;
-        let each = (taken.stride * taken.stride) as f64;
-        let holds = missed as f64 <= MISSES + MISSES_EACH * each * seen as f64;
-        Ok(holds.then_some(best))
+        Ok(taken.holds(seen, missed).then_some(best))
     }
 
     /// A fit of the pixels taken, as one of the image, and how many of them it visibly misses.
@@ -151,7 +155,7 @@ impl<T: Real> Fitter<T> {
     }
 
     /// Mean absolute error of a fit's rendering, and how many pixels it visibly misses.
-    fn misses(
+    pub(crate) fn misses(
         &self,
         fit: &Fit<T>,
         image: &ImageView<'_, T>,

@@ -13,6 +13,7 @@
 //! | `most` | fewer objects than a drawing has |
 //! | `openings` | [`cut_openings`]: what shows nothing in a transparent picture |
 //! | `squares` | pictures that were enlarged by repeating pixels, and sprites |
+//! | `wide` | large pictures with wide edges, read by every k-th pixel |
 //!
 //! *Units*: scene units, the shorter side of the picture is 1. Works in f32, as images come. Proved by the tests beside it, and by
 //! those of the command, which calls it.
@@ -25,6 +26,7 @@ mod openings;
 mod squares;
 #[cfg(test)]
 mod tests;
+mod wide;
 
 use alloc::vec::Vec;
 use core::cmp::Ordering;
@@ -117,7 +119,10 @@ pub fn fit_picture(
     // Who says how objects mix asks for a scene of the renderer, and no square has its edges.
     let small = if fitter.options().compositing.is_some() { None } else { squares::reduced(&image) };
     let image = small.as_ref().map_or(image, Image::view);
-    let fit = drawing_or_segments(fitter, image, known, scratch)?;
+    let fit = match wide::fit(fitter, image, known, scratch)? {
+        Some(fit) => fit,
+        None => drawing_or_segments(fitter, image, known, scratch)?,
+    };
     let mut enlarged = None;
     let (fit, image) = or_squares(fit, image, small.is_some(), &mut enlarged, (fitter, known), scratch)?;
     let fit = match known.matte {

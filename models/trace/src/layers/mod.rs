@@ -147,7 +147,8 @@ pub(crate) fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<C
         }
     }
     // Thin lines were taken out of what they lie on.
-    let lines = partition.lines.iter().filter_map(|line| Some((line.color, fit_thin(&line.chain, &ruler)?)));
+    let lines = partition.lines.iter().filter(|line| !partition.is_gap(line));
+    let lines = lines.filter_map(|line| Some((line.color, fit_thin(&line.chain, &ruler)?)));
     layers.extend(lines.map(|(color, (stroke, misfit))| {
         let points: usize = stroke.rings.iter().map(|ring| ring.points.len()).sum();
         // Where it passes and how wide it is can be seen, where it ends less so.

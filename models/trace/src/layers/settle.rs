@@ -23,6 +23,7 @@ pub(super) fn settle(completion: &mut Completion<'_>) {
     for _ in 0..tuning::MOST_ROUNDS {
         let mut is_changed = search.exchange(&pairs);
         is_changed |= search.fill();
+        is_changed |= search.open();
         is_changed |= search.close();
         is_changed |= search.unite();
         is_changed |= search.frame();
@@ -105,6 +106,19 @@ impl Search<'_, '_> {
                     break;
                 }
             }
+        }
+        is_changed
+    }
+
+    /// Takes away what is painted in the color of the background where the rest is shorter with an opening there: of what is seen through
+    /// openings that others hide in part, junctions tell little.
+    fn open(&mut self) -> bool {
+        let mut is_changed = false;
+        let open: Vec<u32> =
+            self.order.iter().copied().filter(|&face| self.completion.shows_background(face)).collect();
+        for face in open {
+            let without = self.order.iter().copied().filter(|&other| other != face).collect();
+            is_changed |= self.is_shorter(without, &[], 0.0);
         }
         is_changed
     }

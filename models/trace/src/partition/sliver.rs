@@ -12,6 +12,7 @@ use num_traits::Float as _;
 use dvp_core::Vec2;
 use dvp_core::contour::{Crack, Heading};
 
+use super::mix::{best_mixture, narrow};
 use super::palette::distance;
 use super::thin::ThinLine;
 use super::{Face, OUTSIDE, Partition};
@@ -71,6 +72,24 @@ impl Partition {
         }
         let color = (0..self.palette.len()).find(|&k| distance(self.palette[k], line.color) <= self.mix_noise)?;
         self.faces.iter().any(|face| face.color == color && face.flat > 0).then_some(color)
+    }
+
+    /// Whether a line shows a mixture of what lies on its sides and of the ground, all along: then two things lie so near one another that no pixel
+    /// between them is of the ground alone.
+    #[inline(never)]
+    pub(crate) fn is_gap(&self, line: &ThinLine) -> bool {
+        let is_mixed = |window: &ThinSample| {
+            let sides = self.sides(window);
+            let is_face = sides.iter().all(|&side| side != OUTSIDE);
+            let color = |face: u32| narrow(self.faces[face as usize].color);
+            is_face && {
+                let colors = [0, color(sides[0]), color(sides[1])];
+                sides[0] != sides[1]
+                    && best_mixture(line.color, &colors, &self.palette)
+                        .is_some_and(|best| best.misfit <= self.mix_noise && best.share < f64::from(tuning::PURE_SHARE))
+            }
+        };
+        line.chain.samples.iter().all(is_mixed)
     }
 
     /// Makes a face of a line; whether it may be a sliver.
