@@ -49,7 +49,7 @@ fn edges_of_the_renderer_do_not_speak_for_more_things_that_are_farther() {
     assert_eq!(likeliest(more.clone(), drawn, CLEARLY_WORSE).scene, more.scene);
 }
 
-/// Twenty disks in 2048 x 2048 pixels with edges of ten: more things than the paper's scenes have. A dot that no other pixel shows asks for all of them.
+/// Twenty disks in 2048 x 2048 pixels with edges of ten: more things than the paper's scenes have.
 #[test]
 fn large_pictures_with_wide_edges_are_read_by_every_other_pixel() {
     let size = ImageSize::new(2048, 2048).unwrap();
@@ -69,10 +69,7 @@ fn large_pictures_with_wide_edges_are_read_by_every_other_pixel() {
     let mut image = canvas.paint(&scene, size).unwrap().0.clone();
     image.data_mut().iter_mut().for_each(|value| *value = (*value * 255.0 + 0.5).floor() / 255.0);
     let fitter = Fitter::new(FitOptions::default()).unwrap();
-    let of = |image: &Image<f32>| {
-        wide::fit(&fitter, image.view(), &Known::default(), &mut PictureScratch::default()).unwrap()
-    };
-    let fit = of(&image).unwrap();
+    let fit = wide::fit(&fitter, image.view(), &Known::default(), &mut PictureScratch::default()).unwrap().unwrap();
     assert_eq!(fit.scene.objects.len(), 20);
     for object in &scene.objects {
         let off = |other: &Object<f32>| {
@@ -83,11 +80,6 @@ fn large_pictures_with_wide_edges_are_read_by_every_other_pixel() {
         assert!(fit.scene.objects.iter().any(|other| off(other) < 1e-5), "{object:?} in {:?}", fit.scene.objects);
     }
     assert!(fit.loss < 3e-4, "{}", fit.loss);
-    let pixels = size.pixels();
-    for (row, column) in (100..140).flat_map(|row| (100..110).map(move |column| (2 * row + 1, 2 * column))) {
-        (0..3).for_each(|channel| image.data_mut()[channel * pixels + row * 2048 + column] = 0.0);
-    }
-    assert!(of(&image).is_none());
 }
 
 #[test]
