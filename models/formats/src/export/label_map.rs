@@ -24,7 +24,7 @@ pub fn label_map(scene: &Scene<f32>, numbers: &[u32], size: ImageSize) -> Result
 /// As [`label_map`], but where the scene is refuted by the picture that it was read from, the picture says who is seen.
 ///
 /// Outlines are smooth where the edges of a picture are jagged, so that pixels that are about half covered go to the wrong side. Such a pixel
-/// is more than [`REFUTED`] times the `noise` (standard deviation of a channel, \[0, 1\]) away from what the scene paints. It goes to the
+/// is more than three times the `noise` (standard deviation of a channel, \[0, 1\]) away from what the scene paints. It goes to the
 /// one with the larger share, if two of those beside it mix to its color. Scenes that `blend`, and objects that one can see
 /// through, are left as they are painted.
 ///
