@@ -49,39 +49,6 @@ fn edges_of_the_renderer_do_not_speak_for_more_things_that_are_farther() {
     assert_eq!(likeliest(more.clone(), drawn, CLEARLY_WORSE).scene, more.scene);
 }
 
-/// Twenty disks in 2048 x 2048 pixels with edges of ten: more things than the paper's scenes have.
-#[test]
-fn large_pictures_with_wide_edges_are_read_by_every_other_pixel() {
-    let size = ImageSize::new(2048, 2048).unwrap();
-    let disk = |k: usize| Object {
-        shape: AnyShape::Circle(Circle { radius: 0.05 + 0.001 * k as f32 }),
-        pose: Pose {
-            translation: [0.15 + 0.17 * (k % 5) as f32, 0.2 + 0.2 * (k / 5) as f32],
-            scale: 1.0,
-            rotation: 0.0,
-        },
-        paint: [0.1, 0.05 * k as f32, 0.6].into(),
-        confidence: 1.0,
-    };
-    let mut scene = Scene { objects: (0..20).map(disk).collect(), ..Scene::empty([0.9; 3]) };
-    scene.edge = EdgeProfile::distance(1.0 / 2048.0);
-    let mut canvas = Canvas::default();
-    let mut image = canvas.paint(&scene, size).unwrap().0.clone();
-    image.data_mut().iter_mut().for_each(|value| *value = (*value * 255.0 + 0.5).floor() / 255.0);
-    let fitter = Fitter::new(FitOptions::default()).unwrap();
-    let fit = wide::fit(&fitter, image.view(), &Known::default(), &mut PictureScratch::default()).unwrap().unwrap();
-    assert_eq!(fit.scene.objects.len(), 20);
-    for object in &scene.objects {
-        let off = |other: &Object<f32>| {
-            let [x, y] = [0, 1].map(|k| other.pose.translation[k] - object.pose.translation[k]);
-            x.hypot(y)
-        };
-        // A fiftieth of a pixel.
-        assert!(fit.scene.objects.iter().any(|other| off(other) < 1e-5), "{object:?} in {:?}", fit.scene.objects);
-    }
-    assert!(fit.loss < 3e-4, "{}", fit.loss);
-}
-
 #[test]
 fn clear_edges_make_a_drawing_and_what_is_known_beforehand_segments() {
     let square = in_square(12, 36);

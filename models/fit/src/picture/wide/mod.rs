@@ -3,6 +3,9 @@
 //! An edge of many pixels takes the time of as many: each is a mixture that lines and faces may explain, of every two colors of the picture. Of 4096 x 4096
 //! pixels with edges of ten it was most of a minute.
 
+#[cfg(test)]
+mod tests;
+
 use dvp_core::ImageView;
 use dvp_trace::Known;
 
