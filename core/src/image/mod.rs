@@ -8,7 +8,9 @@
 //! |---|---|
 //! | `mod.rs` | RGB: [`Image`], [`ImageView`] |
 //! | `rgba.rs` | RGBA, premultiplied: [`RgbaImage`], [`RgbaView`] |
+//! | `mix.rs` | colors as mixtures of two others: [`mixture`] |
 
+mod mix;
 mod rgba;
 #[cfg(test)]
 mod tests;
@@ -21,6 +23,7 @@ use crate::dims::ImageSize;
 use crate::real::Real;
 use crate::simd;
 
+pub use mix::{coverage, distance, misfit, mixture};
 pub use rgba::{RGBA_CHANNELS, RgbaImage, RgbaView};
 
 /// Color channels of every image.

@@ -3,10 +3,10 @@
 use alloc::vec::Vec;
 use core::f64::consts::PI;
 
+use dvp_core::image::distance;
 use dvp_core::render::Compositing;
 use dvp_core::{Efd, Object, Real, Scene};
 
-use crate::segment::color::distance;
 use crate::tuning::{FAINT_OBJECT, IDLE_SHARE, ONE_COLOR, UNEXPLAINED_SHARE, WIDE_POSITION, WIDE_SIZE};
 use crate::{Ambiguity, Fit, StopReason};
 

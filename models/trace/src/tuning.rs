@@ -282,7 +282,7 @@ pub const CLEAR_VOTE: f64 = 7.0;
 /// So many times as many samples as all boundaries of a picture have, outlines may be fitted to before no other order of faces is tried any more,
 /// and again for groups of faces; the usual picture needs one to three times as many.
 pub const MOST_TRIED: usize = 4;
-/// The same for pictures with long boundaries, samples: a few tenths of a second.
+/// The same for pictures with long boundaries, in all of their readings together, samples.
 pub const MOST_TRIED_SAMPLES: usize = 14_000;
 /// Share of the windows of a thin line that must lie between two faces for it to be a sliver of a third one: windows at its ends see more.
 pub const SLIVER_MOSTLY: f64 = 0.8;

@@ -2,6 +2,7 @@
 
 use alloc::vec::Vec;
 
+use dvp_core::image::distance;
 use dvp_core::render::contour::ContourRenderer;
 use dvp_core::render::{Compositing, EdgeLaw, EdgeProfile};
 use dvp_core::{ImageView, Object, Real, Scene};
@@ -12,7 +13,6 @@ use crate::covariance::{Outlined, covariance};
 use crate::marginal_gain::{marginal_gains, ranking, squared_errors};
 use crate::residual::Residual;
 use crate::segment::EdgeKind;
-use crate::segment::color::distance;
 use crate::tuning::{
     MEAN_OF_TWO_COLOR, PLAIN_HARMONICS, ROUGH_NOISE, SURE_CONTRAST, SURE_PIXELS, VISIBLE_ERROR, VISIBLE_NOISE,
 };

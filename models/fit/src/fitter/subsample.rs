@@ -172,35 +172,38 @@ impl<T: Real> Fitter<T> {
 
 /// Whether the pixels at every `stride` go over edges in several steps: hardly one of those on a slope is sharp.
 fn has_wide_edges<T: Real>(image: &ImageView<'_, T>, stride: usize) -> bool {
-    let (width, height) = (image.size().width(), image.size().height());
+    let [width, height] = [image.size().width(), image.size().height()].map(|side| side / stride);
+    let inner = |side: usize| AROUND..side.saturating_sub(AROUND);
     let (mut sharp, mut sloped) = (0, 0);
     for channel in 0..3 {
         let plane = image.channel(channel);
-        for row in plane.chunks_exact(width).step_by(LINES * stride) {
-            count_sharp(|at| row[at * stride], width / stride, &mut sharp, &mut sloped);
-        }
-        for x in (0..width).step_by(LINES * stride) {
-            count_sharp(|at| plane[at * stride * width + x], height / stride, &mut sharp, &mut sloped);
+        let value = |x: usize, y: usize| plane[(y * image.size().width() + x) * stride];
+        // Row by row in both directions, as the values lie in memory.
+        for y in 0..height {
+            if y % LINES == 0 {
+                inner(width).for_each(|x| count_sharp(|at| value(at, y), x, &mut sharp, &mut sloped));
+            }
+            if inner(height).contains(&y) {
+                (0..width).step_by(LINES).for_each(|x| count_sharp(|at| value(x, at), y, &mut sharp, &mut sloped));
+            }
         }
     }
     sharp * WIDE_EDGES_FEW <= sloped
 }
 
-/// Counts the values of a line that are on a slope, and those of them that are sharp.
-fn count_sharp<T: Real>(value: impl Fn(usize) -> T, len: usize, sharp: &mut usize, sloped: &mut usize) {
+/// Counts the value at a place of a line if it is on a slope, and if it is sharp.
+fn count_sharp<T: Real>(value: impl Fn(usize) -> T, at: usize, sharp: &mut usize, sloped: &mut usize) {
     let rounding = T::of(ROUNDING);
-    for at in AROUND..len.saturating_sub(AROUND) {
-        let [before, own, after] = [value(at - 1), value(at), value(at + 1)];
-        if (after - before).abs() <= rounding && (own - before).abs() <= rounding {
-            continue;
-        }
-        *sloped += 1;
-        let off = (own - T::of(0.5) * (before + after)).abs();
-        if off > rounding {
-            let ends = (T::infinity(), T::neg_infinity());
-            let window = (at - AROUND..=at + AROUND).map(&value);
-            let (low, high) = window.fold(ends, |(low, high), value| (low.min(value), high.max(value)));
-            *sharp += usize::from(off > T::of(SHARP_BEND) * (high - low));
-        }
+    let [before, own, after] = [value(at - 1), value(at), value(at + 1)];
+    if (after - before).abs() <= rounding && (own - before).abs() <= rounding {
+        return;
+    }
+    *sloped += 1;
+    let off = (own - T::of(0.5) * (before + after)).abs();
+    if off > rounding {
+        let ends = (T::infinity(), T::neg_infinity());
+        let window = (at - AROUND..=at + AROUND).map(&value);
+        let (low, high) = window.fold(ends, |(low, high), value| (low.min(value), high.max(value)));
+        *sharp += usize::from(off > T::of(SHARP_BEND) * (high - low));
     }
 }

@@ -87,7 +87,8 @@ pub struct PictureScratch {
 /// is none.
 ///
 /// What was enlarged by repeating pixels is read at the size that it was drawn: [`Fit::loss`] and all else that the fit says of pixels is of that
-/// picture. So is a sprite, whose pixels are squares of one color, with each of them enlarged.
+/// picture. So is a sprite, whose pixels are squares of one color, with each of them enlarged. Of a large picture with wide edges every k-th pixel is
+/// read, as long as the scene misses no more of the whole; [`Fit::loss`] is of the whole, what else the fit says of pixels of those that were read.
 ///
 /// Drawings keep all their objects, however many, unless fewer than the default of [`FitOptions::max_objects`] are asked for.
 ///

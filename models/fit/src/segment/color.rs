@@ -2,15 +2,10 @@
 
 use crate::tuning::SAME_COLOR_DOUBT;
 use dvp_core::Real;
+use dvp_core::image::distance;
 
 /// Colors closer than this in every channel are one color (two rounding errors of 8 bits).
 pub(crate) const SAME_COLOR: f64 = 0.008;
-
-/// The largest difference of a channel.
-#[inline]
-pub(crate) fn distance<T: Real>(a: [T; 3], b: [T; 3]) -> T {
-    (a[0] - b[0]).abs().max((a[1] - b[1]).abs()).max((a[2] - b[2]).abs())
-}
 
 /// Whether two colors may be one, each with the standard deviation of its channels.
 #[inline]

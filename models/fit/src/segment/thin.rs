@@ -9,9 +9,10 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use dvp_core::geometry::DisjointSets;
+use dvp_core::image::distance;
 use dvp_core::{ImageView, Real};
 
-use super::color::{distance, is_same};
+use super::color::is_same;
 use super::flat::{FlatMap, Run};
 use super::region::Region;
 use super::transition::{Soft, SoftScratch, along, off_overshoot};

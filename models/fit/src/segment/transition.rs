@@ -2,10 +2,11 @@
 
 use alloc::vec::Vec;
 
+use dvp_core::image::distance;
 use dvp_core::sort::median_by;
 use dvp_core::{ImageView, Real};
 
-use super::color::{distance, is_same};
+use super::color::is_same;
 use super::flat::FlatMap;
 use super::region::Region;
 use super::thin::Leftover;

@@ -1,5 +1,6 @@
 //! Label maps: which object is seen in each pixel.
 
+use dvp_core::image::{distance, mixture};
 use dvp_core::metric::{Ownership, OwnershipRule};
 use dvp_core::render::{Compositing, ContourRenderer};
 use dvp_core::shape::REFERENCE_VERTICES;
@@ -29,7 +30,7 @@ pub fn label_map(scene: &Scene<f32>, numbers: &[u32], size: ImageSize) -> Result
 /// through, are left as they are painted.
 ///
 /// # Errors
-/// As [`label_map`].
+/// As [`label_map`], and [`ExportError::Render`] if the scene cannot be painted.
 pub fn label_map_in(
     scene: &Scene<f32>,
     numbers: &[u32],
@@ -44,23 +45,24 @@ pub fn label_map_in(
     let mut seen = drawn.clone();
     if scene.compositing == Compositing::Over && noise.is_finite() {
         let [width, height] = [size.width(), size.height()];
-        let difference = |p: [f32; 3], q: [f32; 3]| (0..3).map(|c| (p[c] - q[c]).abs()).fold(0.0, f32::max);
-        for (pixel, own) in seen.iter_mut().enumerate() {
+        for (pixel, seen) in seen.iter_mut().enumerate() {
             let color = image.pixel(pixel);
-            if difference(color, painted.view().pixel(pixel)) <= REFUTED * noise {
+            if distance(color, painted.view().pixel(pixel)) <= REFUTED * noise {
                 continue;
             }
             // The pixel's own object first, so that it stays where another explains it no better.
-            let mut beside = vec![*own];
+            let mut beside = [*seen; 9];
+            let mut count = 1;
             let [x, y] = [pixel % width, pixel / width];
             for row in y.saturating_sub(1)..height.min(y + 2) {
                 for &other in &drawn[row * width + x.saturating_sub(1)..row * width + width.min(x + 2)] {
-                    if !beside.contains(&other) {
-                        beside.push(other);
+                    if !beside[..count].contains(&other) {
+                        beside[count] = other;
+                        count += 1;
                     }
                 }
             }
-            *own = larger_share(color, &beside, &drawing, REFUTED * noise).unwrap_or(*own);
+            *seen = larger_share(color, &beside[..count], &drawing, REFUTED * noise).unwrap_or(*seen);
         }
     }
     Ok(numbered(&seen, numbers))
@@ -78,15 +80,8 @@ fn larger_share(color: [f32; 3], beside: &[u32], drawing: &Drawing<f32>, toleran
     let mut best = (tolerance, None);
     for (k, &a) in beside.iter().enumerate() {
         for &b in &beside[k + 1..] {
-            let (Some(from), Some(to)) = (of(a), of(b)) else { continue };
-            let way = [0, 1, 2].map(|c| to[c] - from[c]);
-            let length: f32 = way.iter().map(|step| step * step).sum();
-            if length == 0.0 {
-                continue;
-            }
-            let along: f32 = (0..3).map(|c| (color[c] - from[c]) * way[c]).sum();
-            let share = (along / length).clamp(0.0, 1.0);
-            let misfit = (0..3).map(|c| (color[c] - from[c] - share * way[c]).abs()).fold(0.0, f32::max);
+            let Some((from, to)) = of(a).zip(of(b)).filter(|(from, to)| from != to) else { continue };
+            let (share, misfit) = mixture(color, from, to);
             if misfit < best.0 {
                 best = (misfit, Some(if share < 0.5 { a } else { b }));
             }
@@ -104,6 +99,7 @@ fn owners(scene: &Scene<f32>, drawing: &Drawing<f32>, size: ImageSize) -> Result
     Ok(owners.index().to_vec())
 }
 
+/// The numbers of the objects that own pixels.
 fn numbered(owners: &[u32], numbers: &[u32]) -> Vec<u32> {
     let number = |&index: &u32| (index as usize).checked_sub(1).and_then(|k| numbers.get(k)).copied();
     owners.iter().map(|index| number(index).unwrap_or(0)).collect()

@@ -11,9 +11,10 @@ use core::f64::consts::{PI, TAU};
 use num_traits::Float as _;
 
 use dvp_core::Vec2;
+use dvp_core::image::coverage;
 
 use super::{Ring, Step};
-use crate::partition::{Partition, coverage};
+use crate::partition::Partition;
 use crate::sample::Sample;
 use crate::tuning;
 

@@ -131,7 +131,7 @@ fn sum(
             return None;
         }
         let pixel = partition.pixels[at[1] * partition.size[0] + at[0]].map(f64::from);
-        let share = crate::partition::coverage(pixel, colors[1], colors[0]);
+        let share = dvp_core::image::coverage(pixel, colors[1], colors[0]);
         if share.abs() <= 2.0 * rounding {
             return Some((total, count));
         }

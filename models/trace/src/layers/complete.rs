@@ -192,7 +192,9 @@ impl Completion<'_> {
     }
 
     fn is_spent_times(&self, times: usize) -> bool {
-        self.memo.spent.get() > times * self.wanted_samples().min(tuning::MOST_TRIED_SAMPLES)
+        // The searches of all readings of a picture so far are one.
+        let searches = if self.is_searching { self.memo.searches.get() } else { 1 };
+        self.memo.spent.get() > times * (searches * self.wanted_samples()).min(tuning::MOST_TRIED_SAMPLES)
     }
 
     /// Whether the search for an order has all the time that it can use.

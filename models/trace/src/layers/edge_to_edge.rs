@@ -3,9 +3,11 @@
 use alloc::collections::{BTreeMap, BTreeSet};
 use alloc::vec::Vec;
 
+use dvp_core::image::distance;
+
 use super::junction::Votes;
 use crate::boundary::Ring;
-use crate::partition::{BEHIND, Color, OUTSIDE, Partition, distance};
+use crate::partition::{BEHIND, Color, OUTSIDE, Partition};
 use crate::tuning;
 
 /// What seams tell.

@@ -16,12 +16,15 @@ pub(crate) struct Memo {
     pub(super) spent: Cell<usize>,
     /// Those of the searches so far, while something else is asked for.
     searched: Cell<usize>,
+    /// How many searches there were.
+    pub(super) searches: Cell<usize>,
 }
 
 impl Memo {
     /// A search for an order begins, or goes on in another reading of the picture: all of them have one budget.
     pub(super) fn search(&self) {
         self.spent.set(self.searched.get());
+        self.searches.set(self.searches.get() + 1);
     }
 
     /// It ends.

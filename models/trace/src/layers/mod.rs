@@ -103,6 +103,7 @@ impl Layers {
 pub(crate) fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<Color>, memo: &Memo) -> Layers {
     let ruler = Ruler { extent: partition.size[0].max(partition.size[1]) as f64 };
     let background = background(partition, rings, matte.map(|matte| partition.as_palette(matte)));
+    memo.search();
     let mut pens = pen::find(partition, rings, background, &ruler, memo);
     let edge_to_edge = EdgeToEdge::of(partition, rings);
     let order = Order::of(partition, rings, background, matte.is_some(), &mut pens, &edge_to_edge.votes);

@@ -16,7 +16,6 @@ use crate::tuning;
 pub(super) fn settle(completion: &mut Completion<'_>) {
     let order = completion.painted();
     completion.is_searching = true;
-    completion.memo.search();
     let mut search = Search { known: BTreeMap::new(), order, total: None, completion };
     let mut pairs = search.pairs();
     pairs.retain(|&(a, b)| search.completion.order.net(a, b).abs() < tuning::CLEAR_VOTE);

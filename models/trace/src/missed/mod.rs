@@ -22,10 +22,11 @@ use core::ops::Range;
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
+use dvp_core::image::{distance, mixture};
 use dvp_core::{ImageSize, ImageView, Object, Paint, Real as _, Scene, Vec2};
 
 use crate::layers::{Form, Layer};
-use crate::partition::{Color, distance, mixture};
+use crate::partition::Color;
 use crate::ruler::Ruler;
 use crate::scene;
 use crate::tuning;

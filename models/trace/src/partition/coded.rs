@@ -12,11 +12,11 @@ use alloc::vec::Vec;
 use num_traits::Float as _;
 
 use dvp_core::geometry::DisjointSets;
+use dvp_core::image::distance;
 use dvp_core::sort;
 
 use super::Color;
 use super::flat::{Flats, NONE, Noise, index};
-use super::palette::distance;
 use crate::tuning;
 
 /// Shares of red, green and blue in brightness (ITU-R BT.601, as JFIF has it).

@@ -6,10 +6,11 @@ use alloc::vec::Vec;
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
+use dvp_core::image::{coverage, distance};
+
 use super::Color;
 use super::flat::NONE;
-use super::mix::{coverage, narrow};
-use super::palette::distance;
+use super::mix::narrow;
 use super::runs::runs;
 
 /// The longest run, pixels: the widest line that is asked for at 45 degrees, and a mixed pixel on both sides.

@@ -7,12 +7,11 @@ use alloc::vec::Vec;
 
 use dvp_core::Vec2;
 use dvp_core::geometry::LineSegment;
+use dvp_core::image::{coverage, distance};
 
 use super::Color;
 use super::chain::{Chain, Mark};
 use super::cross::Along;
-use super::mix::coverage;
-use super::palette::distance;
 use super::thin::ThinLine;
 use crate::tuning;
 

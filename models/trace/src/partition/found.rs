@@ -3,6 +3,7 @@
 use alloc::vec::Vec;
 
 use dvp_core::Vec2;
+use dvp_core::image::distance;
 
 use super::flat::{Flats, Noise};
 use super::{Color, Seam, ThinLine, chain, coded, cross, erase, mix, palette, seam, thin};
@@ -60,7 +61,7 @@ impl Found {
                     x < size[0] && y < size[1] && self.flat[y * size[0] + x] == 0
                 })
             };
-            let is_ground = palette::distance(self.palette[0], line.color) <= self.noise;
+            let is_ground = distance(self.palette[0], line.color) <= self.noise;
             is_ground && !chain.is_closed && chain.width >= tuning::GAP_LEAST && chain.ends().into_iter().any(leads_out)
         };
         let lines: Vec<_> = self.lines.iter().filter(|line| !is_gap(line)).cloned().collect();

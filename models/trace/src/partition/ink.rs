@@ -3,10 +3,10 @@
 use alloc::collections::BTreeMap;
 use alloc::vec::Vec;
 
+use dvp_core::image::{coverage, distance, misfit};
+
 use super::Color;
 use super::cross::{Along, Canvas, Cross};
-use super::mix::{coverage, misfit};
-use super::palette::distance;
 use crate::tuning;
 
 /// A window that something crosses.

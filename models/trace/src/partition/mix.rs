@@ -6,9 +6,11 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
+use dvp_core::image::{distance, mixture};
+
 use super::Color;
 use super::flat::{Flats, NONE, Noise};
-use super::palette::{Palette, distance};
+use super::palette::Palette;
 use super::runs::runs;
 use crate::tuning;
 
@@ -202,28 +204,6 @@ pub(super) fn best_mixture(pixel: Color, colors: &[u16], palette: &[Color]) -> O
 fn pair(pixel: Color, a: u16, b: u16, palette: &[Color]) -> Mixture {
     let (share, misfit) = mixture(pixel, palette[a as usize], palette[b as usize]);
     if share > 0.5 { Mixture { color: b, share, misfit } } else { Mixture { color: a, share: 1.0 - share, misfit } }
-}
-
-/// How much of `to` a mixture of `from` and `to` has; not clamped.
-pub(crate) fn coverage(pixel: Color, from: Color, to: Color) -> f64 {
-    let [mut dot, mut square] = [0.0; 2];
-    for c in 0..3 {
-        let difference = to[c] - from[c];
-        dot += (pixel[c] - from[c]) * difference;
-        square += difference * difference;
-    }
-    if square > 0.0 { dot / square } else { 0.0 }
-}
-
-/// How much of `to` a pixel shows over `from`, [0, 1], and the most that a channel differs from that mixture.
-pub(crate) fn mixture(pixel: Color, from: Color, to: Color) -> (f64, f64) {
-    let share = coverage(pixel, from, to).clamp(0.0, 1.0);
-    (share, misfit(pixel, from, to, share))
-}
-
-/// The most that a channel of a pixel differs from `from` with a `share` of `to`, which may be more than all of it.
-pub(super) fn misfit(pixel: Color, from: Color, to: Color, share: f64) -> f64 {
-    (0..3).map(|c| (pixel[c] - from[c] - share * (to[c] - from[c])).abs()).fold(0.0, f64::max)
 }
 
 /// A pixel as a mixture of three colors; none if they lie on a line or a share is negative.

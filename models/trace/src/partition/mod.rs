@@ -31,14 +31,13 @@ mod thin;
 use alloc::vec::Vec;
 
 use dvp_core::ImageView;
+use dvp_core::image::distance;
 
 use crate::tuning;
 
 pub use faces::Face;
 use flat::Noise;
 use found::Found;
-pub(crate) use mix::{coverage, mixture};
-pub(crate) use palette::distance;
 pub(crate) use seam::{BEHIND, Seam};
 pub use thin::ThinLine;
 

@@ -9,13 +9,12 @@ use alloc::vec::Vec;
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
+use dvp_core::image::{coverage, distance};
 use dvp_core::sort;
 
 use super::Color;
 use super::chain::{Chain, Mark};
 use super::cross::{Along, Canvas, Cross, LONGEST, shares_of_three};
-use super::mix::coverage;
-use super::palette::distance;
 use crate::tuning;
 
 /// What is seen of a line that shares its window.

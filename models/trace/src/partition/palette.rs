@@ -3,6 +3,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
+use dvp_core::image::distance;
 use dvp_core::sort;
 
 use super::flat::{Flats, Noise};
@@ -46,9 +47,4 @@ impl Palette {
         }
         Ok(Self { colors: colors.into_iter().map(|(color, _)| color).collect(), of_region })
     }
-}
-
-/// The most that a channel differs.
-pub(crate) fn distance(a: Color, b: Color) -> f64 {
-    (0..3).map(|c| (a[c] - b[c]).abs()).fold(0.0, f64::max)
 }

@@ -9,14 +9,13 @@ use alloc::vec::Vec;
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
+use dvp_core::image::{coverage, distance, misfit};
 use dvp_core::sort;
 
 use super::Color;
 use super::chain::{Chain, Mark, median};
 use super::cross::{Canvas, LONGEST};
 use super::ink::MOST;
-use super::mix::{coverage, misfit};
-use super::palette::distance;
 use crate::tuning;
 
 /// Windows on both sides of one that say where the middle of a line is in it.

@@ -11,9 +11,9 @@ use num_traits::Float as _;
 
 use dvp_core::Vec2;
 use dvp_core::contour::{Crack, Heading};
+use dvp_core::image::distance;
 
 use super::mix::{best_mixture, narrow};
-use super::palette::distance;
 use super::thin::ThinLine;
 use super::{Face, OUTSIDE, Partition};
 use crate::sample::Sample;

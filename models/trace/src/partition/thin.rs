@@ -6,12 +6,11 @@ use alloc::vec::Vec;
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
+use dvp_core::image::{coverage, distance};
 use dvp_core::sort;
 
 use super::chain::{Chain, Mark, crossings, hidden_crossings, join, median, read_once};
 use super::cross::{Along, Canvas, Cross};
-use super::mix::coverage;
-use super::palette::distance;
 use super::{Color, ink, pair, shade};
 use crate::stroke::{ThinChain, ThinSample};
 use crate::tuning;

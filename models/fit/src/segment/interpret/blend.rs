@@ -2,10 +2,10 @@
 //! the mean of two or three others it lies between is their overlap and no object of its own.
 
 use dvp_core::Real;
+use dvp_core::image::distance;
 use dvp_core::render::Compositing;
 
 use super::{Cover, MAX_COVER, Reading, is_color, mean, mixed_in, slack, within_unit};
-use crate::segment::color::distance;
 use crate::segment::region::Region;
 use crate::tuning::MEAN_COLOR;
 

@@ -12,9 +12,10 @@ use alloc::vec::Vec;
 
 use dvp_core::Real;
 use dvp_core::geometry::DisjointSets;
+use dvp_core::image::distance;
 use dvp_core::render::Compositing;
 
-use super::color::{SAME_COLOR, distance};
+use super::color::SAME_COLOR;
 use super::region::Region;
 use super::transition::Transition;
 use crate::tuning::{BACKGROUND_CONTACT, HOLE_CONTACT, MIN_BORDER, MOSTLY_INSIDE};

@@ -8,10 +8,10 @@
 use alloc::vec::Vec;
 
 use dvp_core::Real;
+use dvp_core::image::distance;
 use dvp_core::render::Compositing;
 
 use super::{Border, Cover, MAX_COVER, MIN_BORDER, Reading, Stacking, is_color, slack, within_unit};
-use crate::segment::color::distance;
 use crate::segment::region::Region;
 use crate::tuning::{CROSSING_CONTACT, OVERLAP_COLOR, SHADOW_CONTRAST};
 
