@@ -8,7 +8,7 @@ use dvp::export::{ExportError, Found, MeasuredPicture, label_map, label_map_in, 
 use dvp::format::{FormatError, Picture, Place, SceneJson, bank_to_json};
 use dvp::paint::Painter;
 use dvp::svg::to_svg_numbered;
-use dvp_core::{Efd, Image, ImageSize};
+use dvp_core::{Efd, Image, ImageSize, Real as _};
 use dvp_fit::{Bank, Fit};
 use numpy::{IntoPyArray as _, PyArray1, PyArray2, PyArray3, PyArrayMethods as _, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -78,7 +78,11 @@ impl Scene {
     /// A picture of the size of this scene.
     fn image(&self, source: &Source) -> Result<Image<f32>, InputError> {
         let image = source.picture(self.size.pixels(), false)?.image;
-        if image.size() == self.size { Ok(image) } else { Err(InputError::Size { found: image.size(), scene: self.size }) }
+        if image.size() == self.size {
+            Ok(image)
+        } else {
+            Err(InputError::Size { found: image.size(), scene: self.size })
+        }
     }
 
     pub(crate) fn core(&self) -> &dvp_core::Scene<f32> {
@@ -205,7 +209,7 @@ impl Scene {
             Some(source) => {
                 let image = unlocked(py, || self.image(&source))?;
                 let noise = self.json.known.as_ref().and_then(|known| known.noise).unwrap_or(f64::NAN);
-                unlocked(py, || label_map_in(&self.scene, &self.numbers, image.view(), noise as f32))?
+                unlocked(py, || label_map_in(&self.scene, &self.numbers, image.view(), f32::of(noise)))?
             }
         };
         labels.into_pyarray(py).reshape([size.height(), size.width()])
