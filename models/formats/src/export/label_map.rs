@@ -80,7 +80,7 @@ fn larger_share(color: [f32; 3], beside: &[u32], drawing: &Drawing<f32>, toleran
     let mut best = (tolerance, None);
     for (k, &a) in beside.iter().enumerate() {
         for &b in &beside[k + 1..] {
-            let Some((from, to)) = of(a).zip(of(b)).filter(|(from, to)| from != to) else { continue };
+            let Some((from, to)) = of(a).zip(of(b)).filter(|&(from, to)| distance(from, to) > 0.0) else { continue };
             let (share, misfit) = mixture(color, from, to);
             if misfit < best.0 {
                 best = (misfit, Some(if share < 0.5 { a } else { b }));
