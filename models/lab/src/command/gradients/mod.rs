@@ -32,8 +32,8 @@ use dvp_cli::format::write_atomic;
 ///
 /// Scenes of MDS-HR are moved a share alpha of the way toward other scenes. First: the cosine between the gradients of
 /// the image loss and of L_p with respect to translation, scale, rotation, color, shape and background, for MAE and MSE.
-/// Second: the squared error of the image before and after 100 steps of Adam. Writes cosine.csv, plateau.csv and charts, in
-/// which rings are the published values.
+/// Second: the squared error of the image before and after 100 steps of Adam. Writes cosine.csv and plateau.csv, means
+/// with their standard errors, and charts, in which rings are the published values.
 #[derive(Debug, Args)]
 #[command(before_help = "Example: dvp gradients --out gradients\n         \
                          dvp gradients --out gradients --pairs 2048\n         \
@@ -78,12 +78,12 @@ pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Ou
     let size = ImageSize::new(arguments.side, arguments.side)?;
     let pairs = pairs(arguments.pairs.max(arguments.descents), size, arguments.seed);
     let losses = [("mae", PixelLoss::Mae, COSINES_MAE), ("mse", PixelLoss::Mse, COSINES_MSE)];
-    let mut table = report::header(["loss", "aspect", "alpha", "cosine", "published"]);
+    let mut table = report::header(["loss", "aspect", "alpha", "cosine", "error", "published"]);
     for (name, loss, published) in losses {
         let means = cosines(arguments, &pairs[..arguments.pairs], loss, size)?;
         for ((aspect, own), published) in Aspect::ALL.into_iter().zip(means).zip(published) {
             for ((alpha, cosine), published) in ALPHAS.iter().zip(own).zip(published) {
-                let numbers = [format!("{cosine:.4}"), format!("{published:.4}")];
+                let numbers = [cosine.mean, cosine.error(), published].map(|number| format!("{number:.4}"));
                 table.push(
                     [name.to_owned(), aspect.name().to_owned(), alpha.to_string()].into_iter().chain(numbers).collect(),
                 );
@@ -91,7 +91,7 @@ pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Ou
         }
         let line = |(k, aspect): (usize, Aspect)| Line {
             name: aspect.name().to_owned(),
-            points: ALPHAS.iter().copied().zip(means[k]).collect(),
+            points: ALPHAS.iter().copied().zip(means[k].map(|cosine| cosine.mean)).collect(),
             others: ALPHAS.iter().copied().zip(published[k]).collect(),
         };
         let title = if name == "mae" { "Gradients of MAE and L_p" } else { "Gradients of MSE and L_p" };
@@ -102,9 +102,14 @@ pub(super) fn run(arguments: &Arguments, console: &mut Console<'_>) -> Result<Ou
     arguments.write("cosine.csv", &table, console)?;
     if arguments.descents > 0 {
         let found = plateaus(arguments, &pairs[..arguments.descents], size)?;
-        let mut table = report::header(["alpha", "before", "after", "published_before", "published_after"]);
-        for ((alpha, [before, after]), [own_before, own_after]) in ALPHAS.iter().zip(&found).zip(PLATEAUS) {
-            let errors = [*before, *after, own_before, own_after].map(|error| format!("{error:.3e}"));
+        let columns = ["before", "before_error", "published_before", "after", "after_error", "published_after"];
+        let mut table = report::header(["alpha"].into_iter().chain(columns));
+        for (k, alpha) in ALPHAS.iter().enumerate() {
+            let [before, after] = found.map(|means| means[k]);
+            let [published_before, published_after] = PLATEAUS[k];
+            let of = |mean: Mean, published| [mean.mean, mean.error(), published];
+            let errors = [of(before, published_before), of(after, published_after)].concat();
+            let errors = errors.iter().map(|error| format!("{error:.3e}"));
             table.push([alpha.to_string()].into_iter().chain(errors).collect());
         }
         arguments.write("plateau.csv", &table, console)?;
@@ -126,53 +131,83 @@ impl Arguments {
     }
 }
 
-/// Mean cosines by aspect and share.
-fn cosines(arguments: &Arguments, pairs: &[Pair], loss: PixelLoss, size: ImageSize) -> Result<[[f64; 11]; 6]> {
-    let setting = arguments.setting();
-    let rows = arguments.batch.each(
-        pairs,
-        |_| String::new(),
-        |cosines: &mut Option<Cosines>, _, pair| {
-            let cosines = Cosines::in_place(cosines, loss, size)?;
-            let of = |alpha| cosines.of(&pair.truth, &pair.moved(alpha, setting), setting);
-            ALPHAS.into_iter().map(of).collect::<Result<Vec<[f64; 6]>>>()
-        },
-    )?;
-    let mut means = [[0.0; 11]; 6];
-    for row in rows {
-        for (k, cosines) in row?.into_iter().enumerate() {
-            means.iter_mut().zip(cosines).for_each(|(mean, cosine)| mean[k] += cosine / pairs.len() as f64);
+/// A mean over the pairs, and its standard error.
+#[derive(Clone, Copy, Debug, Default)]
+struct Mean {
+    count: f64,
+    mean: f64,
+    /// Sum of the squares of what the pairs differ from it.
+    squares: f64,
+}
+
+impl Mean {
+    /// Takes one more pair in (Welford, Technometrics 4(3), 1962).
+    fn add(&mut self, value: f64) {
+        self.count += 1.0;
+        let difference = value - self.mean;
+        self.mean += difference / self.count;
+        self.squares += difference * (value - self.mean);
+    }
+
+    fn error(self) -> f64 {
+        (self.squares / (self.count * (self.count - 1.0)).max(1.0)).sqrt()
+    }
+}
+
+/// Means of what `of` says of each pair at each share, by kind and share.
+fn means<S: Default, const N: usize>(
+    arguments: &Arguments,
+    pairs: &[Pair],
+    of: impl Fn(&mut S, &Pair, f64) -> Result<[f64; N]> + Sync,
+) -> Result<[[Mean; 11]; N]> {
+    let of_pair = |scratch: &mut S, _, pair: &Pair| {
+        ALPHAS.into_iter().map(|alpha| of(scratch, pair, alpha)).collect::<Result<Vec<[f64; N]>>>()
+    };
+    let mut means = [[Mean::default(); 11]; N];
+    for row in arguments.batch.each(pairs, |_| String::new(), of_pair)? {
+        for (k, values) in row?.into_iter().enumerate() {
+            means.iter_mut().zip(values).for_each(|(mean, value)| mean[k].add(value));
         }
     }
     Ok(means)
+}
+
+/// Mean cosines by aspect and share.
+fn cosines(arguments: &Arguments, pairs: &[Pair], loss: PixelLoss, size: ImageSize) -> Result<[[Mean; 11]; 6]> {
+    let setting = arguments.setting();
+    means(arguments, pairs, |cosines: &mut Option<Cosines>, pair, alpha| {
+        Cosines::in_place(cosines, loss, size)?.of(&pair.truth, &pair.moved(alpha, setting), setting)
+    })
 }
 
 /// Mean squared errors before and after, by share.
-fn plateaus(arguments: &Arguments, pairs: &[Pair], size: ImageSize) -> Result<Vec<[f64; 2]>> {
+fn plateaus(arguments: &Arguments, pairs: &[Pair], size: ImageSize) -> Result<[[Mean; 11]; 2]> {
     let setting = arguments.setting();
-    let rows = arguments.batch.each(
-        pairs,
-        |_| String::new(),
-        |(): &mut (), _, pair| {
-            let of = |alpha| plateau::descend(&pair.truth, &pair.moved(alpha, setting), size, setting);
-            ALPHAS.into_iter().map(of).collect::<Result<Vec<[f64; 2]>>>()
-        },
-    )?;
-    let mut means = vec![[0.0; 2]; ALPHAS.len()];
-    for row in rows {
-        for (mean, own) in means.iter_mut().zip(row?) {
-            mean.iter_mut().zip(own).for_each(|(mean, own)| *mean += own / pairs.len() as f64);
-        }
-    }
-    Ok(means)
+    means(arguments, pairs, |(): &mut (), pair, alpha| {
+        plateau::descend(&pair.truth, &pair.moved(alpha, setting), size, setting)
+    })
 }
 
-fn plateau_chart(found: &[[f64; 2]]) -> Chart {
+fn plateau_chart(found: &[[Mean; 11]; 2]) -> Chart {
     let line = |(k, name): (usize, &str)| Line {
         name: name.to_owned(),
-        points: ALPHAS.iter().copied().zip(found.iter().map(|pair| pair[k])).collect(),
+        points: ALPHAS.iter().copied().zip(found[k].map(|error| error.mean)).collect(),
         others: ALPHAS.iter().copied().zip(PLATEAUS.iter().map(|pair| pair[k])).collect(),
     };
     let lines = ["before", "after 100 steps"].into_iter().enumerate().map(line).collect();
     Chart { title: "Plateaus", x: "alpha", y: "mean squared error", lines, log: true }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mean_and_its_error_by_hand() {
+        let mut mean = Mean::default();
+        [1.0, 2.0, 4.0].into_iter().for_each(|value| mean.add(value));
+        assert!((mean.mean - 7.0 / 3.0).abs() < 1e-12);
+        // Variance of a value: (16 + 1 + 25) / 9 / 2.
+        assert!((mean.error() - (7.0_f64 / 9.0).sqrt()).abs() < 1e-12);
+    }
 }
