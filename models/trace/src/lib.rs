@@ -147,13 +147,25 @@ pub fn trace(image: &ImageView<'_, f32>, known: &Known) -> Result<Traced, NoDraw
     let reading = Reading { coded: known.coded, soft: known.spoiled, ..Reading::default() };
     let read = match read(image, reading) {
         // What is no drawing as it is may be one under noise, or under what a coder left beside edges.
-        Err(_) if known.spoiled && !known.coded => match noise::denoised(*image) {
-            Some((smooth, noise)) => read(&smooth.view(), Reading { noise, ..reading }),
-            None => read(image, reading.with_coded(true)),
-        },
+        Err(_) if known.spoiled && !known.coded => read_spoiled(image, reading),
         read => read,
     };
     draw(read.map_err(NoDrawing::Partition)?, image.size(), known)
+}
+
+/// Reads a picture as it was before it got noise, or what a coder left beside edges. What crumbles has texture, which is noise of a larger scale.
+#[inline(never)]
+fn read_spoiled(image: &ImageView<'_, f32>, reading: Reading) -> Result<Read, NoPartition> {
+    let mut texture = 1;
+    while let Some((smooth, noise)) = noise::denoised(*image, texture as f32) {
+        let read = read(&smooth.view(), Reading { noise, ..reading });
+        let read = read.and_then(|read| read.partition.check_faces(texture).map(|()| read));
+        match read {
+            Err(NoPartition::TooManyFaces { .. }) if texture < tuning::MOST_TEXTURE => texture *= 4,
+            read => return read,
+        }
+    }
+    read(image, reading.with_coded(true))
 }
 
 /// A picture as faces, in one way or two.
@@ -169,6 +181,7 @@ struct Read {
 fn read(image: &ImageView<'_, f32>, reading: Reading) -> Result<Read, NoPartition> {
     let of = |reading: Reading| {
         let (mut partition, mut others) = Partition::readings(image, reading)?;
+        partition.check_faces(1)?;
         let mut rings = boundary::rings(&partition);
         if reading.soft {
             partition.blur = boundary::blur(&partition, &rings);
@@ -256,6 +269,9 @@ impl core::fmt::Display for NoDrawing {
             Self::Partition(NoPartition::Noisy) => write!(f, "the flat parts of the picture are noisy"),
             Self::Partition(NoPartition::TooManyColors) => {
                 write!(f, "the picture has more than {} flat colors", tuning::MOST_COLORS)
+            }
+            Self::Partition(NoPartition::TooManyFaces { faces }) => {
+                write!(f, "the picture would have {faces} faces, most of them smaller than noise can be told from")
             }
             Self::Soft { stained, .. } => {
                 write!(f, "edges are soft: {:.0} % of the pixels beside them are stained", 100.0 * stained)

@@ -45,6 +45,9 @@ pub const DENOISE_REACH: usize = 5;
 /// Noise that the first of two averages leaves, in units of the picture's.
 pub const DENOISE_LEFT: f64 = 0.25;
 
+/// Most of the noise from pixel to pixel that counts as noise where a picture has texture, in units of it.
+pub const MOST_TEXTURE: usize = 16;
+
 /// Share of a picture's pixels that must lie in flat blocks for it to be a drawing of flat colors. Photographs have fewer than
 /// a tenth, dense line art at 128 pixels about a half.
 pub const LEAST_FLAT: f64 = 0.3;

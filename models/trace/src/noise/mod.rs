@@ -42,10 +42,11 @@ pub fn denoise_twice<T: Real>(
 /// The picture with its noise averaged away where its edges stay (non-local means, twice), and the standard deviation of that noise, in the unit of
 /// the picture; none if its noise is that of 8 bits or less, or it holds NaN or infinity.
 ///
-/// Noise is independent from pixel to pixel. What compression leaves beside edges is no such noise, and stays.
+/// Noise is independent from pixel to pixel. What compression leaves beside edges is no such noise, and stays. `times` the noise that is found is
+/// averaged away: 1, or more where what is left is no drawing, so that texture counts as noise.
 #[must_use]
 #[inline(never)]
-pub fn denoised<T: Real>(image: ImageView<'_, T>) -> Option<(Image<T>, T)> {
+pub fn denoised<T: Real>(image: ImageView<'_, T>, times: T) -> Option<(Image<T>, T)> {
     if !image.data().iter().all(|value| value.is_finite()) {
         return None;
     }
@@ -53,6 +54,7 @@ pub fn denoised<T: Real>(image: ImageView<'_, T>) -> Option<(Image<T>, T)> {
     if noise <= T::of(ROUNDED) {
         return None;
     }
+    let noise = times * noise;
     let (mut scratch, mut first, mut second) = (Default::default(), Vec::new(), Vec::new());
     denoise_twice(&image, noise, &mut scratch, &mut first, &mut second);
     Some((Image::from_planar(image.size(), second).ok()?, noise))

@@ -120,6 +120,11 @@ pub enum NoPartition {
     Noisy,
     /// More colors than drawings have.
     TooManyColors,
+    /// More faces than can be told from what was done to it since it was drawn.
+    TooManyFaces {
+        /// How many it has.
+        faces: usize,
+    },
 }
 
 impl Partition {
@@ -129,6 +134,16 @@ impl Partition {
     /// [`NoPartition`] if it is no drawing of flat colors.
     pub fn of(image: &ImageView<'_, f32>, reading: Reading) -> Result<Self, NoPartition> {
         Ok(Self::readings(image, reading)?.0)
+    }
+
+    /// An error if it has more faces than can be told in a picture that something was done to: what is smaller than the windows that noise is averaged
+    /// over is noise, or a part of a photograph, for the most part. `texture`: what was averaged away, in units of the noise.
+    pub(crate) fn check_faces(&self, texture: usize) -> Result<(), NoPartition> {
+        let is_clean = !(self.reading.coded || self.reading.soft || self.reading.noise > 0.0);
+        let window = (2 * tuning::DENOISE_REACH + 1).pow(2) * texture;
+        let faces = self.faces.len();
+        let has_too_many = !is_clean && faces > tuning::MOST_COLORS.max(self.pixels.len() / window);
+        if has_too_many { Err(NoPartition::TooManyFaces { faces }) } else { Ok(()) }
     }
 
     /// Whether pixels beside an edge that show no mixture have the edge exactly between them.

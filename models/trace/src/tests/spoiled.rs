@@ -142,3 +142,28 @@ fn holes_that_a_coder_would_have_hidden_stay() {
     let traced = trace(&view, &Known::default().with_spoiled(true)).unwrap();
     assert!(!traced.coded);
 }
+
+#[test]
+fn texture_is_noise_of_a_larger_scale() {
+    // Grain of about ten pixels, as paper and grass have it, which no mean over single pixels takes away.
+    let gray = paint(&scene([0.5; 3], Vec::new()));
+    let grain = blurred(&noisy(&gray, 0.2), 3.0);
+    let mut picture = paint(&drawn());
+    for (value, grain) in picture.data_mut().iter_mut().zip(grain.data()) {
+        *value += grain - 0.5;
+    }
+    let picture = noisy(&picture, 0.01);
+    let (smooth, noise) = crate::noise::denoised(picture.view(), 1.0).unwrap();
+    let crumbs = Partition::of(&smooth.view(), Reading { noise, soft: true, ..Reading::default() }).unwrap();
+    assert!(crumbs.check_faces(1).is_err(), "{} faces", crumbs.faces.len());
+    let traced = trace(&picture.view(), &Known::default().with_spoiled(true)).unwrap();
+    let found = &traced.scene.objects;
+    assert!(found.len() <= 6, "{} things", found.len());
+    for truth in &drawn().objects {
+        let off = |object: &Object<f32>| {
+            let [x, y] = [0, 1].map(|k| truth.pose.translation[k] - object.pose.translation[k]);
+            x.hypot(y) * SIZE as f32
+        };
+        assert!(found.iter().any(|object| off(object) < 2.0), "{truth:?} in {found:?}");
+    }
+}
