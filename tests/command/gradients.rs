@@ -1,20 +1,20 @@
 //! `gradients`: both analyses, small, with sane numbers.
 
-use std::collections::BTreeMap;
+use std::collections::HashMap;
 use std::fs;
 use std::path::Path;
 
 use crate::runner::{dvp, dvp_done, names, text};
 
 /// The rows of a table by the names of its columns.
-fn rows(path: &Path) -> Vec<BTreeMap<String, String>> {
+fn rows(path: &Path) -> Vec<HashMap<String, String>> {
     let table = fs::read_to_string(path).unwrap();
     let mut lines = table.lines().map(|line| line.split(',').map(str::to_owned));
     let names: Vec<String> = lines.next().unwrap().collect();
     lines.map(|cells| names.iter().cloned().zip(cells).collect()).collect()
 }
 
-fn number(row: &BTreeMap<String, String>, column: &str) -> f64 {
+fn number(row: &HashMap<String, String>, column: &str) -> f64 {
     row[column].parse().unwrap()
 }
 
