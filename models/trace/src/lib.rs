@@ -181,7 +181,6 @@ struct Read {
 fn read(image: &ImageView<'_, f32>, reading: Reading) -> Result<Read, NoPartition> {
     let of = |reading: Reading| {
         let (mut partition, mut others) = Partition::readings(image, reading)?;
-        partition.check_faces(1)?;
         let mut rings = boundary::rings(&partition);
         if reading.soft {
             partition.blur = boundary::blur(&partition, &rings);
@@ -198,11 +197,10 @@ fn read(image: &ImageView<'_, f32>, reading: Reading) -> Result<Read, NoPartitio
     };
     let plain = of(reading)?;
     // Ramps of a blur are no things either.
-    if plain.partition.ripple <= tuning::RIPPLED && plain.partition.blur <= tuning::WIDE_BLUR {
-        return Ok(plain);
-    }
-    let coded = of(reading.with_coded(true));
-    Ok(coded.ok().filter(|coded| is_less(coded, &plain)).unwrap_or(plain))
+    let is_plain = plain.partition.ripple <= tuning::RIPPLED && plain.partition.blur <= tuning::WIDE_BLUR;
+    let coded = if is_plain { None } else { of(reading.with_coded(true)).ok() };
+    let read = coded.filter(|coded| is_less(coded, &plain)).unwrap_or(plain);
+    read.partition.check_faces(1).map(|()| read)
 }
 
 /// The drawing of faces.
