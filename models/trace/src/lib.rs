@@ -153,19 +153,22 @@ pub fn trace(image: &ImageView<'_, f32>, known: &Known) -> Result<Traced, NoDraw
     draw(read.map_err(NoDrawing::Partition)?, image.size(), known)
 }
 
-/// Reads a picture as it was before it got noise, or what a coder left beside edges. What crumbles has texture, which is noise of a larger scale.
+/// Reads a picture as it was before it got noise, or what a coder left beside edges. What has too many faces has texture, which is noise of a larger
+/// scale: what is left of it must be larger by as much.
 #[inline(never)]
 fn read_spoiled(image: &ImageView<'_, f32>, reading: Reading) -> Result<Read, NoPartition> {
-    let mut texture = 1;
-    while let Some((smooth, noise)) = noise::denoised(*image, texture as f32) {
+    let Some(level) = noise::level_above_rounding(image) else { return read(image, reading.with_coded(true)) };
+    let mut found = Err(NoPartition::Noisy);
+    for texture in tuning::TEXTURES {
+        let noise = texture as f32 * level;
+        let Some(smooth) = noise::averaged(image, noise) else { break };
         let read = read(&smooth.view(), Reading { noise, ..reading });
-        let read = read.and_then(|read| read.partition.check_faces(texture).map(|()| read));
-        match read {
-            Err(NoPartition::TooManyFaces { .. }) if texture < tuning::MOST_TEXTURE => texture *= 4,
-            read => return read,
+        found = read.and_then(|read| read.partition.check_faces(texture).map(|()| read));
+        if !matches!(found, Err(NoPartition::TooManyFaces { .. })) {
+            break;
         }
     }
-    read(image, reading.with_coded(true))
+    found
 }
 
 /// A picture as faces, in one way or two.
@@ -177,6 +180,7 @@ struct Read {
 }
 
 /// Reads a picture; where edges ring or are wide, as changed by a coder if that makes fewer faces with shorter boundaries, and loses less than that.
+/// Of either way it must not have too many faces.
 #[inline(never)]
 fn read(image: &ImageView<'_, f32>, reading: Reading) -> Result<Read, NoPartition> {
     let of = |reading: Reading| {

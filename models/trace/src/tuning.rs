@@ -45,8 +45,10 @@ pub const DENOISE_REACH: usize = 5;
 /// Noise that the first of two averages leaves, in units of the picture's.
 pub const DENOISE_LEFT: f64 = 0.25;
 
-/// Most of the noise from pixel to pixel that counts as noise where a picture has texture, in units of it.
-pub const MOST_TEXTURE: usize = 16;
+/// What is averaged away, in units of the noise from pixel to pixel, one after the other as long as what is left has too many faces: noise alone, then
+/// texture. Of 642 drawings with noise, blur or a coder's marks none came to the second. Of scikit-image's photographs `coins` is 116 things without the
+/// last two and 27 with them, `text` none and 57.
+pub const TEXTURES: [usize; 3] = [1, 4, 16];
 
 /// Share of a picture's pixels that must lie in flat blocks for it to be a drawing of flat colors. Photographs have fewer than
 /// a tenth, dense line art at 128 pixels about a half.

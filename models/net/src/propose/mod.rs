@@ -209,7 +209,7 @@ impl Proposer {
 /// that is mostly noise (`tests/report/stability.md`).
 #[must_use]
 pub fn cleared(picture: Image<f32>) -> Image<f32> {
-    denoised(picture.view(), 1.0).map_or(picture, |(clear, _)| clear)
+    denoised(picture.view()).map_or(picture, |(clear, _)| clear)
 }
 
 /// The scene of a batch of one.

@@ -39,23 +39,29 @@ pub fn denoise_twice<T: Real>(
     means::denoise(image, &guide, settings, scratch, smooth);
 }
 
-/// The picture with its noise averaged away where its edges stay (non-local means, twice), and the standard deviation of that noise, in the unit of
-/// the picture; none if its noise is that of 8 bits or less, or it holds NaN or infinity.
+/// The picture with its noise averaged away, and the standard deviation of that noise, in the unit of the picture; none if its noise is that of
+/// 8 bits or less, or it holds NaN or infinity.
 ///
-/// Noise is independent from pixel to pixel. What compression leaves beside edges is no such noise, and stays. `times` the noise that is found is
-/// averaged away: 1, or more where what is left is no drawing, so that texture counts as noise.
+/// Noise is independent from pixel to pixel. What compression leaves beside edges is no such noise, and stays.
 #[must_use]
 #[inline(never)]
-pub fn denoised<T: Real>(image: ImageView<'_, T>, times: T) -> Option<(Image<T>, T)> {
+pub fn denoised<T: Real>(image: ImageView<'_, T>) -> Option<(Image<T>, T)> {
+    let noise = level_above_rounding(&image)?;
+    Some((averaged(&image, noise)?, noise))
+}
+
+/// The noise level of a picture; none if it is that of 8 bits or less, or the picture holds NaN or infinity.
+pub(crate) fn level_above_rounding<T: Real>(image: &ImageView<'_, T>) -> Option<T> {
     if !image.data().iter().all(|value| value.is_finite()) {
         return None;
     }
-    let noise = noise_level(&image, &mut Vec::new());
-    if noise <= T::of(ROUNDED) {
-        return None;
-    }
-    let noise = times * noise;
+    Some(noise_level(image, &mut Vec::new())).filter(|&noise| noise > T::of(ROUNDED))
+}
+
+/// The picture with noise of standard deviation `noise` averaged away where its edges stay (non-local means, twice).
+#[inline(never)]
+pub(crate) fn averaged<T: Real>(image: &ImageView<'_, T>, noise: T) -> Option<Image<T>> {
     let (mut scratch, mut first, mut second) = (Default::default(), Vec::new(), Vec::new());
-    denoise_twice(&image, noise, &mut scratch, &mut first, &mut second);
-    Some((Image::from_planar(image.size(), second).ok()?, noise))
+    denoise_twice(image, noise, &mut scratch, &mut first, &mut second);
+    Image::from_planar(image.size(), second).ok()
 }

@@ -117,16 +117,16 @@ fn picture(noise: f64) -> Image<f64> {
 #[test]
 fn noise_goes_and_edges_stay() {
     let (clean, noisy) = (picture(0.0), picture(0.05));
-    let (found, _) = denoised(noisy.view(), 1.0).unwrap();
+    let (found, _) = denoised(noisy.view()).unwrap();
     let off = |image: &Image<f64>| image.data().iter().zip(clean.data()).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
     assert!(off(&found) < 0.1 * off(&noisy), "{} of {}", off(&found), off(&noisy));
 }
 
 #[test]
 fn pictures_without_noise_or_with_numbers_that_are_none_are_left_alone() {
-    assert_eq!(denoised(picture(0.0).view(), 1.0), None);
-    assert_eq!(denoised(picture(0.002).view(), 1.0), None);
+    assert_eq!(denoised(picture(0.0).view()), None);
+    assert_eq!(denoised(picture(0.002).view()), None);
     let mut broken = picture(0.05);
     broken.data_mut()[5] = f64::NAN;
-    assert_eq!(denoised(broken.view(), 1.0), None);
+    assert_eq!(denoised(broken.view()), None);
 }

@@ -100,6 +100,11 @@ pub struct Reading {
 }
 
 impl Reading {
+    /// Whether something was, or may have been, done to the picture after it was drawn.
+    fn is_spoiled(self) -> bool {
+        self.coded || self.soft || self.noise > 0.0
+    }
+
     /// The same, changed by a coder of photographs or not.
     #[must_use]
     pub fn with_coded(self, coded: bool) -> Self {
@@ -137,18 +142,18 @@ impl Partition {
     }
 
     /// An error if it has more faces than can be told in a picture that something was done to: what is smaller than the windows that noise is averaged
-    /// over is noise, or a part of a photograph, for the most part. `texture`: what was averaged away, in units of the noise.
+    /// over is noise, or a part of a photograph, for the most part. As many as a drawing may have colors are not too many. `texture`: what was averaged
+    /// away, in units of the noise.
     pub(crate) fn check_faces(&self, texture: usize) -> Result<(), NoPartition> {
-        let is_clean = !(self.reading.coded || self.reading.soft || self.reading.noise > 0.0);
         let window = (2 * tuning::DENOISE_REACH + 1).pow(2) * texture;
         let faces = self.faces.len();
-        let has_too_many = !is_clean && faces > tuning::MOST_COLORS.max(self.pixels.len() / window);
+        let has_too_many = self.reading.is_spoiled() && faces > tuning::MOST_COLORS.max(self.pixels.len() / window);
         if has_too_many { Err(NoPartition::TooManyFaces { faces }) } else { Ok(()) }
     }
 
     /// Whether pixels beside an edge that show no mixture have the edge exactly between them.
     pub(crate) fn has_exact_edges(&self) -> bool {
-        !(self.is_hard || self.reading.coded || self.reading.soft || self.reading.noise > 0.0)
+        !(self.is_hard || self.reading.is_spoiled())
     }
 
     /// The ways to cut a picture into faces: lines that cross taken out of it, and, if there are such with pixels of their own, as faces; and lines

@@ -153,7 +153,7 @@ fn texture_is_noise_of_a_larger_scale() {
         *value += grain - 0.5;
     }
     let picture = noisy(&picture, 0.01);
-    let (smooth, noise) = crate::noise::denoised(picture.view(), 1.0).unwrap();
+    let (smooth, noise) = crate::noise::denoised(picture.view()).unwrap();
     let crumbs = Partition::of(&smooth.view(), Reading { noise, soft: true, ..Reading::default() }).unwrap();
     assert!(crumbs.check_faces(1).is_err(), "{} faces", crumbs.faces.len());
     let traced = trace(&picture.view(), &Known::default().with_spoiled(true)).unwrap();
