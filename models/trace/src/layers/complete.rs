@@ -3,12 +3,14 @@
 use alloc::collections::{BTreeMap, BTreeSet};
 use alloc::rc::Rc;
 use alloc::vec::Vec;
-use core::cell::{Cell, RefCell};
+use core::cell::{Cell, OnceCell, RefCell};
 
 use dvp_core::Vec2;
+use dvp_core::geometry::LineSegment;
 use dvp_core::shape::{PathRing, Segment};
 use dvp_core::sort;
 
+use super::join::Group;
 use super::memo::Memo;
 use super::order::Order;
 use super::raster;
@@ -86,13 +88,23 @@ pub(super) struct Completed {
     pub(super) bits: f64,
     /// Whether they cover what they should, and nothing else; false for the last resort.
     pub(super) agrees: bool,
+    /// The sides of the polygons that they are painted as, once asked for.
+    pub(super) sides: OnceCell<Vec<LineSegment<f64>>>,
 }
 
 impl Completed {
+    /// The sides of the polygons that the outlines are painted as.
+    pub(super) fn sides(&self) -> &[LineSegment<f64>] {
+        self.sides.get_or_init(|| {
+            let polygons = self.outlines.iter().filter_map(raster::polygon);
+            polygons.flat_map(|points| LineSegment::closed(&points).collect::<Vec<_>>()).collect()
+        })
+    }
+
     /// Two layers as one that covers what both do.
     pub(super) fn with(&self, other: &Self) -> Self {
         let outlines = self.outlines.iter().chain(&other.outlines).cloned().collect();
-        Self { outlines, bits: self.bits + other.bits, agrees: self.agrees && other.agrees }
+        Self { outlines, bits: self.bits + other.bits, agrees: self.agrees && other.agrees, sides: OnceCell::new() }
     }
 
     /// Whether it is a thing as people draw them: figures, and paths that are parallelograms, as rectangles with a hidden side may be.
@@ -111,12 +123,12 @@ impl Completed {
 
     /// Nothing to complete.
     pub(super) fn none() -> Self {
-        Self { outlines: Vec::new(), bits: 0.0, agrees: true }
+        Self { outlines: Vec::new(), bits: 0.0, agrees: true, sides: OnceCell::new() }
     }
 
     pub(super) fn new(outlines: Vec<Outline>, agrees: bool) -> Self {
         let bits = outlines.iter().map(|outline| outline.bits + outline.misfit).sum();
-        Self { outlines, bits, agrees }
+        Self { outlines, bits, agrees, sides: OnceCell::new() }
     }
 }
 
@@ -212,6 +224,14 @@ impl Completion<'_> {
         self.rank.fill(0);
         for (place, &face) in order.iter().enumerate() {
             self.rank[face as usize] = place + 1;
+        }
+    }
+
+    /// Groups are painted in this order, and nothing else.
+    pub(super) fn paint_groups(&mut self, groups: &[Group]) {
+        self.rank.fill(0);
+        for (place, group) in groups.iter().enumerate() {
+            group.faces.iter().for_each(|&face| self.rank[face as usize] = place + 1);
         }
     }
 

@@ -34,15 +34,7 @@ pub(super) fn painted(completion: &mut Completion<'_>) -> Vec<Group> {
             painted.push((rank, group));
             continue;
         }
-        let again = Group::of(completion, group.faces);
-        if again.completed.agrees || again.faces.len() == 1 {
-            painted.push((rank, again));
-        } else {
-            // One thing they still are, in outlines of their own.
-            let alone = |&face: &u32| completion.outlines(&[face]);
-            let apart = again.faces.iter().map(alone).fold(Completed::none(), |all, part| all.with(&part));
-            painted.push((rank, Group { faces: again.faces, completed: Rc::new(apart) }));
-        }
+        painted.push((rank, Group::again(completion, group.faces)));
     }
     sort::ascending(&mut painted, |&(rank, _)| rank as f64);
     painted.into_iter().map(|(_, group)| group).collect()
@@ -57,6 +49,7 @@ pub(super) fn total(completion: &mut Completion<'_>) -> f64 {
 }
 
 /// Faces that are painted together, with their outlines (none for what a pen draws).
+#[derive(Clone)]
 pub(super) struct Group {
     pub(super) faces: Vec<u32>,
     pub(super) completed: Rc<Completed>,
@@ -69,6 +62,17 @@ impl Group {
             None => completion.outlines(&faces),
         };
         Self { faces, completed }
+    }
+
+    /// What was found to be one thing, where the order is another: in outlines of their own where no outline through all agrees.
+    pub(super) fn again(completion: &Completion<'_>, faces: Vec<u32>) -> Self {
+        let again = Self::of(completion, faces);
+        if again.completed.agrees || again.faces.len() == 1 {
+            return again;
+        }
+        let alone = |&face: &u32| completion.outlines(&[face]);
+        let apart = again.faces.iter().map(alone).fold(Completed::none(), |all, part| all.with(&part));
+        Self { completed: Rc::new(apart), ..again }
     }
 
     /// Whether it is a thing as people draw them; what is seen of a few pixels, and a piece of a line, may be a part of anything.

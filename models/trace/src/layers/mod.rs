@@ -16,6 +16,8 @@
 //! | `complete` | outlines of what is painted together, in an order |
 //! | `lead` | outlines through what is seen, led around what they must not hide |
 //! | `repeat` | what is another thing again, elsewhere and in another size |
+//! | `template` | how an outline lies on what is seen of another thing |
+//! | `swap` | who lies in front, once that is known |
 //! | `memo` | outlines that were fitted before |
 //! | `raster` | the check that an outline hides nothing |
 
@@ -33,6 +35,8 @@ mod repeat;
 mod settle;
 mod sheet;
 mod stack;
+mod swap;
+mod template;
 mod visible;
 mod walk;
 

@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use dvp_core::geometry::Similarity;
 use dvp_core::shape::{AnyShape, FillRule, Path, PathRing, Shape as _};
-use dvp_core::{Object, Vec2};
+use dvp_core::{Object, Scene, Vec2};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
@@ -94,6 +94,42 @@ fn nothing_is_found_that_covers_nothing() {
     );
     let found = found(&paint(&made));
     assert!(found.objects.iter().all(|object| area(object) > 1.0 / 255.0), "{found:?}");
+}
+
+/// A triangle with an opening, in shares of a size; standing on its tip where `tip` is -1.
+fn gable(size: f64, tip: f64) -> AnyShape<f64> {
+    let ring =
+        |points: &[[f64; 2]]| PathRing::polygon(points.iter().map(|[x, y]| [x * size, y * tip * size]).collect());
+    let outer = ring(&[[-0.01, -0.12], [0.01, -0.12], [0.22, 0.09], [0.22, 0.12], [-0.22, 0.12], [-0.22, 0.09]]);
+    let opening = ring(&[[-0.01, -0.02], [-0.09, 0.06], [0.09, 0.06], [0.01, -0.02]]);
+    AnyShape::Path(Path { rings: vec![outer, opening], fill: FillRule::EvenOdd })
+}
+
+/// All things of a picture are found, each as large as it is behind the others; and in this order.
+fn assert_whole(made: &Scene<f32>) {
+    let found = found(&paint(made));
+    assert_eq!(found.objects.len(), made.objects.len(), "{found:?}");
+    for (truth, found) in made.objects.iter().zip(&found.objects) {
+        assert!(truth.color().iter().zip(found.color()).all(|(a, b)| (a - b).abs() < 0.01), "order: {found:?}");
+        let [truth, area] = [truth, found].map(area);
+        // Arms of a few pixels tell of a size to one or two percent.
+        assert!((area / truth - 1.0).abs() < 0.03, "{area} of {truth}");
+    }
+}
+
+#[test]
+fn two_sides_and_a_corner_tell_of_what_is_hidden() {
+    let (left, front) =
+        (object(gable(78.4, 1.0), [37.15, 25.19], 0.0, BLUE), object(gable(93.11, 1.0), [40.37, 27.91], 0.0, SAND));
+    assert_whole(&scene(WHITE, vec![left, front]));
+}
+
+#[test]
+fn who_lies_in_front_is_told_by_what_is_there_again() {
+    let back = object(gable(92.99, 1.0), [41.34, 29.9], 0.0, [0.84, 0.37, 0.9]);
+    let middle = object(gable(95.17, 1.0), [26.82, 18.15], 0.0, [0.98, 0.95, 0.99]);
+    let front = object(gable(73.94, -1.0), [38.17, 29.66], 0.0, [0.52, 0.05, 0.91]);
+    assert_whole(&scene([0.28, 0.92, 0.91], vec![back, middle, front]));
 }
 
 fn shapes() -> impl Strategy<Value = OutlineShape> {
