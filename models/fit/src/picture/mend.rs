@@ -9,27 +9,20 @@ use alloc::vec::Vec;
 use core::mem;
 use core::ops::Range;
 
-#[cfg(not(feature = "std"))]
-use num_traits::Float as _;
-
-use dvp_core::contour::{perimeter, signed_area};
-use dvp_core::geometry::DisjointSets;
-use dvp_core::{Drawing, Image, ImageSize, ImageView, Object, Real as _, Scene};
+use dvp_core::{Drawing, Image, ImageSize, ImageView, Scene};
 use dvp_trace::Traced;
-use dvp_trace::missed::{Missed, Painted, channels, differing, misfit_bits, touching};
+use dvp_trace::missed::{Missed, Painted, channels, misfit_bits};
 use dvp_trace::tuning::{CODED_CONTRAST, LEAST_CONTRAST};
 
+use super::parts::{Parts, is_thin, price, walk};
 use crate::FitError;
 use crate::paint::Canvas;
-use crate::scene_bits;
-use crate::tuning::{PIECE_WIDTH_PX, PIECE_WRONG};
+use crate::tuning::PIECE_WRONG;
 
 /// Most rounds of things on one another.
 const MOST_ROUNDS: usize = 4;
 /// Rows around what is wrong that a thing which is added there may reach.
 const MARGIN: usize = 4;
-/// Difference of a channel from which on a pixel is painted anew: less than a step of 8 bits.
-const CHANGED: f32 = 1e-3;
 
 /// What is wrong with a drawing, before it is mended.
 pub(super) struct Wrong {
@@ -151,7 +144,10 @@ impl Wrong {
         let mut parts = Parts::of([before, after], self.within.start, image.size());
         let changes: Vec<(Option<u32>, f64)> =
             changes.map(|(drawing, k, saved)| (parts.part_of(drawing, k), saved)).collect();
-        let nearer = parts.nearer(channels(image, &self.within), [before, after], self.step);
+        let image = channels(image, &self.within);
+        let bits = |off: f64| misfit_bits(off, self.step);
+        let [before, after] = [before, after].map(|painted| parts.missed(image, painted, bits));
+        let nearer: Vec<f64> = before.iter().zip(after).map(|(before, after)| before - after).collect();
         let mut shorter = nearer.clone();
         for (part, saved) in &changes {
             part.iter().for_each(|&part| shorter[parts.root(part)] += saved);
@@ -165,20 +161,9 @@ impl Wrong {
     }
 }
 
-/// Bits that an object costs by the law of scenes.
-fn price(object: &Object<f32>) -> f64 {
-    let [of_one, of_none] =
-        [vec![object.clone()], Vec::new()].map(|objects| Scene { objects, ..Scene::empty([0.0; 3]) });
-    scene_bits(&of_one, 0) - scene_bits(&of_none, 0)
-}
-
 /// Whether object `k` is thin, and pixels along much of its outline are `off`.
 fn is_piece(drawing: &Drawing<f32>, k: usize, off: &[usize], size: ImageSize) -> bool {
-    let unit = size.unit_px() as f64;
-    let rings = drawing.rings(k);
-    let area = rings.iter().map(|ring| f64::from(signed_area(ring))).sum::<f64>().abs() * unit * unit;
-    let length = rings.iter().map(|ring| f64::from(perimeter(ring))).sum::<f64>() * unit;
-    if 2.0 * area > PIECE_WIDTH_PX * length {
+    if !is_thin(drawing, k, size) {
         return false;
     }
     let [mut wrong, mut all] = [0.0; 2];
@@ -187,87 +172,4 @@ fn is_piece(drawing: &Drawing<f32>, k: usize, off: &[usize], size: ImageSize) ->
         wrong += if off.binary_search(&i).is_ok() { length } else { 0.0 };
     });
     wrong > PIECE_WRONG * all
-}
-
-/// Walks along the outline of object `k`: pixels on the way, as indices, and how far the way is through each, about a pixel at a time.
-#[inline(never)]
-fn walk(drawing: &Drawing<f32>, k: usize, size: ImageSize, at: &mut dyn FnMut(usize, f64)) {
-    let unit = size.unit_px() as f64;
-    for ring in drawing.rings(k).iter() {
-        let ends = ring.iter().skip(1).chain(ring.first());
-        for (from, to) in ring.iter().zip(ends) {
-            let [from, to] = [from, to].map(|point| point.map(|value| f64::from(value) * unit));
-            // What of the way lies in the picture: outlines may lead far out of it.
-            let [mut start, mut end] = [0.0_f64, 1.0_f64];
-            for (c, side) in [size.width(), size.height()].into_iter().enumerate() {
-                let step = to[c] - from[c];
-                let [low, high] = [-from[c] / step, (f64::of_usize(side) - from[c]) / step];
-                if step != 0.0 {
-                    (start, end) = (start.max(low.min(high)), end.min(low.max(high)));
-                }
-            }
-            let length = (end - start) * (to[0] - from[0]).hypot(to[1] - from[1]);
-            let count = length.ceil().max(1.0);
-            for j in 0..if length > 0.0 { count.to_count() } else { 0 } {
-                let share = start + (end - start) * (j as f64 + 0.5) / count;
-                let [x, y] = [0, 1].map(|c| from[c] + share * (to[c] - from[c]));
-                if x >= 0.0 && y >= 0.0 && x < size.width() as f64 && y < size.height() as f64 {
-                    at(y.to_count() * size.width() + x.to_count(), length / count);
-                }
-            }
-        }
-    }
-}
-
-/// Parts of a picture that change: pixels that touch, and all parts that one object lies in are one.
-struct Parts {
-    /// The pixels that change, ascending, and the part of each.
-    pixels: Vec<usize>,
-    part: Vec<u32>,
-    /// The first of the pixels that are compared.
-    first: usize,
-    sets: DisjointSets,
-    size: ImageSize,
-}
-
-impl Parts {
-    /// What changes from one image to the other, both from pixel `first` on.
-    fn of([before, after]: [[&[f32]; 3]; 2], first: usize, size: ImageSize) -> Self {
-        let pixels = differing(before, after, CHANGED, first);
-        let part = touching(&pixels, size.width());
-        let mut sets = DisjointSets::default();
-        sets.reset(part.iter().map(|part| part + 1).max().unwrap_or(0));
-        Self { pixels, part, first, sets, size }
-    }
-
-    /// The part that an object lies in; none if nothing changes along its outline.
-    fn part_of(&mut self, drawing: &Drawing<f32>, k: usize) -> Option<u32> {
-        let mut first = None;
-        walk(drawing, k, self.size, &mut |i, _| {
-            if let Ok(at) = self.pixels.binary_search(&i) {
-                let part = self.part[at];
-                first = Some(first.map_or(part, |first| self.sets.unite(first, part)));
-            }
-        });
-        first
-    }
-
-    /// Where what is counted of a part stands.
-    fn root(&mut self, part: u32) -> usize {
-        self.sets.root(part) as usize
-    }
-
-    /// By how many bits less the second image misses the picture, part by part.
-    fn nearer(&mut self, image: [&[f32]; 3], [before, after]: [[&[f32]; 3]; 2], step: f64) -> Vec<f64> {
-        let mut nearer = vec![0.0; self.sets.len()];
-        let bits = |painted: [&[f32]; 3], i: usize| {
-            let off = (0..3).map(|c| (image[c][i] - painted[c][i]).abs()).fold(0.0, f32::max);
-            misfit_bits(f64::from(off), step)
-        };
-        for (&i, &part) in self.pixels.iter().zip(&self.part) {
-            let i = i - self.first;
-            nearer[self.sets.root(part) as usize] += bits(before, i) - bits(after, i);
-        }
-        nearer
-    }
 }

@@ -10,6 +10,8 @@
 //! | `bank` | pictures whose shapes are known |
 //! | `ground` | [`Ground`]: the color that transparent pictures are put over |
 //! | `mend` | what a drawing paints wrongly, and what it misses |
+//! | `spare` | things of a drawing that it does not need |
+//! | `parts` | what changes in a picture where a drawing does |
 //! | `most` | fewer objects than a drawing has |
 //! | `openings` | [`cut_openings`]: what shows nothing in a transparent picture |
 //! | `squares` | pictures that were enlarged by repeating pixels, and sprites |
@@ -23,6 +25,8 @@ mod ground;
 mod mend;
 mod most;
 mod openings;
+mod parts;
+mod spare;
 mod squares;
 #[cfg(test)]
 mod tests;
@@ -53,6 +57,7 @@ pub use openings::cut_openings;
 
 use mend::Wrong;
 use most::at_most;
+use spare::Spare;
 use squares::Squares;
 
 /// Where two fits are of different kinds, the likelier one is taken, unless it misses the picture by so many times as much as the other one:
@@ -290,6 +295,10 @@ fn drawn(mut traced: Traced, image: ImageView<'_, f32>, scratch: &mut PictureScr
     let is_clear = traced.blur <= WIDE_BLUR && traced.noise == 0.0;
     if let Some(wrong) = is_clear.then(|| Wrong::of(&traced, &drawing, painted, &image)).flatten() {
         wrong.mend(&mut traced, &drawing, image, canvas)?;
+        (painted, drawing) = canvas.paint(&traced.scene, size)?;
+    }
+    if let Some(spare) = is_clear.then(|| Spare::of(&drawing, painted)).flatten() {
+        spare.leave_out(&mut traced, &drawing, &image, canvas)?;
         (painted, drawing) = canvas.paint(&traced.scene, size)?;
     }
     let mut best = of_painted(&traced.scene, &drawing, painted, image)?;
