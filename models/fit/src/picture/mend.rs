@@ -14,7 +14,7 @@ use dvp_trace::Traced;
 use dvp_trace::missed::{Missed, Painted, channels, misfit_bits};
 use dvp_trace::tuning::{CODED_CONTRAST, LEAST_CONTRAST};
 
-use super::parts::{Parts, is_thin, price, walk};
+use super::parts::{Parts, is_thin, off, price, rows, walk};
 use crate::FitError;
 use crate::paint::Canvas;
 use crate::tuning::PIECE_WRONG;
@@ -58,7 +58,7 @@ impl Wrong {
     ) -> Option<Self> {
         let step = if traced.coded { CODED_CONTRAST } else { LEAST_CONTRAST };
         let pair = Painted { scene: &traced.scene, image: *image, painted: painted.view(), step };
-        let (size, width) = (image.size(), image.size().width());
+        let size = image.size();
         let off = pair.off(&(0..size.pixels()));
         let mut within = off.first().copied()?..off.last().copied()?;
         let is_piece: Vec<bool> = (0..drawing.object_count()).map(|k| is_piece(drawing, k, &off, size)).collect();
@@ -68,8 +68,7 @@ impl Wrong {
         for k in (0..is_piece.len()).filter(|&k| is_piece[k]) {
             walk(drawing, k, size, &mut |i, _| within = within.start.min(i)..within.end.max(i));
         }
-        let rows = (within.start / width).saturating_sub(MARGIN)..(within.end / width + MARGIN + 1).min(size.height());
-        let within = rows.start * width..rows.end * width;
+        let within = rows(&within, MARGIN, size);
         let before = channels(&painted.view(), &within).map(<[f32]>::to_vec);
         Some(Self { within, before, is_piece, step })
     }
@@ -145,9 +144,11 @@ impl Wrong {
         let changes: Vec<(Option<u32>, f64)> =
             changes.map(|(drawing, k, saved)| (parts.part_of(drawing, k), saved)).collect();
         let image = channels(image, &self.within);
-        let bits = |off: f64| misfit_bits(off, self.step);
-        let [before, after] = [before, after].map(|painted| parts.missed(image, painted, bits));
-        let nearer: Vec<f64> = before.iter().zip(after).map(|(before, after)| before - after).collect();
+        let bits = |painted, i| misfit_bits(off(image, painted, i), self.step);
+        let mut nearer = vec![0.0; parts.count()];
+        for (i, part) in parts.pixels() {
+            nearer[part] += bits(before, i) - bits(after, i);
+        }
         let mut shorter = nearer.clone();
         for (part, saved) in &changes {
             part.iter().for_each(|&part| shorter[parts.root(part)] += saved);

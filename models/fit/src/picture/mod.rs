@@ -9,6 +9,7 @@
 //! | `mod` | [`fit_picture`]: the decision between the two fits |
 //! | `bank` | pictures whose shapes are known |
 //! | `ground` | [`Ground`]: the color that transparent pictures are put over |
+//! | `likelier` | which of two fits the picture is |
 //! | `mend` | what a drawing paints wrongly, and what it misses |
 //! | `spare` | things of a drawing that it does not need |
 //! | `parts` | what changes in a picture where a drawing does |
@@ -22,6 +23,7 @@
 
 mod bank;
 mod ground;
+mod likelier;
 mod mend;
 mod most;
 mod openings;
@@ -33,14 +35,13 @@ mod tests;
 mod wide;
 
 use alloc::vec::Vec;
-use core::cmp::Ordering;
 use core::f64::consts::FRAC_2_SQRT_PI;
 
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
 use dvp_core::loss::{ImagePair, Loss as _};
-use dvp_core::render::{Compositing, EdgeLaw, EdgeProfile, PixelLoss};
+use dvp_core::render::{EdgeLaw, EdgeProfile, PixelLoss};
 use dvp_core::{Drawing, Image, ImageView, Real as _, Scene};
 use dvp_trace::tuning::{DOUBTFUL_STAINED, WIDE_BLUR};
 use dvp_trace::{NoDrawing, PoseCovariance, Traced, noise};
@@ -55,15 +56,13 @@ pub use dvp_trace::Known;
 pub use ground::Ground;
 pub use openings::cut_openings;
 
+use likelier::{CLEARLY_WORSE, is_likelier, is_of_renderer, likelier, likeliest};
 use mend::Wrong;
 use most::at_most;
 use spare::Spare;
 use squares::Squares;
 
-/// Where two fits are of different kinds, the likelier one is taken, unless it misses the picture by so many times as much as the other one:
-/// ringing is read as faces, which come nearer to it but are none, and outlines that are free come nearer than shapes that are known.
-const CLEARLY_WORSE: f32 = 2.0;
-/// The same in noise, whose own mean is known to half a percent of it at 64 x 64 pixels.
+/// [`CLEARLY_WORSE`] in noise, whose own mean is known to half a percent of it at 64 x 64 pixels.
 const CLEARLY_WORSE_IN_NOISE: f32 = 1.02;
 /// Pictures of more things are no scenes of the paper's renderer, whatever their edges are: segments, which take long for many, are not asked for.
 const FEW: usize = 16;
@@ -331,49 +330,6 @@ fn of_painted(
 ) -> Result<Fit<f32>, FitError> {
     let loss = PixelLoss::Mae.value(ImagePair::new(painted.view(), image)?, &mut ())?;
     Ok(Fit { loss, ..Fit::of_painted(scene.clone(), drawing, &image, painted.data()) })
-}
-
-/// Whether segments explain a picture as the paper's renderer paints, which no drawing is: by its edges, or by colors that mix.
-fn is_of_renderer(segments: &Fit<f32>) -> bool {
-    let is_like_it = match segments.scene.edge.law {
-        EdgeLaw::SquaredDistance => true,
-        EdgeLaw::Area => segments.scene.compositing == Compositing::Blend,
-        EdgeLaw::Distance => false,
-    };
-    is_like_it && segments.unexplained <= NOT_FLAT_SHARE
-}
-
-/// Of segments and a drawing the one that the picture is. Segments measure the profile of all edges at once: drawings have that of area coverage, or a
-/// blur; the paper's renderer has its own. Ringing hides it, but makes things of its own, and a scene is not more than it needs to be; of as many
-/// things the nearer ones, `factor` saying what is clearly worse.
-#[inline(never)]
-fn likeliest(segments: Fit<f32>, drawn: Fit<f32>, factor: f32) -> Fit<f32> {
-    // Under noise or a blur what follows it is nearer without being right.
-    let is_clear = segments.scene.edge.law == EdgeLaw::Area && factor >= CLEARLY_WORSE;
-    let as_many = if is_clear { 1.0 } else { factor };
-    let is_drawing = if segments.scene.edge.law == EdgeLaw::SquaredDistance {
-        // Fewer things that are nearer are better by both.
-        let factor = if drawn.scene.objects.len() < segments.scene.objects.len() { 1.0 } else { factor };
-        factor * drawn.loss < segments.loss
-    } else {
-        is_likelier(&drawn, &segments, as_many, factor)
-    };
-    if is_drawing { drawn } else { segments }
-}
-
-/// Whether a fit is likelier than another one: with fewer things unless it is clearly farther from the picture (`factor` times), with more if it is
-/// clearly nearer, with as many if it is not farther than `as_many` times.
-fn is_likelier(one: &Fit<f32>, other: &Fit<f32>, as_many: f32, factor: f32) -> bool {
-    match one.scene.objects.len().cmp(&other.scene.objects.len()) {
-        Ordering::Less => one.loss <= factor * other.loss,
-        Ordering::Equal => one.loss <= as_many * other.loss,
-        Ordering::Greater => factor * one.loss < other.loss,
-    }
-}
-
-/// The first of two fits, or the second if that is much nearer.
-fn likelier(first: Fit<f32>, second: Fit<f32>) -> Fit<f32> {
-    if CLEARLY_WORSE * second.loss < first.loss { second } else { first }
 }
 
 /// Whether edges leave a doubt that a picture is a drawing. Stains of either sign: blur and profiles of their own leave too much of the other

@@ -2,6 +2,7 @@
 
 use alloc::vec;
 use alloc::vec::Vec;
+use core::ops::Range;
 
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
@@ -63,6 +64,13 @@ pub(super) fn walk(drawing: &Drawing<f32>, k: usize, size: ImageSize, at: &mut d
     }
 }
 
+/// The pixels of the rows around some: `margin` rows more to either side.
+pub(super) fn rows(pixels: &Range<usize>, margin: usize, size: ImageSize) -> Range<usize> {
+    let width = size.width();
+    let rows = (pixels.start / width).saturating_sub(margin)..(pixels.end / width + margin + 1).min(size.height());
+    rows.start * width..rows.end * width
+}
+
 /// Parts of a picture that change: pixels that touch, and all parts that one object lies in are one.
 pub(super) struct Parts {
     /// The pixels that change, ascending, and the part of each.
@@ -96,19 +104,24 @@ impl Parts {
         first
     }
 
+    /// How many parts there are, those that are one with others too.
+    pub(super) fn count(&self) -> usize {
+        self.sets.len()
+    }
+
     /// Where what is counted of a part stands.
     pub(super) fn root(&mut self, part: u32) -> usize {
         self.sets.root(part) as usize
     }
 
-    /// What an image, `painted` from the first of the pixels on, misses of the picture, part by part; `price`: of a pixel a channel of which is off.
-    pub(super) fn missed(&mut self, image: [&[f32]; 3], painted: [&[f32]; 3], price: impl Fn(f64) -> f64) -> Vec<f64> {
-        let mut missed = vec![0.0; self.sets.len()];
-        for (&i, &part) in self.pixels.iter().zip(&self.part) {
-            let i = i - self.first;
-            let off = (0..3).map(|c| (image[c][i] - painted[c][i]).abs()).fold(0.0, f32::max);
-            missed[self.sets.root(part) as usize] += price(f64::from(off));
-        }
-        missed
+    /// The pixels that change, counted from the first of those that are compared, and where what is counted of the part of each stands.
+    pub(super) fn pixels(&mut self) -> Vec<(usize, usize)> {
+        let pixels = self.pixels.iter().zip(&self.part);
+        pixels.map(|(&i, &part)| (i - self.first, self.sets.root(part) as usize)).collect()
     }
+}
+
+/// By how much the farthest channel of pixel `i` is off.
+pub(super) fn off(image: [&[f32]; 3], painted: [&[f32]; 3], i: usize) -> f64 {
+    f64::from((0..3).map(|c| (image[c][i] - painted[c][i]).abs()).fold(0.0, f32::max))
 }

@@ -8,24 +8,28 @@ mod tests;
 
 use alloc::vec;
 use alloc::vec::Vec;
+use core::ops::Range;
 
 use dvp_core::{Drawing, Image, ImageView, Scene};
 use dvp_trace::Traced;
 use dvp_trace::missed::{channels, misfit_bits};
-use dvp_trace::tuning::{CODED_CONTRAST, LEAST_CONTRAST, THING_BITS};
+use dvp_trace::tuning::{CODED_CONTRAST, LEAST_CONTRAST, PIXEL_BITS, THING_BITS};
 
-use super::parts::{Parts, is_thin};
+use super::parts::{Parts, is_thin, off, rows, walk};
 use crate::FitError;
 use crate::paint::Canvas;
 
-/// Times as far, squared, as the picture may be from what is painted without a thing that is not needed, where it would lie: twice as far is what edges
-/// that were told in two pieces miss.
+/// Times as far, squared, as the picture may be from what is painted without a thing that is not needed, where it would lie: twice as far is what an edge
+/// misses that is told as part of a whole, not for itself.
 const MOST_MISSED: f64 = 4.0;
 
 /// What a drawing paints, and which of its things are thin.
 pub(super) struct Spare {
-    painted: [Vec<f32>; 3],
     thin: Vec<usize>,
+    /// The pixels of the rows that these lie in.
+    within: Range<usize>,
+    /// What is painted there, channel by channel.
+    painted: [Vec<f32>; 3],
 }
 
 impl Spare {
@@ -34,8 +38,16 @@ impl Spare {
     pub(super) fn of(drawing: &Drawing<f32>, painted: &Image<f32>) -> Option<Self> {
         let size = painted.size();
         let thin: Vec<usize> = (0..drawing.object_count()).filter(|&k| is_thin(drawing, k, size)).collect();
-        let painted = || channels(&painted.view(), &(0..size.pixels())).map(<[f32]>::to_vec);
-        (!thin.is_empty()).then(|| Self { painted: painted(), thin })
+        let mut lie = size.pixels()..0;
+        let mut walk = |k: usize| walk(drawing, k, size, &mut |i, _| lie = lie.start.min(i)..lie.end.max(i));
+        thin.iter().for_each(|&k| walk(k));
+        if lie.start > lie.end {
+            return None;
+        }
+        // Pixels beside an outline are changed by it, too.
+        let within = rows(&lie, 1, size);
+        let painted = channels(&painted.view(), &within).map(<[f32]>::to_vec);
+        Some(Self { thin, within, painted })
     }
 
     /// Leaves out those that the picture is as well described without.
@@ -51,27 +63,50 @@ impl Spare {
         let objects = traced.scene.objects.iter().enumerate();
         let objects = objects.filter(|(k, _)| !is_thin(k)).map(|(_, object)| object.clone()).collect();
         let (painted, _) = canvas.paint(&Scene { objects, ..traced.scene.clone() }, image.size())?;
-        let all = 0..image.size().pixels();
-        let [before, after] = [self.painted.each_ref().map(Vec::as_slice), channels(&painted.view(), &all)];
-        let mut parts = Parts::of([before, after], 0, image.size());
+        let [before, after] = [self.painted.each_ref().map(Vec::as_slice), channels(&painted.view(), &self.within)];
+        let mut parts = Parts::of([before, after], self.within.start, image.size());
         let of_part: Vec<Option<u32>> = self.thin.iter().map(|&k| parts.part_of(drawing, k)).collect();
         let step = if traced.coded { CODED_CONTRAST } else { LEAST_CONTRAST };
-        let image = channels(image, &all);
-        let mut missed = |painted| {
-            let sigmas2 = parts.missed(image, painted, |off| (off / step).powi(2));
-            (sigmas2, parts.missed(image, painted, |off| misfit_bits(off, step)))
-        };
-        let [(before, bits_before), (after, bits_after)] = [before, after].map(&mut missed);
-        let is_needed = |part: usize| {
-            bits_after[part] - bits_before[part] > THING_BITS || after[part] > MOST_MISSED * before[part] + 1.0
-        };
+        let image = channels(image, &self.within);
+        let mut without = vec![Without::default(); parts.count()];
+        for (i, part) in parts.pixels() {
+            without[part].add([before, after].map(|painted| off(image, painted, i)), step);
+        }
         let mut is_left = vec![true; traced.scene.objects.len()];
         for (&k, part) in self.thin.iter().zip(&of_part) {
-            is_left[k] = part.is_some_and(|part| is_needed(parts.root(part)));
+            is_left[k] = part.is_some_and(|part| !without[parts.root(part)].is_as_good());
         }
         let [mut of_objects, mut of_covariances] = [is_left.iter(), is_left.iter()];
         traced.scene.objects.retain(|_| of_objects.next() == Some(&true));
         traced.covariances.retain(|_| of_covariances.next() == Some(&true));
         Ok(())
+    }
+}
+
+/// How a part of the picture is described with its thin things, and without them.
+#[derive(Clone, Copy, Default)]
+struct Without {
+    /// Squares of the steps by which pixels are off.
+    steps2: [f64; 2],
+    /// Bits that are missed without them.
+    missed: f64,
+    /// Most of them in one pixel.
+    worst: f64,
+}
+
+impl Without {
+    /// Adds a pixel that is off by so much with them, and by so much without.
+    fn add(&mut self, offs: [f64; 2], step: f64) {
+        let [with, without] = offs.map(|off| misfit_bits(off, step));
+        self.steps2.iter_mut().zip(offs).for_each(|(sum, off)| *sum += (off / step).powi(2));
+        self.missed += without - with;
+        self.worst = self.worst.max(without - with);
+    }
+
+    /// Whether it is as well described without them: no pixel shows something else, all together miss less than a thing costs, and nothing is much
+    /// farther off than before.
+    fn is_as_good(&self) -> bool {
+        let [with, without] = self.steps2;
+        self.worst <= 0.5 * PIXEL_BITS && self.missed <= THING_BITS && without <= MOST_MISSED * with + 1.0
     }
 }
