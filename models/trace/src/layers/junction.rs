@@ -150,16 +150,16 @@ fn parabola_misfit(samples: &[Sample], origin: Vec2<f64>, along: Vec2<f64>) -> O
     Some(chi2 * 0.5 * core::f64::consts::LOG2_E)
 }
 
-/// Solves three equations by elimination with pivots; none if they are singular.
-pub(super) fn solve(mut matrix: [[f64; 3]; 3], mut right: [f64; 3]) -> Option<[f64; 3]> {
-    for i in 0..3 {
-        let pivot = (i..3).max_by(|&a, &b| matrix[a][i].abs().total_cmp(&matrix[b][i].abs()))?;
+/// Solves equations by elimination with pivots; none if they are singular.
+pub(super) fn solve<const N: usize>(mut matrix: [[f64; N]; N], mut right: [f64; N]) -> Option<[f64; N]> {
+    for i in 0..N {
+        let pivot = (i..N).max_by(|&a, &b| matrix[a][i].abs().total_cmp(&matrix[b][i].abs()))?;
         if matrix[pivot][i].abs() < 1e-12 {
             return None;
         }
         matrix.swap(i, pivot);
         right.swap(i, pivot);
-        for j in i + 1..3 {
+        for j in i + 1..N {
             let factor = matrix[j][i] / matrix[i][i];
             let above = matrix[i];
             for (value, above) in matrix[j].iter_mut().zip(above).skip(i) {
@@ -168,8 +168,8 @@ pub(super) fn solve(mut matrix: [[f64; 3]; 3], mut right: [f64; 3]) -> Option<[f
             right[j] -= factor * right[i];
         }
     }
-    for i in (0..3).rev() {
-        for k in i + 1..3 {
+    for i in (0..N).rev() {
+        for k in i + 1..N {
             right[i] -= matrix[i][k] * right[k];
         }
         right[i] /= matrix[i][i];

@@ -16,6 +16,7 @@
 //! | `complete` | outlines of what is painted together, in an order |
 //! | `lead` | outlines through what is seen, led around what they must not hide |
 //! | `repeat` | what is another thing again, elsewhere and in another size |
+//! | `frame` | the square that a pen has drawn and others hide in part |
 //! | `template` | how an outline lies on what is seen of another thing |
 //! | `swap` | who lies in front, once that is known |
 //! | `memo` | outlines that were fitted before |
@@ -23,6 +24,7 @@
 
 mod complete;
 mod edge_to_edge;
+mod frame;
 mod join;
 mod junction;
 mod lead;

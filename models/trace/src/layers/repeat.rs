@@ -13,6 +13,7 @@ use dvp_core::geometry::{LineSegment, Similarity};
 use num_traits::Float as _;
 
 use super::complete::{Completed, Completion};
+use super::frame;
 use super::join::Group;
 use super::swap;
 use super::template::Seen;
@@ -129,13 +130,17 @@ fn best(completion: &Completion<'_>, groups: &[Group], own: &[usize], most: f64)
     }
     let rings: Vec<RingSamples> = walks(completion, &faces).iter().map(|walk| walk.samples()).collect();
     let runs: Vec<&Vec<Sample>> = rings.iter().flat_map(|ring| &ring.runs).collect();
+    let frames = frame::frames(&runs);
     let own_sides = own.iter().flat_map(|&at| groups[at].completed.sides());
     let seen = Seen::new(runs.into_iter().flatten().copied().collect(), own_sides);
     let mut best: Option<Completed> = None;
     let others = (0..groups.len()).filter(|at| !own.contains(at)).map(|at| &*groups[at].completed);
     let agreeing = others.filter(|template| !template.outlines.is_empty() && template.agrees);
     let straight: Vec<&Completed> = agreeing.filter(|template| template.sides().len() <= MOST_EDGES).collect();
-    for (template, flip) in straight.iter().flat_map(|template| flips().map(move |flip| (template, flip))) {
+    let others = straight.into_iter().flat_map(|template| flips().map(move |flip| (template, flip, numbers)));
+    // A frame is told by one number more, and is the same upside down.
+    let frames = frames.iter().map(|frame| (frame, Similarity::identity(), numbers + completion.ruler.number(SIGMA)));
+    for (template, flip, numbers) in others.chain(frames) {
         completion.memo.spent.set(completion.memo.spent.get() + seen.samples.len().div_ceil(QUICKER));
         if completion.is_spent() {
             break;

@@ -132,6 +132,27 @@ fn who_lies_in_front_is_told_by_what_is_there_again() {
     assert_whole(&scene([0.28, 0.92, 0.91], vec![back, middle, front]));
 }
 
+/// A square with a square opening.
+fn frame(square: f64, opening: f64) -> AnyShape<f64> {
+    let ring = |side: f64| {
+        PathRing::polygon(
+            [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|at| at.map(|c| 0.5 * c * side)).into(),
+        )
+    };
+    AnyShape::Path(Path { rings: vec![ring(square), ring(opening)], fill: FillRule::EvenOdd })
+}
+
+#[test]
+fn what_is_seen_of_a_frame_tells_what_is_hidden_of_it() {
+    let square = object(frame(24.0, 12.0), [40.3, 40.6], 0.0, BLUE);
+    // A side of it behind a bar, and a corner behind a larger square.
+    let bar = object(rectangle(50.0, 10.0), [42.0, 29.2], 0.0, SAND);
+    let corner = object(rectangle(24.0, 24.0), [56.2, 27.4], 0.0, SAND);
+    for front in [bar, corner] {
+        assert_whole(&scene(WHITE, vec![square.clone(), front]));
+    }
+}
+
 fn shapes() -> impl Strategy<Value = OutlineShape> {
     let center = || (5.0..90.0, 5.0..90.0).prop_map(|(x, y)| Vec2::new(x, y));
     prop_oneof![
