@@ -55,10 +55,10 @@ pub mod tuning;
 
 use alloc::vec::Vec;
 
-use dvp_core::{ImageSize, ImageView, Scene};
+use dvp_core::{Image, ImageSize, ImageView, Scene};
 
 use crate::boundary::Ring;
-use crate::partition::{NoPartition, Partition, Reading};
+use crate::partition::{Face, NoPartition, Partition, Reading};
 pub use crate::scene::PoseCovariance;
 
 /// A picture as a drawing.
@@ -138,19 +138,36 @@ impl Known {
     }
 }
 
+/// A picture in the colors of its faces: without noise, without what a coder left beside edges, and without a mixed pixel; none if it is no drawing of
+/// flat colors.
+#[must_use]
+#[inline(never)]
+pub fn flat(image: &ImageView<'_, f32>, known: &Known) -> Option<Image<f32>> {
+    let partition = read_as(image, &known.with_spoiled(true)).ok()?.partition;
+    let color = |face: &Face| partition.rgb(partition.palette[face.color]).map(|value| value as f32);
+    let colors: Vec<[f32; 3]> = partition.faces.iter().map(color).collect();
+    let pixels: Option<Vec<[f32; 3]>> =
+        partition.labels.iter().map(|&face| colors.get(face as usize).copied()).collect();
+    Image::from_interleaved(image.size(), pixels?.as_flattened()).ok()
+}
+
 /// The drawing that a picture is.
 ///
 /// # Errors
 /// [`NoDrawing`] if the picture is no drawing of flat colors, or, unless it may be spoiled, has noise or soft edges.
 #[inline(never)]
 pub fn trace(image: &ImageView<'_, f32>, known: &Known) -> Result<Traced, NoDrawing> {
+    draw(read_as(image, known).map_err(NoDrawing::Partition)?, image.size(), known)
+}
+
+/// Reads a picture as what is known of it.
+fn read_as(image: &ImageView<'_, f32>, known: &Known) -> Result<Read, NoPartition> {
     let reading = Reading { coded: known.coded, soft: known.spoiled, ..Reading::default() };
-    let read = match read(image, reading) {
+    match read(image, reading) {
         // What is no drawing as it is may be one under noise, or under what a coder left beside edges.
         Err(_) if known.spoiled && !known.coded => read_spoiled(image, reading),
         read => read,
-    };
-    draw(read.map_err(NoDrawing::Partition)?, image.size(), known)
+    }
 }
 
 /// Reads a picture as it was before it got noise, or what a coder left beside edges. What has too many faces has texture, which is noise of a larger

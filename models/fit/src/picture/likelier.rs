@@ -2,10 +2,15 @@
 
 use core::cmp::Ordering;
 
+use dvp_core::ImageView;
 use dvp_core::render::{Compositing, EdgeLaw};
+use dvp_trace::missed::{channels, misfit_bits};
+use dvp_trace::tuning::CODED_MIX;
 
-use crate::Fit;
+use super::parts::off;
+use crate::paint::Canvas;
 use crate::tuning::NOT_FLAT_SHARE;
+use crate::{Fit, FitError, scene_bits};
 
 /// Where two fits are of different kinds, the likelier one is taken, unless it misses the picture by so many times as much as the other one:
 /// ringing is read as faces, which come nearer to it but are none, and outlines that are free come nearer than shapes that are known.
@@ -47,6 +52,27 @@ pub(super) fn is_likelier(one: &Fit<f32>, other: &Fit<f32>, as_many: f32, factor
         Ordering::Equal => one.loss <= as_many * other.loss,
         Ordering::Greater => factor * one.loss < other.loss,
     }
+}
+
+/// Of two fits of a picture that went through a coder the one that describes it in fewer bits, in itself and in what it misses; the first of two that
+/// are alike. What coders leave beside edges costs little then, and a thing that is not there much: on the mean over all pixels it is the other
+/// way round.
+#[inline(never)]
+pub(super) fn shorter(
+    first: Fit<f32>,
+    second: Fit<f32>,
+    image: ImageView<'_, f32>,
+    canvas: &mut Canvas<f32>,
+) -> Result<Fit<f32>, FitError> {
+    let all = 0..image.size().pixels();
+    let seen = channels(&image, &all);
+    let mut bits = |fit: &Fit<f32>| -> Result<f64, FitError> {
+        let painted = channels(&canvas.paint(&fit.scene, image.size())?.0.view(), &all);
+        let missed = all.clone().map(|i| misfit_bits(off(seen, painted, i), f64::from(CODED_MIX)));
+        Ok(missed.sum::<f64>() + scene_bits(&fit.scene, 0))
+    };
+    let is_second = bits(&second)? < bits(&first)?;
+    Ok(if is_second { second } else { first })
 }
 
 /// The first of two fits, or the second if that is much nearer.

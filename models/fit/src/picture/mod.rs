@@ -56,7 +56,7 @@ pub use dvp_trace::Known;
 pub use ground::Ground;
 pub use openings::cut_openings;
 
-use likelier::{CLEARLY_WORSE, is_likelier, is_of_renderer, likelier, likeliest};
+use likelier::{CLEARLY_WORSE, is_likelier, is_of_renderer, likelier, likeliest, shorter};
 use mend::Wrong;
 use most::at_most;
 use spare::Spare;
@@ -224,6 +224,10 @@ fn drawing(
         }
     }
     match segments {
+        // The paper's renderer is known by its edges, which such bits hardly see.
+        Some(segments) if known.coded && !is_of_renderer(&segments) => {
+            shorter(segments, drawn, image, &mut scratch.canvas)
+        }
         Some(segments) => Ok(likeliest(segments, drawn, CLEARLY_WORSE)),
         None => settled(fitter, drawn, image, scratch),
     }
