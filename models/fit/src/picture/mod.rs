@@ -224,10 +224,6 @@ fn drawing(
         }
     }
     match segments {
-        // The paper's renderer is known by its edges, which such bits hardly see.
-        Some(segments) if known.coded && !is_of_renderer(&segments) => {
-            shorter(segments, drawn, image, &mut scratch.canvas)
-        }
         Some(segments) => Ok(likeliest(segments, drawn, CLEARLY_WORSE)),
         None => settled(fitter, drawn, image, scratch),
     }

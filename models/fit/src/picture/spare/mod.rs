@@ -98,7 +98,8 @@ impl Without {
     /// Adds a pixel that is off by so much with them, and by so much without.
     fn add(&mut self, offs: [f64; 2], step: f64) {
         let [with, without] = offs.map(|off| misfit_bits(off, step));
-        self.steps2.iter_mut().zip(offs).for_each(|(sum, off)| *sum += (off / step).powi(2));
+        let steps = offs.map(|off| off / step);
+        self.steps2.iter_mut().zip(steps).for_each(|(sum, steps)| *sum += steps * steps);
         self.missed += without - with;
         self.worst = self.worst.max(without - with);
     }
