@@ -85,7 +85,8 @@ pub struct PictureScratch {
 ///
 /// The picture is taken as a drawing if it is one (flat colors with clear edges), or was one before it got noise, a blur, or what coders and
 /// filters leave; else as segments; where edges leave a doubt as what their profile says. If the options of `fitter` know the shapes, these are
-/// laid on it, unless a drawing without them is much nearer; if they say how objects mix, it is taken as segments.
+/// laid on it, unless a drawing without them is much nearer, or shorter where a coder has changed the picture; if they say how objects mix, it is
+/// taken as segments.
 ///
 /// A transparent picture comes over its matte ([`Ground`]), and [`Known::matte`] says which color that is; of an opaque one it
 /// is none.

@@ -1,7 +1,8 @@
 //! Pictures whose shapes are known.
 //!
 //! Where no pixel is mixed, or none was before the picture got noise or went through a coder, the shapes are laid on the pixels one by one
-//! ([`Decoder`]); everywhere else edges tell poses better ([`Fitter`]). A picture of few colors to which a drawing of any shapes comes much nearer has other shapes.
+//! ([`Decoder`]); everywhere else edges tell poses better ([`Fitter`]). A picture of few colors to which a drawing of any shapes comes much nearer has
+//! other shapes; of one that went through a coder the shorter description tells.
 
 #[cfg(test)]
 mod tests;
@@ -76,8 +77,8 @@ fn or_unspoiled(
     // Of bits other shapes pay for themselves.
     let traced = dvp_trace::trace(&image, known).ok();
     let drawn = traced.map(|traced| drawn(traced, image, scratch)).transpose()?;
-    let others = decoded.into_iter().chain(drawn);
-    others.into_iter().try_fold(found, |best, other| shorter(best, other, image, &mut scratch.canvas))
+    let mut others = decoded.into_iter().chain(drawn);
+    others.try_fold(found, |best, other| shorter(best, other, image, &mut scratch.canvas))
 }
 
 /// The fit of what was decoded, to the picture as it is.
