@@ -110,6 +110,8 @@ pub struct Known {
     pub loose: bool,
     /// Whether it may have noise or soft edges: it is read then as what it was before.
     pub spoiled: bool,
+    /// Whether it is made of squares of one color, as a sprite is whose pixels are enlarged: those that touch in a corner are one thing.
+    pub squares: bool,
 }
 
 impl Known {
@@ -135,6 +137,12 @@ impl Known {
     #[must_use]
     pub fn with_coded(self, coded: bool) -> Self {
         Self { coded, ..self }
+    }
+
+    /// The same, made of squares or not.
+    #[must_use]
+    pub fn with_squares(self, squares: bool) -> Self {
+        Self { squares, ..self }
     }
 }
 
@@ -162,7 +170,7 @@ pub fn trace(image: &ImageView<'_, f32>, known: &Known) -> Result<Traced, NoDraw
 
 /// Reads a picture as what is known of it.
 fn read_as(image: &ImageView<'_, f32>, known: &Known) -> Result<Read, NoPartition> {
-    let reading = Reading { coded: known.coded, soft: known.spoiled, ..Reading::default() };
+    let reading = Reading { coded: known.coded, soft: known.spoiled, squares: known.squares, ..Reading::default() };
     match read(image, reading) {
         // What is no drawing as it is may be one under noise, or under what a coder left beside edges.
         Err(_) if known.spoiled && !known.coded => read_spoiled(image, reading),

@@ -170,7 +170,7 @@ fn or_squares<'a>(
     }
     let Some(large) = squares::enlarged(&image) else { return Ok((fit, image)) };
     let large = enlarged.insert(large).view();
-    let of_squares = drawing_or_segments(fitter, large, known, scratch)?;
+    let of_squares = drawing_or_segments(fitter, large, &known.with_squares(true), scratch)?;
     let is_better = of_squares.unexplained < fit.unexplained;
     let is_taken = is_better && (are_shorter || of_squares.scene.objects.len() <= things);
     Ok(if is_taken { (of_squares, large) } else { (fit, image) })

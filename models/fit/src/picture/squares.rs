@@ -25,7 +25,7 @@ const MOST_SIDE: usize = 128;
 const MOST_PATCHES: usize = 1000;
 /// Colors of the largest palette of a sprite, as consoles and editors of pixel art have them. Smooth edges and blurs have many more.
 const MOST_COLORS: usize = 64;
-/// How often pixels of sprites are repeated. From 5 on squares keep their corners, and up to 7 those that touch in a corner are told to be one thing.
+/// How often pixels of sprites are repeated. From 5 on squares keep their corners.
 const REPEATED: usize = 6;
 /// A pixel off by more, as a share of the scale, is wrong: less is a share of an edge, where edges are smooth.
 const WRONG: f32 = 0.25;

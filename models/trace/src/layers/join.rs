@@ -127,7 +127,8 @@ impl Group {
         let faces: Vec<u32> = self.faces.iter().chain(&other.faces).copied().collect();
         let ranks: Vec<usize> = faces.iter().map(|&face| completion.rank(face)).collect();
         // Two things that are whole by themselves may be of one color; parts of things hardly are.
-        let are_whole = self.is_whole(completion) && other.is_whole(completion);
+        let [is_whole, is_other_whole] = [self, other].map(|group| group.is_whole(completion));
+        let are_whole = is_whole && is_other_whole;
         if are_whole && !is_shown_behind(completion, &self.faces, &other.faces) {
             return None;
         }
@@ -143,8 +144,10 @@ impl Group {
         for (&face, rank) in faces.iter().zip(ranks) {
             completion.rank[face as usize] = rank;
         }
-        // Whole things of one color are many where people draw them: that there is one less is no reason.
-        let thing = if are_whole { 0.0 } else { tuning::THING_BITS };
+        // Whole things of one color are many where people draw them, and so is what has a color that many things have: that there is one less is no
+        // reason.
+        let are_many = are_whole || (is_whole || is_other_whole) && completion.partition.is_plain(faces[0]);
+        let thing = if are_many { 0.0 } else { tuning::THING_BITS };
         let apart = self.completed.with(&other.completed);
         let alone = apart.bits + thing + before - after;
         // What a pen has drawn and what not are no one thing but as outlines.

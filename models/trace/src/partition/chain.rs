@@ -214,12 +214,16 @@ pub(super) fn join(canvas: &Canvas<'_>, chains: Vec<Chain>) -> Vec<Chain> {
     joined
 }
 
-/// Whether marks in order lead back to where they start. A line at 45 degrees, which windows along both axes read, leads to its end and there is
-/// nothing left of the way back.
+/// Whether marks in order go around anything: what they enclose is a pixel wide, at least. A line at 45 degrees, which windows along both axes read,
+/// leads to its end and back on itself.
 fn goes_around(marks: &[Mark]) -> bool {
-    let way: f64 = marks.windows(2).map(|pair| (pair[1].point - pair[0].point).length()).sum();
-    let gap = |(first, last): (&Mark, &Mark)| (last.point - first.point).length();
-    marks.first().zip(marks.last()).is_some_and(|ends| 2.0 * gap(ends) < way)
+    let next = marks.iter().cycle().skip(1);
+    let [mut way, mut area] = [0.0; 2];
+    for (here, next) in marks.iter().zip(next) {
+        way += (next.point - here.point).length();
+        area += 0.5 * here.point.cross(next.point);
+    }
+    2.0 * area.abs() > way
 }
 
 /// Whether two boxes are within `margin` of one another.

@@ -10,6 +10,33 @@ const NEAR: usize = 2;
 /// How far they reach at least along their sides: no line that runs across the corner is as wide.
 const FAR: usize = 6;
 
+/// How far fields without a mixed pixel reach at least along both of their sides. Steps of a line are a pixel wide, twice or three times enlarged two or
+/// three.
+const REACH: usize = 4;
+
+/// Whether two pixels across a corner, of one color, are of two fields that meet there without a mixed pixel: each reaches away from it to both sides.
+pub(super) fn are_fields(
+    colors: &[u16],
+    is_flat: &[bool],
+    [width, height]: [usize; 2],
+    [upper, lower]: [usize; 2],
+) -> bool {
+    let falls = upper % width < lower % width;
+    // The columns, and the rows, of which each ends or begins beside the corner.
+    let reaches = |pixel: usize, leftwards: bool, upwards: bool| {
+        let along = |at: usize, backwards: bool, size: usize, step: usize| {
+            let is_inside = if backwards { at + 1 >= REACH } else { at + REACH <= size };
+            let is_own = |k: usize| {
+                let i = if backwards { pixel - k * step } else { pixel + k * step };
+                is_flat[i] && colors[i] == colors[pixel]
+            };
+            is_inside && (0..REACH).all(is_own)
+        };
+        along(pixel % width, leftwards, width, 1) && along(pixel / width, upwards, height, width)
+    };
+    reaches(upper, falls, true) && reaches(lower, !falls, false)
+}
+
 /// Side of the corner, 1 or 2, of the pixels around one; 0 of all others. Pixels of one color that are on different sides are no neighbors.
 pub(super) fn sides(colors: &[u16], is_flat: &[bool], [width, height]: [usize; 2]) -> Vec<u8> {
     let mut sides = vec![0; colors.len()];

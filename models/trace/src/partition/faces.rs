@@ -8,6 +8,7 @@ use num_traits::Float as _;
 
 use dvp_core::geometry::DisjointSets;
 
+use super::checker;
 use super::flat::{NONE, index};
 use super::mix::{Mixed, best_mixture};
 use super::runs::{differing, renumber};
@@ -38,14 +39,15 @@ impl Face {
 }
 
 /// Cuts a picture into faces; specks that a mixture of their neighbors explains nearly as well are given to these.
-pub(super) fn cut(size: [usize; 2], pixels: Vec<[f32; 3]>, mut mixed: Mixed) -> Partition {
-    let (mut labels, mut faces) = label(size, &mixed);
+/// Of one thing is what touches in a corner of squares (`are_squares`), or hardly more of it than lines are wide.
+pub(super) fn cut(size: [usize; 2], pixels: Vec<[f32; 3]>, mut mixed: Mixed, are_squares: bool) -> Partition {
+    let (mut labels, mut faces) = label(size, &mixed, are_squares);
     // What is given away may leave specks behind.
     for _ in 0..2 {
         if !remove_specks(size, &pixels, &mut mixed, &labels, &faces) {
             break;
         }
-        (labels, faces) = label(size, &mixed);
+        (labels, faces) = label(size, &mixed, are_squares);
     }
     partition(size, pixels, mixed, labels, faces)
 }
@@ -138,10 +140,14 @@ fn falling_joins(shares: &[f32], [nw, ne, sw, se]: [usize; 4]) -> bool {
 }
 
 /// Numbers the faces: runs of pixels side by side, joined with those of the row above.
-fn label([width, height]: [usize; 2], mixed: &Mixed) -> (Vec<u32>, Vec<Face>) {
+fn label([width, height]: [usize; 2], mixed: &Mixed, are_squares: bool) -> (Vec<u32>, Vec<Face>) {
     let colors = &mixed.colors;
-    let sides = super::checker::sides(colors, &mixed.is_flat, [width, height]);
+    let sides = checker::sides(colors, &mixed.is_flat, [width, height]);
     let same = |i: usize, j: usize| colors[i] == colors[j] && (sides[i] == sides[j] || sides[i] == 0 || sides[j] == 0);
+    let meet = |upper: usize, lower: usize| {
+        same(upper, lower)
+            && (are_squares || !checker::are_fields(colors, &mixed.is_flat, [width, height], [upper, lower]))
+    };
     let mut sets = DisjointSets::default();
     let mut labels = vec![NONE; colors.len()];
     // Whether a run begins in a column, of the row above and of this one.
@@ -176,7 +182,7 @@ fn label([width, height]: [usize; 2], mixed: &Mixed) -> (Vec<u32>, Vec<Face>) {
             }
             let four = [ne - 1, ne, se - 1, se];
             let [nw, ne, sw, se] = four;
-            let (falls, rises) = (same(nw, se), same(ne, sw));
+            let (falls, rises) = (meet(nw, se), meet(ne, sw));
             if falls && (!rises || falling_joins(&mixed.shares, four)) {
                 sets.unite(labels[nw], labels[se]);
             } else if rises {

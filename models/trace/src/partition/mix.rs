@@ -131,6 +131,13 @@ impl Mixed {
                             best = Some(mixture);
                         }
                     }
+                    // What the border cuts off may show any two of them.
+                    if is_cut_off(pixels, size, i, self.noise)
+                        && let Some(mixture) = best_pair(pixel, &self.palette)
+                        && best.is_none_or(|best| mixture.misfit < best.misfit)
+                    {
+                        best = Some(mixture);
+                    }
                 }
                 if let Some(best) = best.filter(|best| best.misfit <= self.noise) {
                     self.give(i, best);
@@ -198,6 +205,24 @@ pub(super) fn best_mixture(pixel: Color, colors: &[u16], palette: &[Color]) -> O
         }
     }
     Some(best)
+}
+
+/// Whether a pixel lies at a border of the picture, of which a part has its color, at most: what goes along all of a border is a line.
+fn is_cut_off(pixels: &[[f32; 3]], [width, height]: [usize; 2], i: usize, noise: f64) -> bool {
+    let [x, y] = [i % width, i / width];
+    let color = pixels[i].map(f64::from);
+    let is_part = |first: usize, step: usize, side: usize| {
+        let border = pixels[first..].iter().step_by(step).take(side);
+        4 * border.filter(|pixel| distance(pixel.map(f64::from), color) <= noise).count() <= 3 * side
+    };
+    (y == 0 || y + 1 == height) && is_part(y * width, 1, width)
+        || (x == 0 || x + 1 == width) && is_part(x, width, height)
+}
+
+/// A pixel as a mixture of any two colors.
+fn best_pair(pixel: Color, palette: &[Color]) -> Option<Mixture> {
+    let pairs = (0..palette.len()).flat_map(|a| (0..a).map(move |b| pair(pixel, narrow(a), narrow(b), palette)));
+    pairs.min_by(|a, b| a.misfit.total_cmp(&b.misfit))
 }
 
 /// A pixel as a mixture of two colors.

@@ -97,6 +97,8 @@ pub struct Reading {
     pub noise: f32,
     /// Whether its edges may be wider than those of area coverage.
     pub soft: bool,
+    /// Whether it is made of squares of one color: those that touch in a corner are one thing.
+    pub squares: bool,
 }
 
 impl Reading {
@@ -151,6 +153,12 @@ impl Partition {
         if has_too_many { Err(NoPartition::TooManyFaces { faces }) } else { Ok(()) }
     }
 
+    /// Whether a face has one of the eight colors of which every channel is none or full, as black and white are: many things do.
+    pub(crate) fn is_plain(&self, face: u32) -> bool {
+        let is_end = |value: f64| value.min(1.0 - value) <= self.mix_noise;
+        self.rgb(self.color(face)).into_iter().all(is_end)
+    }
+
     /// Whether pixels beside an edge that show no mixture have the edge exactly between them.
     pub(crate) fn has_exact_edges(&self) -> bool {
         !(self.is_hard || self.reading.is_spoiled())
@@ -190,7 +198,14 @@ impl Partition {
         let finish = |pixels: Vec<[f32; 3]>, flats: &flat::Flats, colors, lines, mut seams: Vec<Seam>| {
             seams.sort_unstable_by_key(|seam| seam.pixel);
             let mixed = mix::explain(&pixels, size, flats, colors, &noise);
-            Self { reading, ripple, sigma: noise.sigma, lines, seams, ..faces::cut(size, pixels, mixed) }
+            Self {
+                reading,
+                ripple,
+                sigma: noise.sigma,
+                lines,
+                seams,
+                ..faces::cut(size, pixels, mixed, reading.squares)
+            }
         };
         let mut lines = Vec::new();
         let mut seams = Vec::new();

@@ -96,39 +96,44 @@ impl Partition {
     fn insert(&mut self, line: &ThinLine) -> bool {
         let Some(color) = self.color_of_sliver(line) else { return false };
         let covered = self.covered(line);
-        if covered.is_empty() {
+        let columns = covered.keys().map(|&i| self.at(i)[0]);
+        let rows = covered.keys().map(|&i| self.at(i)[1]);
+        let (Some(left), Some(right), Some(top), Some(bottom)) =
+            (columns.clone().min(), columns.max(), rows.clone().min(), rows.max())
+        else {
             return false;
-        }
-        let mut sliver = Face { color, area: 0, flat: 0, bounds: [usize::MAX, usize::MAX, 0, 0] };
-        covered.keys().for_each(|&i| sliver.take(1, 0, self.at(i).map(|at| [at, at + 1])));
-        let [left, top, right, bottom] = sliver.bounds;
+        };
         let around = [
             left.saturating_sub(1),
             top.saturating_sub(1),
-            (right + 1).min(self.size[0]),
-            (bottom + 1).min(self.size[1]),
+            (right + 2).min(self.size[0]),
+            (bottom + 2).min(self.size[1]),
         ];
-        // A line that cuts a face in two, or is itself in pieces, is none that separates two faces.
+        // A line that cuts a face in two is none that separates two faces.
         let mut touched: Vec<u32> = covered.keys().map(|&i| self.labels[i]).collect();
         touched.sort_unstable();
         touched.dedup();
         let is_cut = |&face: &u32| {
             let is_own = |i: usize| self.labels[i] == face;
-            self.pieces(around, |i| is_own(i) && !covered.contains_key(&i)) > self.pieces(around, is_own)
+            self.pieces(around, |i| is_own(i) && !covered.contains_key(&i)).len() > self.pieces(around, is_own).len()
         };
-        if touched.iter().any(is_cut) || self.pieces(around, |i| covered.contains_key(&i)) != 1 {
+        if touched.iter().any(is_cut) {
             return false;
         }
-        let face = self.faces.len() as u32;
-        for (&i, &share) in &covered {
-            self.faces[self.labels[i] as usize].area -= 1;
-            (self.labels[i], self.shares[i]) = (face, share);
-        }
-        self.faces.push(sliver);
-        self.slivers.push(Sliver { pixels: covered.keys().copied().collect(), windows: line.chain.samples.clone() });
-        while let Some(other) = self.alike_beside(&covered) {
-            let keep = covered.keys().next().map_or(face, |&i| self.labels[i]);
-            self.unite(keep, other);
+        for pixels in self.pieces(around, |i| covered.contains_key(&i)) {
+            let mut sliver = Face { color, area: 0, flat: 0, bounds: [usize::MAX, usize::MAX, 0, 0] };
+            pixels.iter().for_each(|&i| sliver.take(1, 0, self.at(i).map(|at| [at, at + 1])));
+            let face = self.faces.len() as u32;
+            for &i in &pixels {
+                self.faces[self.labels[i] as usize].area -= 1;
+                (self.labels[i], self.shares[i]) = (face, covered[&i]);
+            }
+            self.faces.push(sliver);
+            while let Some(other) = self.alike_beside(&pixels) {
+                let keep = pixels.first().map_or(face, |&i| self.labels[i]);
+                self.unite(keep, other);
+            }
+            self.slivers.push(Sliver { pixels: pixels.into_iter().collect(), windows: line.chain.samples.clone() });
         }
         true
     }
@@ -139,9 +144,9 @@ impl Partition {
     }
 
     /// Another face of the same color that touches the side of a pixel.
-    fn alike_beside(&self, pixels: &BTreeMap<usize, f32>) -> Option<u32> {
+    fn alike_beside(&self, pixels: &[usize]) -> Option<u32> {
         let color = |face: u32| self.faces[face as usize].color;
-        pixels.keys().find_map(|&i| {
+        pixels.iter().find_map(|&i| {
             let (own, [x, y]) = (self.labels[i], self.at(i));
             let beside = [[x + 1, y], [x.wrapping_sub(1), y], [x, y + 1], [x, y.wrapping_sub(1)]];
             beside
@@ -225,14 +230,14 @@ impl Partition {
     }
 
     /// Pieces that some pixels between the first column and row and those after the last make, where touching at corners is touching.
-    fn pieces(&self, [left, top, right, bottom]: [usize; 4], is_own: impl Fn(usize) -> bool) -> usize {
+    fn pieces(&self, [left, top, right, bottom]: [usize; 4], is_own: impl Fn(usize) -> bool) -> Vec<Vec<usize>> {
         let columns = right - left;
         let mut is_seen = alloc::vec![false; columns * (bottom - top)];
         let mut open: Vec<[usize; 2]> = Vec::new();
-        let mut count = 0;
+        let mut pieces = Vec::new();
         for (x, y) in (top..bottom).flat_map(|y| (left..right).map(move |x| (x, y))) {
             open.push([x, y]);
-            let mut is_new = false;
+            let mut piece = Vec::new();
             while let Some([x, y]) = open.pop() {
                 let is_within = (left..right).contains(&x) && (top..bottom).contains(&y);
                 if !is_within || !is_own(y * self.size[0] + x) {
@@ -241,12 +246,14 @@ impl Partition {
                 if core::mem::replace(&mut is_seen[(y - top) * columns + x - left], true) {
                     continue;
                 }
-                is_new = true;
+                piece.push(y * self.size[0] + x);
                 open.extend((0..9).map(|k| [(x + k % 3).wrapping_sub(1), (y + k / 3).wrapping_sub(1)]));
             }
-            count += usize::from(is_new);
+            if !piece.is_empty() {
+                pieces.push(piece);
+            }
         }
-        count
+        pieces
     }
 }
 
