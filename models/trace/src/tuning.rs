@@ -241,7 +241,7 @@ pub const SEAM_MOST: f64 = 0.27;
 
 /// What a thing costs beside its outline, bits: its color, 24, and that there is one more at all, at some place in the order: people see few
 /// things rather than many. Of 900 pictures of shapes that show one another through openings about .91 had the right count with 24 when it was
-/// chosen, .95 with 60, .96 with 80 and with 100; .958 have it today.
+/// chosen, .95 with 60, .96 with 80 and with 100; about .97 have it today.
 pub const THING_BITS: f64 = 80.0;
 
 /// What a face of a few pixels costs, bits: its color, 24, and three numbers of 10.
