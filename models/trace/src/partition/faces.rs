@@ -39,7 +39,8 @@ impl Face {
 }
 
 /// Cuts a picture into faces; specks that a mixture of their neighbors explains nearly as well are given to these.
-/// Of one thing is what touches in a corner of squares (`are_squares`), or hardly more of it than lines are wide.
+/// Pixels that touch in nothing but a corner are of one face where the picture is made of squares (`are_squares`), or where what meets there is no
+/// wider than a line.
 pub(super) fn cut(size: [usize; 2], pixels: Vec<[f32; 3]>, mut mixed: Mixed, are_squares: bool) -> Partition {
     let (mut labels, mut faces) = label(size, &mixed, are_squares);
     // What is given away may leave specks behind.

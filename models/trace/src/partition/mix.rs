@@ -207,7 +207,7 @@ pub(super) fn best_mixture(pixel: Color, colors: &[u16], palette: &[Color]) -> O
     Some(best)
 }
 
-/// Whether a pixel lies at a border of the picture, of which a part has its color, at most: what goes along all of a border is a line.
+/// Whether a pixel lies at a border of the picture that has its color in a part, at most: what goes along all of a border is a line.
 fn is_cut_off(pixels: &[[f32; 3]], [width, height]: [usize; 2], i: usize, noise: f64) -> bool {
     let [x, y] = [i % width, i / width];
     let color = pixels[i].map(f64::from);
