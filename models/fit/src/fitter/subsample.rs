@@ -17,8 +17,8 @@ use crate::{Fit, FitError, StopReason};
 const ROUNDING: f64 = 1.1 / 255.0;
 /// Neighbors to each side over which contrast is taken.
 const AROUND: usize = 3;
-/// Rows and columns that are looked at to judge edges: one in so many.
-const LINES: usize = 4;
+/// Rows, and columns, that are looked at to judge edges.
+const LINES: usize = 256;
 
 /// Which pixels of an image are looked at: those at `first` + k `stride` in both directions.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -174,17 +174,20 @@ impl<T: Real> Fitter<T> {
 fn has_wide_edges<T: Real>(image: &ImageView<'_, T>, stride: usize) -> bool {
     let [width, height] = [image.size().width(), image.size().height()].map(|side| side / stride);
     let inner = |side: usize| AROUND..side.saturating_sub(AROUND);
+    let [columns_apart, rows_apart] = [width, height].map(|side| (side / LINES).max(1));
     let (mut sharp, mut sloped) = (0, 0);
     for channel in 0..3 {
         let plane = image.channel(channel);
         let value = |x: usize, y: usize| plane[(y * image.size().width() + x) * stride];
         // Row by row in both directions, as the values lie in memory.
         for y in 0..height {
-            if y % LINES == 0 {
+            if y % rows_apart == 0 {
                 inner(width).for_each(|x| count_sharp(|at| value(at, y), x, &mut sharp, &mut sloped));
             }
             if inner(height).contains(&y) {
-                (0..width).step_by(LINES).for_each(|x| count_sharp(|at| value(x, at), y, &mut sharp, &mut sloped));
+                (0..width)
+                    .step_by(columns_apart)
+                    .for_each(|x| count_sharp(|at| value(x, at), y, &mut sharp, &mut sloped));
             }
         }
     }

@@ -25,10 +25,10 @@ impl Ground {
     /// some programs leave none.
     pub fn of(pixels: impl Iterator<Item = [f64; 4]> + Clone) -> Self {
         let alphas = pixels.clone().map(|[.., alpha]| alpha);
-        let (least, most) = alphas.fold((1.0_f64, 0.0_f64), |(least, most), a| (least.min(a), most.max(a)));
-        if least >= 1.0 {
+        if alphas.clone().all(|alpha| alpha >= 1.0) {
             return Self::Opaque;
         }
+        let most = alphas.fold(0.0, f64::max);
         if most <= 0.0 {
             return Self::Invisible;
         }

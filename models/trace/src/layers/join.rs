@@ -127,8 +127,8 @@ impl Group {
         let faces: Vec<u32> = self.faces.iter().chain(&other.faces).copied().collect();
         let ranks: Vec<usize> = faces.iter().map(|&face| completion.rank(face)).collect();
         // Two things that are whole by themselves may be of one color; parts of things hardly are.
-        let [is_whole, is_other_whole] = [self, other].map(|group| group.is_whole(completion));
-        let are_whole = is_whole && is_other_whole;
+        let is_whole = self.is_whole(completion);
+        let are_whole = is_whole && other.is_whole(completion);
         if are_whole && !is_shown_behind(completion, &self.faces, &other.faces) {
             return None;
         }
@@ -146,7 +146,8 @@ impl Group {
         }
         // Whole things of one color are many where people draw them, and so is what has a color that many things have: that there is one less is no
         // reason.
-        let are_many = are_whole || (is_whole || is_other_whole) && completion.partition.is_plain(faces[0]);
+        let is_plain = || completion.partition.is_plain(faces[0]);
+        let are_many = are_whole || is_plain() && (is_whole || other.is_whole(completion));
         let thing = if are_many { 0.0 } else { tuning::THING_BITS };
         let apart = self.completed.with(&other.completed);
         let alone = apart.bits + thing + before - after;

@@ -96,18 +96,15 @@ impl Partition {
     fn insert(&mut self, line: &ThinLine) -> bool {
         let Some(color) = self.color_of_sliver(line) else { return false };
         let covered = self.covered(line);
-        let columns = covered.keys().map(|&i| self.at(i)[0]);
-        let rows = covered.keys().map(|&i| self.at(i)[1]);
-        let (Some(left), Some(right), Some(top), Some(bottom)) =
-            (columns.clone().min(), columns.max(), rows.clone().min(), rows.max())
-        else {
+        if covered.is_empty() {
             return false;
-        };
+        }
+        let [left, top, right, bottom] = self.face_of(color, covered.keys()).bounds;
         let around = [
             left.saturating_sub(1),
             top.saturating_sub(1),
-            (right + 2).min(self.size[0]),
-            (bottom + 2).min(self.size[1]),
+            (right + 1).min(self.size[0]),
+            (bottom + 1).min(self.size[1]),
         ];
         // A line that cuts a face in two is none that separates two faces.
         let mut touched: Vec<u32> = covered.keys().map(|&i| self.labels[i]).collect();
@@ -121,8 +118,7 @@ impl Partition {
             return false;
         }
         for pixels in self.pieces(around, |i| covered.contains_key(&i)) {
-            let mut sliver = Face { color, area: 0, flat: 0, bounds: [usize::MAX, usize::MAX, 0, 0] };
-            pixels.iter().for_each(|&i| sliver.take(1, 0, self.at(i).map(|at| [at, at + 1])));
+            let sliver = self.face_of(color, &pixels);
             let face = self.faces.len() as u32;
             for &i in &pixels {
                 self.faces[self.labels[i] as usize].area -= 1;
@@ -136,6 +132,13 @@ impl Partition {
             self.slivers.push(Sliver { pixels: pixels.into_iter().collect(), windows: line.chain.samples.clone() });
         }
         true
+    }
+
+    /// A face of some pixels, none of them flat.
+    fn face_of<'p>(&self, color: usize, pixels: impl IntoIterator<Item = &'p usize>) -> Face {
+        let mut face = Face { color, area: 0, flat: 0, bounds: [usize::MAX, usize::MAX, 0, 0] };
+        pixels.into_iter().for_each(|&i| face.take(1, 0, self.at(i).map(|at| [at, at + 1])));
+        face
     }
 
     /// Column and row of a pixel.

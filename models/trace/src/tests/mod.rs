@@ -330,7 +330,7 @@ proptest! {
         height in 1_usize..40,
         sheets in prop::collection::vec((0_usize..40, 0_usize..40, 1_usize..40, 1_usize..40, 0_u8..64), 0..9),
         strays in prop::collection::vec((0_usize..1600, 0_u8..64), 0..12),
-        (coded, is_transparent, spoiled) in any::<(bool, bool, bool)>(),
+        (coded, is_transparent, spoiled, squares) in any::<(bool, bool, bool, bool)>(),
     ) {
         // Sheets one over the other, down to slivers of a pixel, and pixels of any color: flat enough to be read.
         let color = |code: u8| [code % 4, code / 4 % 4, code / 16].map(|level| f32::from(level) / 3.0);
@@ -344,7 +344,7 @@ proptest! {
             pixels[place % (width * height)] = color(code);
         }
         let picture = Image::from_interleaved(ImageSize::new(width, height).unwrap(), pixels.as_flattened()).unwrap();
-        let known = Known { matte: is_transparent.then_some(color(63)), coded, loose: false, spoiled, squares: spoiled && !coded };
+        let known = Known { matte: is_transparent.then_some(color(63)), coded, loose: false, spoiled, squares };
         if let Ok(traced) = trace(&picture.view(), &known) {
             let mut drawing = Drawing::default();
             traced.scene.draw(&OutlineBasis::new(64, 1).unwrap(), &mut drawing).unwrap();
