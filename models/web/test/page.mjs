@@ -270,6 +270,7 @@ check('sliders: fewer objects, a bank', async () => {
 
 check('what is not flat is said to be so', async () => {
   await drop(page, gradient(), 'gradient.png', 'image/png');
+  // A minute alone; a machine that does other things takes several.
   await found(page, 300_000);
   const text = await page.textContent('#verdict');
   console.log(`    ${text.trim().slice(0, 120)}`);
@@ -296,6 +297,7 @@ check('a photo of 20 MB, a corrupt file, an empty file, a picture of no size', a
   assert.match(await message(60_000), /pixels.*most/s);
   await shot('message');
   await page.click('#message-action');
+  // A minute alone; a machine that does other things takes several.
   await found(page, 300_000);
   assert.equal(await page.getAttribute('#verdict', 'data-level'), 'warning', 'a smaller copy of the photo is fitted, and said to be no drawing');
   const icon = read('icon.png');

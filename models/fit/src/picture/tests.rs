@@ -127,6 +127,8 @@ fn grounds_are_far_from_what_is_seen() {
     let opaque = [[0.2, 0.3, 0.4, 1.0]; 3];
     assert_eq!(Ground::of(opaque.into_iter()), Ground::Opaque);
     assert_eq!(Ground::of([[0.2, 0.3, 0.4, 0.0]; 3].into_iter()), Ground::Invisible);
+    // What is no number is not opaque: the color under it is none either, and is refused.
+    assert_ne!(Ground::of([[0.2, 0.3, 0.4, 1.0], [0.2, 0.3, 0.4, f64::NAN]].into_iter()), Ground::Opaque);
     // Black and half-seen white: the corner farthest from both is one of those with one or two channels.
     let ground = Ground::of([[0.0, 0.0, 0.0, 1.0], [1.0, 1.0, 1.0, 0.5], [0.0; 4]].into_iter());
     let Ground::Matte(matte) = ground else { panic!("{ground:?}") };
