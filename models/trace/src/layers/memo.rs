@@ -1,17 +1,29 @@
 //! Outlines that were fitted before: orders and groups of faces are tried again and again, and most boundaries stay the same.
 
 use alloc::collections::BTreeMap;
+use alloc::rc::Rc;
 use alloc::vec::Vec;
 use core::cell::{Cell, RefCell};
 
+use dvp_core::geometry::{LineSegment, Similarity};
+
+use super::template::Seen;
 use crate::outline::{Outline, fit_closed};
 use crate::ruler::Ruler;
-use crate::sample::RingSamples;
+use crate::sample::{RingSamples, Sample};
+
+/// How many templates are held against samples in the time that an outline through these takes, about.
+const QUICKER: usize = 64;
+
+/// How an outline lies on what is seen of a thing, and by how much it misses that; none where it does not.
+type Placed = Option<(Similarity<f64>, f64)>;
 
 /// The outlines of one picture, by the samples that they were fitted to. Where other readings of the picture have the same boundary, they are the same.
 #[derive(Default)]
 pub(crate) struct Memo {
     known: RefCell<BTreeMap<Vec<u64>, Option<Outline>>>,
+    /// What is seen of things, by samples and sides.
+    seen: RefCell<BTreeMap<Vec<u64>, Rc<Templates>>>,
     /// Samples that outlines were fitted to, of all that is bounded as one: the searches for an order of all readings, or what else is asked for.
     pub(super) spent: Cell<usize>,
     /// Those of the searches so far, while something else is asked for.
@@ -41,18 +53,52 @@ impl Memo {
         });
         outline.clone()
     }
+
+    /// What samples show of a thing; `sides`: of the outlines that were drawn through them.
+    pub(super) fn seen(&self, samples: Vec<Sample>, sides: &[LineSegment<f64>]) -> Rc<Templates> {
+        let mut key = Vec::new();
+        add_samples(&mut key, &samples);
+        add_sides(&mut key, sides);
+        let mut seen = self.seen.borrow_mut();
+        let templates = || Rc::new(Templates { seen: Seen::new(samples, sides), known: RefCell::default() });
+        Rc::clone(seen.entry(key).or_insert_with(templates))
+    }
+
+    /// What [`Seen::placed`] gives.
+    pub(super) fn placed(&self, templates: &Templates, edges: &[LineSegment<f64>]) -> Placed {
+        let mut key = Vec::new();
+        add_sides(&mut key, edges);
+        *templates.known.borrow_mut().entry(key).or_insert_with(|| {
+            self.spent.set(self.spent.get() + templates.seen.samples.len().div_ceil(QUICKER));
+            templates.seen.placed(edges)
+        })
+    }
+}
+
+/// What is seen of a thing, with the templates that were held against it.
+pub(super) struct Templates {
+    seen: Seen,
+    /// How each of them lies on it, by its edges.
+    known: RefCell<BTreeMap<Vec<u64>, Placed>>,
 }
 
 /// The bits of all numbers of a ring, and how many samples each of its runs has.
 fn key(ring: &RingSamples) -> Vec<u64> {
     let mut key = Vec::new();
     key.push(u64::from(ring.closed));
-    for run in &ring.runs {
-        key.push(run.len() as u64);
-        for sample in run {
-            let numbers = [sample.point.x, sample.point.y, sample.axis.x, sample.axis.y, sample.sigma];
-            key.extend(numbers.map(f64::to_bits));
-        }
-    }
+    ring.runs.iter().for_each(|run| add_samples(&mut key, run));
     key
+}
+
+fn add_samples(key: &mut Vec<u64>, samples: &[Sample]) {
+    key.push(samples.len() as u64);
+    for sample in samples {
+        let numbers = [sample.point.x, sample.point.y, sample.axis.x, sample.axis.y, sample.sigma];
+        key.extend(numbers.map(f64::to_bits));
+    }
+}
+
+fn add_sides(key: &mut Vec<u64>, sides: &[LineSegment<f64>]) {
+    let numbers = sides.iter().flat_map(|side| [side.from.x, side.from.y, side.along.x, side.along.y]);
+    key.extend(numbers.map(f64::to_bits));
 }

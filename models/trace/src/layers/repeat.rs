@@ -16,7 +16,6 @@ use super::complete::{Completed, Completion};
 use super::frame;
 use super::join::Group;
 use super::swap;
-use super::template::Seen;
 use super::visible::Hidden;
 use super::walk::Walk;
 use crate::outline::Outline;
@@ -27,9 +26,6 @@ use crate::tuning;
 const MOST_EDGES: usize = 96;
 /// Pixels that shift and scale of a thing are known to.
 const SIGMA: f64 = 0.01;
-
-/// How many templates are held against samples in the time that an outline through these takes, about.
-const QUICKER: usize = 64;
 
 /// Takes another thing's outlines for what is hidden in part, where that is the shorter description; then leaves out what was painted in the
 /// color of the background only because others were thought to lie there.
@@ -131,8 +127,8 @@ fn best(completion: &Completion<'_>, groups: &[Group], own: &[usize], most: f64)
     let rings: Vec<RingSamples> = walks(completion, &faces).iter().map(|walk| walk.samples()).collect();
     let runs: Vec<&Vec<Sample>> = rings.iter().flat_map(|ring| &ring.runs).collect();
     let frames = frame::frames(&runs);
-    let own_sides = own.iter().flat_map(|&at| groups[at].completed.sides());
-    let seen = Seen::new(runs.into_iter().flatten().copied().collect(), own_sides);
+    let own_sides: Vec<LineSegment<f64>> = own.iter().flat_map(|&at| groups[at].completed.sides()).copied().collect();
+    let seen = completion.memo.seen(runs.into_iter().flatten().copied().collect(), &own_sides);
     let mut best: Option<Completed> = None;
     let others = (0..groups.len()).filter(|at| !own.contains(at)).map(|at| &*groups[at].completed);
     let agreeing = others.filter(|template| !template.outlines.is_empty() && template.agrees);
@@ -141,7 +137,6 @@ fn best(completion: &Completion<'_>, groups: &[Group], own: &[usize], most: f64)
     // A frame is told by one number more, and is the same upside down.
     let frames = frames.iter().map(|frame| (frame, Similarity::identity(), numbers + completion.ruler.number(SIGMA)));
     for (template, flip, numbers) in others.chain(frames) {
-        completion.memo.spent.set(completion.memo.spent.get() + seen.samples.len().div_ceil(QUICKER));
         if completion.is_spent() {
             break;
         }
@@ -151,7 +146,7 @@ fn best(completion: &Completion<'_>, groups: &[Group], own: &[usize], most: f64)
             ..*edge
         };
         let edges: Vec<LineSegment<f64>> = template.sides().iter().map(flipped).collect();
-        let Some((map, misfit)) = seen.placed(&edges) else { continue };
+        let Some((map, misfit)) = completion.memo.placed(&seen, &edges) else { continue };
         let bits = numbers + completion.ruler.misfit(misfit);
         if bits >= best.as_ref().map_or(most - tuning::LEAST_SAVED, |best| best.bits) {
             continue;

@@ -38,8 +38,10 @@ const MOST_SCALE: f64 = 4.0;
 const FAR2: f64 = 0.25;
 /// Share of the places that may be of something else.
 const MOST_OTHER: f64 = 1.0 / 3.0;
-/// Steps of the refinement.
+/// Most steps of the refinement.
 const STEPS: usize = 6;
+/// Squares of standard deviations: a refinement that gains less in a step has ended.
+const LEAST_GAIN: f64 = 0.01;
 
 /// What is seen of the boundary of a thing.
 pub(super) struct Seen {
@@ -69,9 +71,9 @@ type Like<'a> = (Vec2<f64>, Vec<&'a LineSegment<f64>>);
 
 impl Seen {
     /// What samples show of a boundary; `sides`: of the outlines that were drawn through them.
-    pub(super) fn new<'a>(samples: Vec<Sample>, sides: impl Iterator<Item = &'a LineSegment<f64>>) -> Self {
+    pub(super) fn new(samples: Vec<Sample>, sides: &[LineSegment<f64>]) -> Self {
         // Those of a curve are short.
-        let sides: Vec<&LineSegment<f64>> = sides.filter(|side| side.along.length() >= FEWEST as f64).collect();
+        let sides: Vec<&LineSegment<f64>> = sides.iter().filter(|side| side.along.length() >= FEWEST as f64).collect();
         let mut on_side: Vec<Vec<(f64, Vec2<f64>)>> = sides.iter().map(|_| Vec::new()).collect();
         let mut beside = Vec::new();
         for sample in &samples {
@@ -208,8 +210,16 @@ impl Move {
         point: Vec2<f64>,
     ) -> Option<(&'a LineSegment<f64>, Vec2<f64>)> {
         let at = self.back(point);
-        let offsets = edges.iter().map(|edge| (edge, edge.nearest(at).offset));
-        let (edge, offset) = offsets.min_by(|a, b| a.1.length_squared().total_cmp(&b.1.length_squared()))?;
+        let mut nearest = None;
+        let mut least = f64::INFINITY;
+        for edge in edges {
+            let offset = edge.nearest(at).offset;
+            let off2 = offset.length_squared();
+            if off2 < least {
+                (nearest, least) = (Some((edge, offset)), off2);
+            }
+        }
+        let (edge, offset) = nearest?;
         Some((edge, offset * self.scale))
     }
 
@@ -231,11 +241,11 @@ impl Move {
 
 /// The same, nearest to all samples; and by how much it misses them, squares of standard deviations, each up to a bound.
 fn refined(mut moved: Move, edges: &[LineSegment<f64>], samples: &[Sample]) -> Option<(Move, f64)> {
-    let mut chi2 = 0.0;
-    for step in 0..=STEPS {
+    let (mut before, mut steps) = (f64::INFINITY, 0);
+    loop {
         let mut matrix = [[0.0; 3]; 3];
         let mut right = [0.0; 3];
-        chi2 = 0.0;
+        let mut chi2 = 0.0;
         for sample in samples {
             let (edge, off) = moved.nearest(edges, sample.point)?;
             let normal = edge.along.normalized()?.perp();
@@ -254,10 +264,11 @@ fn refined(mut moved: Move, edges: &[LineSegment<f64>], samples: &[Sample]) -> O
                 }
             }
         }
-        if step < STEPS {
-            let [scale, x, y] = solve(matrix, right)?;
-            moved = Move::new([moved.scale + scale, moved.shift.x + x, moved.shift.y + y])?;
+        if steps == STEPS || (before - chi2).abs() < LEAST_GAIN {
+            return Some((moved, chi2));
         }
+        (before, steps) = (chi2, steps + 1);
+        let [scale, x, y] = solve(matrix, right)?;
+        moved = Move::new([moved.scale + scale, moved.shift.x + x, moved.shift.y + y])?;
     }
-    Some((moved, chi2))
 }

@@ -47,7 +47,7 @@ proptest! {
         seen.rotate_left(first % radii.len());
         seen.truncate(4);
         seen[3] = LineSegment::new(seen[3].from, seen[3].from + seen[3].along * 0.5);
-        let (map, misfit) = Seen::new(samples(&seen), seen.iter()).placed(&sides(&corners)).unwrap();
+        let (map, misfit) = Seen::new(samples(&seen), &seen).placed(&sides(&corners)).unwrap();
         prop_assert!((map.scale() / scale - 1.0).abs() < 1e-6, "{map:?}");
         prop_assert!((map.translation - shift).length() < 1e-4, "{map:?}");
         prop_assert!(misfit < 1e-6);
@@ -57,6 +57,6 @@ proptest! {
 #[test]
 fn another_outline_has_no_place() {
     let [square, triangle] = [[20.0; 4].as_slice(), [20.0; 3].as_slice()].map(|radii| sides(&corners(radii)));
-    assert!(Seen::new(samples(&square), square.iter()).placed(&triangle).is_none());
-    assert!(Seen::new(Vec::new(), square.iter()).placed(&square).is_none());
+    assert!(Seen::new(samples(&square), &square).placed(&triangle).is_none());
+    assert!(Seen::new(Vec::new(), &square).placed(&square).is_none());
 }
