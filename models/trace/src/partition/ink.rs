@@ -67,6 +67,7 @@ pub(super) fn colors(canvas: &Canvas<'_>, crosses: &mut [Vec<Vec<Cross>>; 2], pa
         rest.retain(|&k| windows[k].cross.colors == 0);
         colors.push(candidates[best]);
     }
+    windows.iter_mut().for_each(|window| window.keep_shown(canvas, &colors));
     colors
 }
 
@@ -84,6 +85,25 @@ impl<'a> Window<'a> {
 
     fn try_color(&mut self, canvas: &Canvas<'_>, (k, color): (usize, Color), palette: &[Color]) {
         self.cross.colors |= u128::from(self.fits(canvas, color, palette)) << k;
+    }
+
+    /// Between two colors a third one may explain by chance what a line of another color is: of those that do, what three pixels along the line
+    /// show in full is no chance, and is kept alone.
+    fn keep_shown(&mut self, canvas: &Canvas<'_>, colors: &[Color]) {
+        let Self { along, ref mut cross, .. } = *self;
+        let [lines, _] = canvas.extent(along);
+        if cross.sides[0] == cross.sides[1] || cross.line == 0 || cross.line + 1 == lines {
+            return;
+        }
+        let shows = |color: Color| {
+            let is_full = |line, at| distance(canvas.color(along, line, at), color) <= canvas.noise;
+            (cross.run[0]..cross.run[1]).any(|at| (cross.line - 1..=cross.line + 1).all(|line| is_full(line, at)))
+        };
+        let shown = (0..colors.len()).filter(|&k| cross.colors >> k & 1 == 1 && shows(colors[k]));
+        let shown = shown.fold(0, |shown, k| shown | 1 << k);
+        if shown != 0 {
+            cross.colors = shown;
+        }
     }
 
     fn fits(&self, canvas: &Canvas<'_>, color: Color, palette: &[Color]) -> bool {

@@ -26,7 +26,7 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
 use crate::partition::NoPartition;
-use crate::{Known, NoDrawing, trace};
+use crate::{Known, NoDrawing, trace, trace_spoiled};
 
 const SIZE: usize = 96;
 
