@@ -3,8 +3,8 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use dvp_core::ImageSize;
-use dvp_core::shape::{AnyShape, Cap, FillRule, Join, Path, PathRing, Segment, Stroke};
+use dvp_core::shape::{AnyShape, Cap, FillRule, Join, Path, PathRing, Rectangle, Segment, Stroke};
+use dvp_core::{Image, ImageSize, ImageView};
 
 use proptest::prelude::*;
 
@@ -216,4 +216,41 @@ proptest! {
             prop_assert!(away(object.color(), BLACK) < 0.12, "{object:?}");
         }
     }
+}
+
+#[test]
+fn the_border_of_a_card_has_its_own_color() {
+    // Between two light colors a dark one explains it as well, much thinner, and goes on where the border bends too much for windows across it.
+    let round = |width, height, corner_radius| AnyShape::Rectangle(Rectangle { size: [width, height], corner_radius });
+    let [page, border, text] =
+        [[245, 246, 248], [217, 220, 225], [48, 52, 59]].map(|rgb| rgb.map(|c| c as f32 / 255.0));
+    let objects = vec![
+        object(round(75.0, 63.0, 5.5), [48.0, 40.0], 0.0, border),
+        object(round(73.0, 61.0, 4.5), [48.0, 40.0], 0.0, WHITE),
+        object(rectangle(22.0, 9.0), [36.0, 30.5], 0.0, text),
+        object(rectangle(40.0, 8.0), [48.0, 84.0], 0.0, border),
+    ];
+    // Painted as renderers do that count four by four places in a pixel.
+    let fine = paint_at(&scene(page, objects), ImageSize::new(768, 768).unwrap());
+    let picture = counted(fine.view(), [page, border, text, WHITE]);
+    let found = found(&picture);
+    let dark = found.objects.iter().filter(|object| object.color()[0] < 0.5).count();
+    assert_eq!(dark, 1, "{:?}", found.objects);
+    assert!(error(&picture, &found) < 1e-3, "{}", error(&picture, &found));
+}
+
+/// A quarter of a picture's size: the mean of four by four pixels, each of which is of one of some colors.
+fn counted(fine: ImageView<'_, f32>, colors: [[f32; 3]; 4]) -> Image<f32> {
+    let [width, height] = [fine.size().width(), fine.size().height()];
+    let nearest = |i: usize| {
+        let off = |color: &[f32; 3]| (0..3).map(|c| (color[c] - fine.channel(c)[i]).powi(2)).sum::<f32>();
+        *colors.iter().min_by(|a, b| off(a).total_cmp(&off(b))).unwrap()
+    };
+    let mean = |i: usize, c: usize| {
+        let [x, y] = [i % (width / 4), i / (width / 4)];
+        let places = (0..16).map(|k| nearest((4 * y + k / 4) * width + 4 * x + k % 4)[c]);
+        (places.sum::<f32>() / 16.0 * 255.0).round() / 255.0
+    };
+    let pixels: Vec<[f32; 3]> = (0..width * height / 16).map(|i| [0, 1, 2].map(|c| mean(i, c))).collect();
+    Image::from_interleaved(ImageSize::new(width / 4, height / 4).unwrap(), pixels.as_flattened()).unwrap()
 }
