@@ -168,17 +168,6 @@ pub fn trace(image: &ImageView<'_, f32>, known: &Known) -> Result<Traced, NoDraw
     draw(read_as(image, known).map_err(NoDrawing::Partition)?, image.size(), known)
 }
 
-/// The drawing that a picture was before noise, a blur or a coder changed it; none if it shows nothing of them, or is no drawing.
-#[must_use]
-#[inline(never)]
-pub fn trace_spoiled(image: &ImageView<'_, f32>, known: &Known) -> Option<Traced> {
-    let known = known.with_spoiled(true);
-    let read = read_as(image, &known).ok()?;
-    let Partition { reading, blur, .. } = &read.partition;
-    let is_spoiled = reading.coded || reading.noise > 0.0 || *blur > 0.0;
-    if is_spoiled { draw(read, image.size(), &known).ok() } else { None }
-}
-
 /// Reads a picture as what is known of it.
 fn read_as(image: &ImageView<'_, f32>, known: &Known) -> Result<Read, NoPartition> {
     let reading = Reading { coded: known.coded, soft: known.spoiled, squares: known.squares, ..Reading::default() };

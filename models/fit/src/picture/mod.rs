@@ -217,8 +217,8 @@ fn drawing(
     let segments = if is_doubtful && is_few { Some(fitter.fit(image, &mut scratch.fit)?) } else { None };
     // What a coder leaves beside edges looks as if they were wide, unless segments explain it with clear ones.
     let is_clear = |fit: &Fit<f32>| fit.scene.edge.law == EdgeLaw::Area && fit.unexplained <= NOT_FLAT_SHARE;
-    let may_be_wide = is_doubtful && !known.coded && !(is_coded && segments.as_ref().is_some_and(is_clear));
-    if may_be_wide && let Some(again) = dvp_trace::trace_spoiled(&image, known) {
+    let may_be_wide = is_doubtful && !(is_coded && segments.as_ref().is_some_and(is_clear));
+    if may_be_wide && let Some(again) = unspoiled(image, known) {
         let again = self::drawn(again, image, scratch)?;
         if is_likelier(&again, &drawn, 1.0, CLEARLY_WORSE) {
             drawn = again;

@@ -1,4 +1,4 @@
-//! Outlines that were fitted before: orders and groups of faces are tried again and again, and most boundaries stay the same.
+//! Outlines that were fitted before, and how things lie on one another: orders and groups of faces are tried again and again, and most boundaries stay the same.
 
 use alloc::collections::BTreeMap;
 use alloc::rc::Rc;
@@ -18,9 +18,10 @@ const QUICKER: usize = 64;
 /// How an outline lies on what is seen of a thing, and by how much it misses that; none where it does not.
 type Placed = Option<(Similarity<f64>, f64)>;
 
-/// The outlines of one picture, by the samples that they were fitted to. Where other readings of the picture have the same boundary, they are the same.
+/// What was found of the boundaries of one picture, by their samples. Where other readings of the picture have the same boundary, it is the same.
 #[derive(Default)]
 pub(crate) struct Memo {
+    /// The outlines through them.
     known: RefCell<BTreeMap<Vec<u64>, Option<Outline>>>,
     /// What is seen of things, by samples and sides.
     seen: RefCell<BTreeMap<Vec<u64>, Rc<Templates>>>,

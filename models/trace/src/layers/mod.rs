@@ -19,7 +19,7 @@
 //! | `frame` | the square that a pen has drawn and others hide in part |
 //! | `template` | how an outline lies on what is seen of another thing |
 //! | `swap` | who lies in front, once that is known |
-//! | `memo` | outlines that were fitted before |
+//! | `memo` | outlines that were fitted before, and templates that were held against what is seen |
 //! | `raster` | the check that an outline hides nothing |
 
 mod complete;

@@ -26,7 +26,7 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
 use crate::partition::NoPartition;
-use crate::{Known, NoDrawing, trace, trace_spoiled};
+use crate::{Known, NoDrawing, trace};
 
 const SIZE: usize = 96;
 

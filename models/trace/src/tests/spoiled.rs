@@ -107,14 +107,6 @@ fn a_clean_picture_has_no_blur() {
 }
 
 #[test]
-fn what_shows_no_spoil_is_not_read_as_spoiled() {
-    let (clean, known) = (paint(&drawn()), Known::default());
-    assert!(trace_spoiled(&clean.view(), &known).is_none());
-    assert!(trace_spoiled(&blurred(&clean, 1.0).view(), &known).unwrap().blur > 0.9);
-    assert!(trace_spoiled(&noisy(&clean, 0.05).view(), &known).unwrap().noise > 0.0);
-}
-
-#[test]
 fn noise_on_a_blur_is_both() {
     assert_found(&noisy(&blurred(&paint(&drawn()), 0.8), 0.02), 0.15, 0.01);
 }
