@@ -6,3 +6,6 @@ use std::process::ExitCode;
 fn main() -> ExitCode {
     ExitCode::from(dvp::command::run(std::env::args_os(), &mut stdout(), &mut stderr()))
 }
+
+#[global_allocator]
+static GLOBAL: mimalloc::MiMalloc = mimalloc::MiMalloc;

@@ -276,6 +276,9 @@ pub const STAIRS_APART: usize = 12;
 pub const MOST_PAIRED: usize = 5;
 /// Share of stained pixels that is supposed where no edge is long and straight enough to tell: what leaves a doubt.
 pub const UNKNOWN_STAINED: f64 = 0.1;
+/// Faces through which a way from one face behind others is looked for, at most: what people draw has a few hundred, dots of a dithered picture are
+/// thousands, of which each would be looked for from every other.
+pub const MOST_WAYS: usize = 1_000;
 /// Times that the order of all faces that meet is asked again.
 pub const MOST_ROUNDS: usize = 3;
 /// Bits that another order, or one thing in place of two, must save.

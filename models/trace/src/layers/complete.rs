@@ -48,6 +48,8 @@ pub(super) struct Completion<'a> {
     pub(super) united: Vec<(u32, u32)>,
     /// Whether orders are searched for: then nothing is fitted any more once that has taken too long.
     pub(super) is_searching: bool,
+    /// Samples that outlines may be fitted to in such a search, were there no bound.
+    pub(super) wanted_samples: usize,
     /// Outlines that were found, by the faces painted together (ascending).
     pub(super) known: RefCell<BTreeMap<Vec<u32>, Vec<Known>>>,
     /// Outlines that were fitted.
@@ -206,24 +208,24 @@ impl Completion<'_> {
     fn is_spent_times(&self, times: usize) -> bool {
         // The searches of all readings of a picture so far are one.
         let searches = if self.is_searching { self.memo.searches.get() } else { 1 };
-        self.memo.spent.get() > times * (searches * self.wanted_samples()).min(tuning::MOST_TRIED_SAMPLES)
+        self.memo.spent.get() > times * (searches * self.wanted_samples).min(tuning::MOST_TRIED_SAMPLES)
     }
 
     /// Whether the search for an order has all the time that it can use.
     pub(super) fn has_time(&self) -> bool {
-        self.wanted_samples() <= tuning::MOST_TRIED_SAMPLES
-    }
-
-    /// Samples that outlines may be fitted to in such a search, were there no bound.
-    fn wanted_samples(&self) -> usize {
-        tuning::MOST_TRIED * self.rings.iter().flatten().map(|ring| ring.steps.len()).sum::<usize>()
+        self.wanted_samples <= tuning::MOST_TRIED_SAMPLES
     }
 
     /// Faces are painted in this order, and no others.
     pub(super) fn paint(&mut self, order: &[u32]) {
         self.rank.fill(0);
+        self.paint_from(0, order);
+    }
+
+    /// Faces are painted in this order, the first of them at place `first`; all others stay where they are.
+    pub(super) fn paint_from(&mut self, first: usize, order: &[u32]) {
         for (place, &face) in order.iter().enumerate() {
-            self.rank[face as usize] = place + 1;
+            self.rank[face as usize] = first + place + 1;
         }
     }
 

@@ -266,7 +266,7 @@ fn reached(completion: &Completion<'_>, face: u32, hides: impl Fn(u32, u32) -> b
     let mut seen = BTreeSet::new();
     let mut found = Vec::new();
     let mut ways = vec![face];
-    while let Some(way) = ways.pop() {
+    while let Some(way) = ways.pop().filter(|_| seen.len() < tuning::MOST_WAYS) {
         for &next in &completion.neighbors[way as usize] {
             let is_same = partition.faces[next as usize].color == color;
             let is_hidden = if is_same { hides(way, next) } else { way != face || hides(next, face) };

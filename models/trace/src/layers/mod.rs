@@ -127,6 +127,7 @@ pub(crate) fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<C
         ruler,
         united: Vec::new(),
         is_searching: false,
+        wanted_samples: tuning::MOST_TRIED * rings.iter().flatten().map(|ring| ring.steps.len()).sum::<usize>(),
         known: RefCell::default(),
         memo,
     };

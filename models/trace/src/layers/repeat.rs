@@ -124,6 +124,7 @@ fn best(completion: &Completion<'_>, groups: &[Group], own: &[usize], most: f64)
     if place.rank == 0 || completion.pen(&faces).is_some() || numbers >= most - tuning::LEAST_SAVED {
         return None;
     }
+    completion.memo.look(choices);
     let rings: Vec<RingSamples> = walks(completion, &faces).iter().map(|walk| walk.samples()).collect();
     let runs: Vec<&Vec<Sample>> = rings.iter().flat_map(|ring| &ring.runs).collect();
     let frames = frame::frames(&runs);

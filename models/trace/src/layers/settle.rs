@@ -15,6 +15,7 @@ use crate::tuning;
 /// Puts faces before and behind those that they meet as long as that saves bits.
 pub(super) fn settle(completion: &mut Completion<'_>) {
     let order = completion.painted();
+    completion.paint(&order);
     completion.is_searching = true;
     let mut search = Search { known: BTreeMap::new(), order, total: None, completion };
     let mut pairs = search.pairs();
@@ -73,8 +74,9 @@ impl Search<'_, '_> {
         *self.total.get_or_insert_with(|| join::total(self.completion))
     }
 
+    /// Where a face is in the present order, as it is painted.
     fn place(&self, face: u32) -> Option<usize> {
-        self.order.iter().position(|&other| other == face)
+        self.completion.rank(face).checked_sub(1)
     }
 
     /// Puts one of two faces that meet just beyond the other.
@@ -87,22 +89,26 @@ impl Search<'_, '_> {
             let (Some(at_a), Some(at_b)) = (self.place(a), self.place(b)) else { continue };
             let (back, front) = (at_a.min(at_b), at_a.max(at_b));
             let against = self.completion.order.net(self.order[front], self.order[back]).max(0.0);
-            for (from, to) in [(back, front), (front, back)] {
-                let mut moved = self.order.clone();
-                let face = moved.remove(from);
-                moved.insert(to, face);
+            for is_raised in [true, false] {
+                // The others keep their order, and what is not between both its place.
                 let crossed = &self.order[back..=front];
+                let mut moved = crossed.to_vec();
+                if is_raised { moved.rotate_left(1) } else { moved.rotate_right(1) }
+                let face = if is_raised { crossed[0] } else { moved[0] };
                 let mut touched: Vec<u32> = self.completion.neighbors[face as usize].clone();
-                touched.retain(|other| crossed.contains(other));
+                touched.retain(|&other| self.place(other).is_some_and(|at| (back..=front).contains(&at)));
                 touched.push(face);
                 let before = self.bits(&touched);
-                self.completion.paint(&moved);
+                self.completion.paint_from(back, &moved);
                 let after = self.bits(&touched);
-                self.completion.paint(&self.order);
+                self.completion.paint_from(back, &self.order[back..=front]);
                 // Shorter one by one, and with all that may be one thing behind others.
-                if after + against < before - tuning::LEAST_SAVED && self.is_shorter(moved, &[], against) {
-                    is_changed = true;
-                    break;
+                if after + against < before - tuning::LEAST_SAVED {
+                    let order = [&self.order[..back], &moved, &self.order[front + 1..]].concat();
+                    if self.is_shorter(order, &[], against) {
+                        is_changed = true;
+                        break;
+                    }
                 }
             }
         }

@@ -26,6 +26,9 @@ pub(super) fn swap(completion: &mut Completion<'_>, groups: &mut Vec<Group>) {
 
 /// Puts one of the groups at two places just beyond the other, if that saves more bits than what junctions say against it.
 fn exchange(completion: &mut Completion<'_>, groups: &mut Vec<Group>, back: usize, front: usize) -> bool {
+    if completion.is_spent() {
+        return false;
+    }
     let Some(against) = against(completion, &groups[front].faces, &groups[back].faces) else { return false };
     let before = bits(completion, groups, back..=front);
     // Of two that follow each other both moves are one.
