@@ -6,6 +6,7 @@ use dvp::paint::Painter;
 use dvp::spoil::{add_noise, jpeg};
 use dvp_core::metric::visible_object_count;
 use dvp_core::{Image, ImageSize, Real};
+use dvp_fit::picture::{Known, PictureScratch, fit_picture};
 use dvp_fit::{Fit, FitOptions, FitScratch, Fitter, StopReason, fit_image};
 use image::RgbImage;
 
@@ -104,6 +105,51 @@ fn a_gradient_becomes_bands() {
         assert!(few.scene.objects.len() <= 3);
         assert!(few.unexplained > bands.unexplained && few.unexplained < 0.4, "{}", few.unexplained);
     }
+}
+
+/// The error of every pixel is passed on to those that come after it, as programs do that save a drawing with few colors (Floyd and Steinberg).
+fn dithered(picture: &Image<f32>, levels: f32) -> Image<f32> {
+    let (width, mut dithered) = (picture.size().width(), picture.clone());
+    for channel in dithered.data_mut().chunks_exact_mut(picture.size().pixels()) {
+        for i in 0..channel.len() {
+            let near = (channel[i] * levels).round().clamp(0.0, levels) / levels;
+            let error = channel[i] - near;
+            channel[i] = near;
+            let column = i % width;
+            let after = [(column + 1 < width, 1, 7.0), (column > 0, width - 1, 3.0), (true, width, 5.0)];
+            for (is_there, step, share) in after.into_iter().chain([(column + 1 < width, width + 1, 1.0)]) {
+                if let Some(value) = channel.get_mut(i + step).filter(|_| is_there) {
+                    *value += error * share / 16.0;
+                }
+            }
+        }
+    }
+    dithered
+}
+
+/// Its dots are hundreds of faces, and no things.
+#[test]
+fn a_dithered_drawing_is_what_was_drawn() {
+    const SIDES: usize = 96;
+    let drawn = paint(SIDES, |x, y| {
+        if x > 0.5 && x < 0.95 && y > 0.5 && y < 0.9 {
+            [0.08, 0.24, 0.78]
+        } else if (x - 0.5).hypot(y - 0.5) < 0.3 {
+            [0.78, 0.12, 0.16]
+        } else {
+            [1.0; 3]
+        }
+    });
+    let fitter = Fitter::new(FitOptions::default()).unwrap();
+    let mut scratch = PictureScratch::default();
+    let found = fit_picture(&fitter, dithered(&drawn, 5.0).view(), &Known::default(), &mut scratch).unwrap();
+    assert_eq!(found.scene.objects.len(), 2);
+    let painted = scratch.canvas.paint(&found.scene, drawn.size()).unwrap().0.view();
+    let drawn = drawn.view();
+    // Colors are those of the most dots, which is not what was drawn.
+    let is_shown = |[red, green, blue]: [f32; 3]| [green > 0.5, red > blue, blue > red];
+    let wrong = (0..SIDES * SIDES).filter(|&i| is_shown(painted.pixel(i)) != is_shown(drawn.pixel(i))).count();
+    assert!(50 * wrong < SIDES * SIDES, "{wrong}");
 }
 
 #[test]

@@ -93,7 +93,11 @@ impl Search<'_, '_> {
                 // The others keep their order, and what is not between both its place.
                 let crossed = &self.order[back..=front];
                 let mut moved = crossed.to_vec();
-                if is_raised { moved.rotate_left(1) } else { moved.rotate_right(1) }
+                if is_raised {
+                    moved.rotate_left(1)
+                } else {
+                    moved.rotate_right(1)
+                }
                 let face = if is_raised { crossed[0] } else { moved[0] };
                 let mut touched: Vec<u32> = self.completion.neighbors[face as usize].clone();
                 touched.retain(|&other| self.place(other).is_some_and(|at| (back..=front).contains(&at)));
