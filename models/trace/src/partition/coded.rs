@@ -15,8 +15,8 @@ use dvp_core::geometry::DisjointSets;
 use dvp_core::image::distance;
 use dvp_core::sort;
 
-use super::Color;
 use super::flat::{Flats, NONE, Noise, index};
+use super::{Color, Partition};
 use crate::tuning;
 
 /// Shares of red, green and blue in brightness (ITU-R BT.601, as JFIF has it).
@@ -134,6 +134,35 @@ pub(super) fn dissolve(pixels: &[[f32; 3]], [width, height]: [usize; 2], flats: 
         is_kept[region] = 0.5 * core::f64::consts::LOG2_E * chi2 > tuning::SPECK_BITS;
     }
     flats.keep(&is_kept);
+}
+
+/// Gives colors of which nothing is flat the mean of what lies inside of their faces.
+///
+/// *Why*: such a color is that of the pixel that stood out most. Where a face has an inside, and no two by two pixels of it are alike, it is a pattern, as
+/// of a picture of few colors whose dots stand for others: what its dots are on the mean was drawn.
+pub(super) fn color_patterns(partition: &mut Partition) {
+    let [width, height] = partition.size;
+    let mut flat = vec![0; partition.palette.len()];
+    partition.faces.iter().for_each(|face| flat[face.color] += face.flat);
+    let mut sums = vec![([0.0; 3], 0); partition.palette.len()];
+    for y in 1..height.saturating_sub(1) {
+        for i in y * width + 1..(y + 1) * width - 1 {
+            let label = partition.labels[i];
+            let Some(color) = partition.faces.get(label as usize).map(|face| face.color) else { continue };
+            let is_inside =
+                || (0..3).all(|row| (0..3).all(|k| partition.labels[i + row * width + k - width - 1] == label));
+            if flat[color] == 0 && is_inside() {
+                let (sum, count): &mut ([f64; 3], usize) = &mut sums[color];
+                sum.iter_mut().zip(partition.pixels[i]).for_each(|(sum, value)| *sum += f64::from(value));
+                *count += 1;
+            }
+        }
+    }
+    for (color, (sum, count)) in partition.palette.iter_mut().zip(sums) {
+        if count >= tuning::CODED_THIN {
+            *color = sum.map(|sum| sum / count as f64);
+        }
+    }
 }
 
 #[cfg(test)]

@@ -198,14 +198,18 @@ impl Partition {
         let finish = |pixels: Vec<[f32; 3]>, flats: &flat::Flats, colors, lines, mut seams: Vec<Seam>| {
             seams.sort_unstable_by_key(|seam| seam.pixel);
             let mixed = mix::explain(&pixels, size, flats, colors, &noise);
-            Self {
+            let mut cut = Self {
                 reading,
                 ripple,
                 sigma: noise.sigma,
                 lines,
                 seams,
                 ..faces::cut(size, pixels, mixed, reading.squares)
+            };
+            if reading.coded {
+                coded::color_patterns(&mut cut);
             }
+            cut
         };
         let mut lines = Vec::new();
         let mut seams = Vec::new();
