@@ -8,5 +8,6 @@ fn main() -> ExitCode {
 }
 
 /// Large pictures touch a gigabyte: in pages of 4 kB that was a quarter of the time.
+#[cfg(feature = "mimalloc")]
 #[global_allocator]
 static GLOBAL: mimalloc::MiMalloc = mimalloc::MiMalloc;
