@@ -83,7 +83,7 @@ fn shaken(scene: &Scene<f64>, px: f64, rng: &mut ChaCha8Rng) -> Scene<f64> {
         if object.shape.set_numbers(&numbers).is_err() || object.shape.boundary().is_err() {
             object.shape = before;
         }
-        object.color_mut().iter_mut().for_each(|value| {
+        object.paint.colors_mut().flatten().for_each(|value| {
             *value = (*value + COLOR * rng.random_range(-1.0..1.0)).clamp(0.0, 1.0);
         });
     }

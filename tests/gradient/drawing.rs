@@ -33,7 +33,7 @@ fn unflat(scene: &mut Scene<f64>, mut x: &[f64]) {
         object.pose.translation.copy_from_slice(x.split_off(..2).unwrap());
         object.pose.scale = x[0];
         object.pose.rotation = x[1];
-        object.color_mut().copy_from_slice(&x[2..5]);
+        object.paint.set_color([x[2], x[3], x[4]]);
         object.confidence = x[5];
         let count = object.shape.number_count();
         object.shape.set_numbers(&x[6..6 + count]).unwrap();

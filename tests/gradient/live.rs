@@ -77,7 +77,7 @@ fn with_numbers(scene: &Scene<f64>, numbers: &[f64]) -> Scene<f64> {
         let (shape, others) = rest.split_at(object.shape.number_count());
         let (paint, others) = others.split_at(4);
         object.shape.set_numbers(shape).unwrap();
-        object.color_mut().copy_from_slice(&paint[..3]);
+        object.paint.set_color([paint[0], paint[1], paint[2]]);
         object.confidence = paint[3];
         rest = others;
     }

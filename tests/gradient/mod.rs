@@ -8,6 +8,7 @@ mod hard;
 mod live;
 mod loss;
 mod optim;
+mod ramp;
 mod render_contour;
 mod rings;
 mod scene;

@@ -82,6 +82,7 @@ pub(crate) fn unflat(x: &[f64], like: &Drawing<f64>) -> Drawing<f64> {
         breaks: like.breaks.clone(),
         colors: colors.as_chunks().0.to_vec(),
         confidences: confidences.to_vec(),
+        ..Drawing::default()
     }
 }
 

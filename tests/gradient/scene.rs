@@ -28,7 +28,7 @@ fn unflat(scene: &mut Scene<f64>, mut x: &[f64]) {
         object.pose.translation.fill_with(&mut next);
         object.pose.scale = next();
         object.pose.rotation = next();
-        object.color_mut().fill_with(&mut next);
+        object.paint.set_color([next(), next(), next()]);
         object.confidence = next();
         if let Some(efd) = object.shape.efd_mut() {
             efd.rows_mut().as_flattened_mut().fill_with(&mut next);

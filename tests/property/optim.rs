@@ -45,7 +45,7 @@ fn perturbed() -> Scene<f32> {
         object.pose.translation[1] -= 0.015;
         object.pose.scale *= 1.0 + 0.1 * sign;
         object.pose.rotation += 0.2 * sign;
-        object.color_mut()[1] += 0.05;
+        object.paint.colors_mut().for_each(|color| color[1] += 0.05);
     }
     scene.background[2] -= 0.05;
     scene

@@ -129,6 +129,7 @@ proptest! {
             breaks: drawing.breaks.clone(),
             colors: drawing.colors.iter().map(|c| c.map(f32::of)).collect(),
             confidences: drawing.confidences.iter().map(|&f| f32::of(f)).collect(),
+            ..Drawing::default()
         };
         let edge = EdgeProfile { offset: 0.012, sigma: 0.003, cut: 0.03, ..EdgeProfile::reference() };
         let mut image = Image::zeros(size);

@@ -77,7 +77,7 @@ fn shaken(scene: &Scene<f64>, shakes: &[f64]) -> Scene<f64> {
         object.shape.numbers(&mut numbers);
         numbers.iter_mut().for_each(|value| shake(value, px));
         object.shape.set_numbers(&numbers).unwrap();
-        object.color_mut().iter_mut().for_each(|value| shake(value, 0.05));
+        object.paint.colors_mut().flatten().for_each(|value| shake(value, 0.05));
     }
     scene
 }

@@ -179,6 +179,12 @@ pub enum RenderError {
         /// Largest that it may name: the number of vertices.
         most: usize,
     },
+    /// A color ramp has no stops, or its offsets fall, or it is not where the ramps of a drawing must be: rising by object, each
+    /// with the stops behind those of the ramp before.
+    Ramp {
+        /// The object that it is to paint.
+        object: usize,
+    },
     /// A setting is out of range.
     Setting {
         /// Which setting.
@@ -201,6 +207,11 @@ impl core::fmt::Display for RenderError {
                 f,
                 "break {index} says that a ring begins at vertex {start}, needs one from {least} to {most}: breaks never fall \
                  and count the vertices of all objects; Drawing::push_rings writes them"
+            ),
+            Self::Ramp { object } => write!(
+                f,
+                "the color ramp of object {object} needs stops whose offsets never fall, one ramp per object, in the order of the \
+                 objects; Drawing::paint_last writes it"
             ),
             Self::Setting { what, value, must } => write!(f, "{what} is {value}, must be {must}"),
         }

@@ -60,8 +60,14 @@ impl<T: Real, S> RenderOpScratch<T, S> {
     /// Adds the drawing's gradient in the layout of the inputs.
     fn give(&self, signature: &Signature, grad_item: &mut [T]) {
         let [outlines, colors, confidences, background] = signature.split_mut(grad_item);
-        let DrawingGrad { background: own_background, vertices, colors: own_colors, confidences: own_confidences } =
-            &self.grad;
+        let DrawingGrad {
+            background: own_background,
+            vertices,
+            colors: own_colors,
+            confidences: own_confidences,
+            ramps: _,
+            stops: _,
+        } = &self.grad;
         let parts: [(&mut [T], &[T]); 4] = [
             (outlines, vertices.as_flattened()),
             (colors, own_colors.as_flattened()),

@@ -16,7 +16,7 @@ impl<T: Real> Scene<T> {
             Object {
                 shape: object.shape.cast(),
                 pose: Pose { translation: translation.map(number), scale: number(scale), rotation: number(rotation) },
-                paint: object.color().map(number).into(),
+                paint: object.paint.cast(),
                 confidence: number(object.confidence),
             }
         };

@@ -1,6 +1,6 @@
 //! From a scene to a drawing: every object's outline, posed.
 
-use super::{Drawing, Scene};
+use super::{ColorRamp, Drawing, Scene};
 use crate::real::Real;
 use crate::shape::{Flattening, Outline, Shape as _, ShapeError};
 
@@ -54,6 +54,9 @@ impl<T: Real> Scene<T> {
             drawing.starts.push(drawing.vertices.len());
             drawing.colors.push(object.color());
             drawing.confidences.push(object.confidence);
+            if let Some(ColorRamp { kind, stops }) = object.paint.ramp() {
+                drawing.paint_last(kind.posed(&object.pose), stops);
+            }
         }
         Ok(())
     }

@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use super::{DrawingGrad, Object, ObjectGrad, PoseGrad, Scene, SceneGrad};
+use super::{ColorRamp, ColorStop, DrawingGrad, Object, ObjectGrad, PoseGrad, RampKind, Scene, SceneGrad};
 use crate::diff_op::add_scaled;
 use crate::real::Real;
 use crate::shape::{AnyShape, Efd, Flattening, Outline, OutlineBasis, Prototype, Shape as _, ShapeError};
@@ -41,11 +41,17 @@ impl<T: Real> Scene<T> {
         }
         let (mut unit, mut grad_unit) = (Outline::default(), Vec::new());
         let mut rest = &grad_drawing.vertices[..];
+        let (mut ramps, mut stops) = (grad_drawing.ramps.iter(), &grad_drawing.stops[..]);
         for ((k, object), grad_object) in self.objects.iter().enumerate().zip(&mut grad.objects) {
             for (value, &g) in grad_object.color.iter_mut().zip(&grad_drawing.colors[k]) {
                 *value += g;
             }
             grad_object.confidence += grad_drawing.confidences[k];
+            if let Some((ramp, grad_kind)) = object.paint.ramp().zip(ramps.next()) {
+                let (own, others) = stops.split_at(ramp.stops.len());
+                stops = others;
+                pull_back_ramp(object, ramp, grad_kind, own, grad_object);
+            }
             let what = "gradient of the vertices";
             let mut take = |expected: usize| {
                 let (own, others) =
@@ -66,9 +72,7 @@ impl<T: Real> Scene<T> {
                     grad_unit.resize(grad_outline.len(), [T::zero(); 2]);
                     let mut pose = PoseGrad::default();
                     object.pose.transform_vjp(&unit.vertices, grad_outline, &mut pose, &mut grad_unit);
-                    add_scaled(&mut grad_object.translation, &pose.translation, T::one());
-                    grad_object.scale += pose.scale;
-                    grad_object.rotation += pose.rotation;
+                    pose.add_to(grad_object);
                     shape.flatten_vjp(&how, &grad_unit, &mut grad_object.numbers)?;
                 }
             }
@@ -79,6 +83,10 @@ impl<T: Real> Scene<T> {
             let len = grad_drawing.vertices.len();
             Err(ShapeError::Length { what: "gradient of the vertices", expected: len - rest.len(), len })
         }
+    }
+
+    fn ramps(&self) -> impl Iterator<Item = &ColorRamp<T>> {
+        self.objects.iter().filter_map(|object| object.paint.ramp())
     }
 
     fn check_layout(
@@ -92,6 +100,8 @@ impl<T: Real> Scene<T> {
             ("gradient of the colors", count, grad_drawing.colors.len()),
             ("gradient of the confidences", count, grad_drawing.confidences.len()),
             ("gradient of the objects", count, grad.objects.len()),
+            ("gradient of the ramps", self.ramps().count(), grad_drawing.ramps.len()),
+            ("gradient of the stops", self.ramps().map(|ramp| ramp.stops.len()).sum(), grad_drawing.stops.len()),
         ];
         for (what, expected, len) in lengths {
             if len != expected {
@@ -110,6 +120,33 @@ impl<T: Real> Scene<T> {
         }
         Ok(())
     }
+}
+
+impl<T: Real> PoseGrad<T> {
+    fn add_to(&self, grad: &mut ObjectGrad<T>) {
+        add_scaled(&mut grad.translation, &self.translation, T::one());
+        grad.scale += self.scale;
+        grad.rotation += self.rotation;
+    }
+}
+
+/// Gradients of pose and ramp from those of the posed ramp. What moves all stops moves the object's color.
+fn pull_back_ramp<T: Real>(
+    object: &Object<T>,
+    ramp: &ColorRamp<T>,
+    grad_kind: &RampKind<T>,
+    grad_stops: &[ColorStop<T>],
+    grad: &mut ObjectGrad<T>,
+) {
+    let grad_ramp = grad.ramp.get_or_insert_with(|| ramp.zero());
+    let mut pose = PoseGrad::default();
+    object.pose.transform_vjp(ramp.kind.points(), grad_kind.points(), &mut pose, grad_ramp.kind.points_mut());
+    for (sum, stop) in grad_ramp.stops.iter_mut().zip(grad_stops) {
+        sum.offset += stop.offset;
+        add_scaled(&mut sum.color, &stop.color, T::one());
+        add_scaled(&mut grad.color, &stop.color, T::one());
+    }
+    pose.add_to(grad);
 }
 
 /// Gradients of pose and descriptors from those of the posed outline.

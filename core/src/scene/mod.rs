@@ -6,6 +6,8 @@
 //! | `pose_op` | poses as a step of a batch, [`PoseOp`] | same file |
 //! | `edge` | how coverage falls off, [`EdgeProfile`] | |
 //! | `compositing` | how objects mix, [`Compositing`] | same file, [`Compositing::slopes`] |
+//! | `paint` | flat colors, and what moves a color, [`Paint`] | |
+//! | `ramp` | colors that change from place to place, [`ColorRamp`] | same file, and the renderers' |
 //! | `cast` | scenes in another precision, [`Scene::cast`] | |
 //! | `region` | what shapes have in common or not, [`Region`] | |
 //! | `draw` | scene to drawing, [`Scene::draw`] | `draw_vjp`, [`Scene::draw_vjp`] |
@@ -15,23 +17,29 @@ mod compositing;
 mod draw;
 mod draw_vjp;
 mod edge;
+mod paint;
 mod pose;
 mod pose_op;
 mod pose_vjp;
+mod ramp;
 mod region;
 #[cfg(test)]
 mod tests;
 
 use alloc::vec::Vec;
+use core::ops::Range;
 
 use crate::real::Real;
 use crate::shape::{AnyShape, Efd, Rings, Shape as _};
 
 pub use compositing::{Compositing, Layer};
 pub use edge::{EdgeLaw, EdgeProfile, PixelProfile};
+pub use paint::Paint;
 pub use pose::rotation_from_pair;
 pub use pose_op::PoseOp;
 pub use pose_vjp::{PoseGrad, rotation_from_pair_vjp};
+pub(crate) use ramp::{Between, RampRows, between, color_at};
+pub use ramp::{ColorRamp, ColorStop, RampKind};
 pub use region::{Placed, Region};
 
 /// Where a unit outline stands: v' = scale R(rotation) v + translation.
@@ -43,14 +51,6 @@ pub struct Pose<T> {
     pub scale: T,
     /// Radians; R = [[cos, -sin], [sin, cos]] with y down.
     pub rotation: T,
-}
-
-/// What an object is filled with.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum Paint<T> {
-    /// One color everywhere, RGB, [0, 1].
-    Flat([T; 3]),
 }
 
 /// One object: a shape, where it stands, what it is filled with.
@@ -90,8 +90,10 @@ pub struct ObjectGrad<T> {
     pub scale: T,
     /// With respect to `pose.rotation`, per radian.
     pub rotation: T,
-    /// With respect to the color of `paint`.
+    /// With respect to [`Object::color`]: of a ramp, to a color that is added to all of its stops.
     pub color: [T; 3],
+    /// With respect to the ramp, where the paint is one; in the object's frame.
+    pub ramp: Option<ColorRamp<T>>,
     /// With respect to `confidence`.
     pub confidence: T,
     /// With respect to the numbers of `shape`; of descriptors a_1, b_1, c_1, d_1, a_2, ...
@@ -119,10 +121,25 @@ pub struct Drawing<T> {
     /// Where rings begin that are not the first of their object, rising: what an object encloses is what lies inside
     /// of an odd number of its rings.
     pub breaks: Vec<usize>,
-    /// RGB per object.
+    /// RGB per object; not looked at where a ramp paints it.
     pub colors: Vec<[T; 3]>,
     /// Per object, [0, 1].
     pub confidences: Vec<T>,
+    /// What paints the objects that have no one color, rising by object.
+    pub ramps: Vec<DrawnRamp<T>>,
+    /// The stops of all ramps.
+    pub stops: Vec<ColorStop<T>>,
+}
+
+/// What paints an object of a [`Drawing`] in more than one color.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DrawnRamp<T> {
+    /// Which object.
+    pub object: usize,
+    /// Where the offsets lie, scene units.
+    pub kind: RampKind<T>,
+    /// Its part of `stops`.
+    pub stops: Range<usize>,
 }
 
 /// Gradient of a scalar with respect to a [`Drawing`]; same layout.
@@ -136,12 +153,10 @@ pub struct DrawingGrad<T> {
     pub colors: Vec<[T; 3]>,
     /// With respect to `confidences`.
     pub confidences: Vec<T>,
-}
-
-impl<T> From<[T; 3]> for Paint<T> {
-    fn from(color: [T; 3]) -> Self {
-        Self::Flat(color)
-    }
+    /// With respect to the points of `ramps`.
+    pub ramps: Vec<RampKind<T>>,
+    /// With respect to `stops`.
+    pub stops: Vec<ColorStop<T>>,
 }
 
 impl<T: Real> Object<T> {
@@ -151,20 +166,11 @@ impl<T: Real> Object<T> {
         Self { shape: AnyShape::of_efd(efd, prototype), pose, paint: Paint::Flat(color), confidence }
     }
 
-    /// RGB, [0, 1].
+    /// The color of a flat paint, RGB, [0, 1]; of a ramp the mean of its stops.
     #[inline]
     #[must_use]
     pub fn color(&self) -> [T; 3] {
-        let Paint::Flat(color) = self.paint;
-        color
-    }
-
-    /// The color to write to.
-    #[inline]
-    #[must_use]
-    pub fn color_mut(&mut self) -> &mut [T; 3] {
-        let Paint::Flat(color) = &mut self.paint;
-        color
+        self.paint.color()
     }
 
     /// Rows (a_n, b_n, c_n, d_n) of the descriptors that the shape is made of; none for shapes of other kinds.
@@ -230,7 +236,8 @@ impl<T: Real> SceneGrad<T> {
             let mut numbers = core::mem::take(&mut grad.numbers);
             numbers.clear();
             numbers.resize(object.shape.number_count(), zero);
-            *grad = ObjectGrad { numbers, ..ObjectGrad::default() };
+            let ramp = object.paint.ramp().map(ColorRamp::zero);
+            *grad = ObjectGrad { numbers, ramp, ..ObjectGrad::default() };
         }
     }
 }
@@ -272,6 +279,8 @@ impl<T: Real> Drawing<T> {
         self.breaks.clear();
         self.colors.clear();
         self.confidences.clear();
+        self.ramps.clear();
+        self.stops.clear();
     }
 
     /// Appends an object of one ring.
@@ -291,6 +300,14 @@ impl<T: Real> Drawing<T> {
         self.colors.push(color);
         self.confidences.push(confidence);
     }
+
+    /// Paints the last object with a ramp, its points in scene units; does nothing without an object.
+    pub fn paint_last(&mut self, kind: RampKind<T>, stops: &[ColorStop<T>]) {
+        let Some(object) = self.object_count().checked_sub(1) else { return };
+        let first = self.stops.len();
+        self.stops.extend_from_slice(stops);
+        self.ramps.push(DrawnRamp { object, kind, stops: first..self.stops.len() });
+    }
 }
 
 impl<T: Real> DrawingGrad<T> {
@@ -304,5 +321,9 @@ impl<T: Real> DrawingGrad<T> {
         self.colors.resize(drawing.colors.len(), [zero; 3]);
         self.confidences.clear();
         self.confidences.resize(drawing.confidences.len(), zero);
+        self.ramps.clear();
+        self.ramps.extend(drawing.ramps.iter().map(|ramp| ramp.kind.zero()));
+        self.stops.clear();
+        self.stops.resize(drawing.stops.len(), ColorStop::default());
     }
 }

@@ -175,23 +175,27 @@ fn objects_that_may_be_one_too_many_are_doubted() {
     assert!(!redundant(&|_| {}));
     assert!(redundant(&|fit| fit.marginal_gain[1] = 9e-4));
     assert!(redundant(&|fit| fit.marginal_gain[0] = -0.1));
+    let redder = |object: &mut Object<f64>, by: f64| {
+        let [red, green, blue] = object.color();
+        object.paint.set_color([red + by, green, blue]);
+    };
     // The second disk beside the first one, in its color or in another.
     let moved = |fit: &mut Fit<f64>, apart: f64| {
         let [x, y] = fit.scene.objects[0].pose.translation;
         fit.scene.objects[1].pose.translation = [x + apart * fit.scene.objects[0].pose.scale, y];
-        fit.scene.objects[1].paint = fit.scene.objects[0].paint;
+        fit.scene.objects[1].paint = fit.scene.objects[0].paint.clone();
     };
     assert!(redundant(&|fit| moved(fit, 1.5)) && !redundant(&|fit| moved(fit, 4.0)));
     assert!(!redundant(&|fit| {
         moved(fit, 1.5);
-        fit.scene.objects[1].color_mut()[0] += 0.1;
+        redder(&mut fit.scene.objects[1], 0.1);
     }));
     // A third one of the color that two others have where they overlap, if overlaps blend.
     let third = |fit: &mut Fit<f64>, compositing| {
         moved(fit, 1.5);
-        fit.scene.objects[1].color_mut()[0] += 0.2;
+        redder(&mut fit.scene.objects[1], 0.2);
         let mut between = fit.scene.objects[0].clone();
-        between.color_mut()[0] += 0.1;
+        redder(&mut between, 0.1);
         fit.scene.objects.push(between);
         fit.scene.compositing = compositing;
     };

@@ -18,9 +18,11 @@ impl<T: Real, S: PixelSink<T>, const N: usize> Pass<'_, '_, T, S, N> {
         let mut weights = [zero; LANES];
         let mut mean = [[zero; LANES]; CHANNELS];
         let mut clear = [one; LANES];
-        for (layer, kept) in self.scratch.layers.iter().zip(&mut self.scratch.kept) {
+        for at in 0..self.scratch.layers.len() {
+            let layer = self.scratch.layers[at];
             let k = layer.object;
-            let (f, w, color) = (drawing.confidences[k], self.scratch.objects[k].weight, drawing.colors[k]);
+            let (f, w, colors) = (drawing.confidences[k], self.scratch.objects[k].weight, self.colors(k, place));
+            let kept = &mut self.scratch.kept[at];
             kept.coverage = layer.chunk.map_or([one; LANES], |chunk| self.composition.tiles[k].coverage[chunk]);
             kept.below[0] = clear;
             let p = kept.coverage;
@@ -28,8 +30,8 @@ impl<T: Real, S: PixelSink<T>, const N: usize> Pass<'_, '_, T, S, N> {
             weights = lanes(|i| weights[i] + pull[i]);
             clear = lanes(|i| clear[i] * (one - p[i] * f));
             for channel in 0..CHANNELS {
-                let c = color[channel];
-                mean[channel] = lanes(|i| mean[channel][i] + pull[i] * c);
+                let c = &colors[channel];
+                mean[channel] = lanes(|i| mean[channel][i] + pull[i] * c[i]);
             }
         }
         // 1 where the guard sleeps, 0 where it acts.
@@ -66,24 +68,30 @@ impl<T: Real, S: PixelSink<T>, const N: usize> Pass<'_, '_, T, S, N> {
         let share: Lanes<T> = lanes(|i| share[i] * (one - clear[i]));
         // Products without one factor are formed of the others: dividing by 1 - p f would be 0 / 0 inside an object.
         let mut above = [one; LANES];
-        for (layer, kept) in self.scratch.layers.iter().zip(&self.scratch.kept).rev() {
+        for at in (0..self.scratch.layers.len()).rev() {
+            let (layer, kept) = (self.scratch.layers[at], self.scratch.kept[at]);
             let k = layer.object;
-            let (f, color) = (drawing.confidences[k], drawing.colors[k]);
+            let (f, colors) = (drawing.confidences[k], self.colors(k, place));
             let sums = &mut self.scratch.objects[k];
             let w = sums.weight;
             let p = kept.coverage;
             let own: Lanes<T> = lanes(|i| share[i] * (w * p[i]));
             let mut tint: Lanes<T> = lanes(|i| -pull[i]);
+            let mut pulled = [[zero; LANES]; CHANNELS];
             for channel in 0..CHANNELS {
-                let c = color[channel];
-                tint = lanes(|i| tint[i] + g[channel][i] * c);
-                sums.color[channel] = lanes(|i| sums.color[channel][i] + g[channel][i] * own[i]);
+                let c = &colors[channel];
+                tint = lanes(|i| tint[i] + g[channel][i] * c[i]);
+                pulled[channel] = lanes(|i| g[channel][i] * own[i]);
+                sums.color[channel] = lanes(|i| sums.color[channel][i] + pulled[channel][i]);
             }
             let tint: Lanes<T> = lanes(|i| tint[i] * share[i] * w);
             let others: Lanes<T> = lanes(|i| lift[i] * kept.below[0][i] * above[i]);
             let both: Lanes<T> = lanes(|i| p[i] * (others[i] + T::of(Compositing::SHARPNESS) * tint[i]));
             sums.confidence = lanes(|i| sums.confidence[i] + both[i]);
             above = lanes(|i| above[i] * (one - p[i] * f));
+            if let Some(ramp) = sums.ramp {
+                self.scratch.pull_ramp(drawing, ramp, place, self.composition.size.width(), &pulled);
+            }
             if let Some(chunk) = layer.chunk {
                 self.composition.tiles[k].grad[chunk] = lanes(|i| f * others[i] + tint[i]);
             }

@@ -5,12 +5,19 @@
 
 use crate::image::CHANNELS;
 use crate::real::Real;
+use crate::render::tile::{LANES, Lanes};
 use crate::scene::Drawing;
 
 /// The color of an object in a channel.
 #[inline(always)]
 pub(super) fn tint<T: Real>(color: &[T; CHANNELS], channel: usize) -> T {
     if channel < CHANNELS { color[channel] } else { T::one() }
+}
+
+/// The colors of an object's pixels in a channel.
+#[inline(always)]
+pub(super) fn tints<T: Real>(colors: &[Lanes<T>; CHANNELS], channel: usize) -> Lanes<T> {
+    if channel < CHANNELS { colors[channel] } else { [T::one(); LANES] }
 }
 
 /// The color of nothing in a channel of `N`: the background, or clear.

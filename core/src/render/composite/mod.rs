@@ -9,6 +9,7 @@
 //! | `mod.rs` | [`Composition`], the walk, the spans |
 //! | `single.rs` | a chunk with one object in it |
 //! | `blend.rs`, `over.rs` | a chunk with several, for each way of mixing |
+//! | `ramp.rs` | the colors of objects that have more than one |
 //! | `channels.rs` | red, green, blue, and alpha where it is wanted |
 //! | `sink.rs` | what happens to pixels: stored, or compared with a target |
 //! | `scratch.rs` | sums per object, and their way into the gradient |
@@ -16,6 +17,7 @@
 mod blend;
 mod channels;
 mod over;
+mod ramp;
 mod scratch;
 mod single;
 mod sink;
@@ -29,7 +31,7 @@ use crate::dims::ImageSize;
 use crate::image::CHANNELS;
 use crate::real::Real;
 use crate::render::Compositing;
-use crate::render::tile::{ChunkState, LANES, Tile};
+use crate::render::tile::{ChunkState, LANES, Lanes, Tile};
 use crate::scene::Drawing;
 use crate::simd::{Kernel, dispatch};
 use channels::{ground, tint};
@@ -100,6 +102,7 @@ impl<'a, T: Real> Composition<'a, T> {
     /// leave gradients in the tiles (coverage) and in `scratch` (everything else).
     pub(super) fn run<S: PixelSink<T>, const N: usize>(self, scratch: &mut CompositeScratch<T>, sink: S) -> T {
         scratch.reset(self.drawing, self.compositing, self.smallest_coverage);
+        scratch.reset_ramps(self.drawing, T::of_usize(self.size.unit_px()));
         dispatch(Pass::<T, S, N> { composition: self, scratch, sink })
     }
 }
@@ -222,6 +225,16 @@ impl<T: Real, S: PixelSink<T>, const N: usize> Pass<'_, '_, T, S, N> {
                     self.scratch.objects[k].covered[channel][0] += sum;
                 }
             }
+        }
+    }
+
+    /// The colors of object `k` in a chunk.
+    #[inline(always)]
+    fn colors(&self, k: usize, place: Place) -> [Lanes<T>; CHANNELS] {
+        let Composition { drawing, size, .. } = &self.composition;
+        match self.scratch.objects[k].ramp {
+            None => drawing.colors[k].map(|value| [value; LANES]),
+            Some(ramp) => self.scratch.ramp_colors(drawing, ramp, place, size.width()),
         }
     }
 

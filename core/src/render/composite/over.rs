@@ -1,7 +1,8 @@
 //! A chunk of several objects under over: pixel <- pixel (1 - p f) + color p f, object after object.
 
+use super::channels::tints;
 use super::sink::PixelSink;
-use super::{Pass, Place, ground, tint};
+use super::{Pass, Place, ground};
 use crate::image::CHANNELS;
 use crate::real::Real;
 use crate::render::tile::{LANES, Lanes};
@@ -17,14 +18,16 @@ impl<T: Real, S: PixelSink<T>, const N: usize> Pass<'_, '_, T, S, N> {
         for (channel, values) in values.iter_mut().enumerate() {
             *values = [ground::<T, N>(drawing, channel); LANES];
         }
-        for (layer, kept) in self.scratch.layers.iter().zip(&mut self.scratch.kept) {
+        for at in 0..self.scratch.layers.len() {
+            let layer = self.scratch.layers[at];
             let k = layer.object;
-            let (f, color) = (drawing.confidences[k], &drawing.colors[k]);
+            let (f, colors) = (drawing.confidences[k], self.colors(k, place));
+            let kept = &mut self.scratch.kept[at];
             kept.coverage = layer.chunk.map_or([one; LANES], |chunk| self.composition.tiles[k].coverage[chunk]);
             for channel in 0..N {
-                let (below, c) = (values[channel], tint(color, channel));
+                let (below, c) = (values[channel], tints(&colors, channel));
                 kept.below[channel] = below;
-                values[channel] = lanes(|i| below[i] + kept.coverage[i] * f * (c - below[i]));
+                values[channel] = lanes(|i| below[i] + kept.coverage[i] * f * (c[i] - below[i]));
             }
         }
         let mut g = [[zero; LANES]; N];
@@ -35,22 +38,27 @@ impl<T: Real, S: PixelSink<T>, const N: usize> Pass<'_, '_, T, S, N> {
             return;
         }
         // From the top down, g is the gradient of the color that the layers above were painted on.
-        for (layer, kept) in self.scratch.layers.iter().zip(&self.scratch.kept).rev() {
+        for at in (0..self.scratch.layers.len()).rev() {
+            let (layer, kept) = (self.scratch.layers[at], self.scratch.kept[at]);
             let k = layer.object;
-            let (f, color) = (drawing.confidences[k], &drawing.colors[k]);
+            let (f, colors) = (drawing.confidences[k], self.colors(k, place));
             let sums = &mut self.scratch.objects[k];
             let p = kept.coverage;
             let painted: Lanes<T> = lanes(|i| p[i] * f);
-            let mut grad = [zero; LANES];
+            let (mut grad, mut own) = ([zero; LANES], [[zero; LANES]; CHANNELS]);
             for channel in 0..N {
-                let (above, below, c) = (g[channel], kept.below[channel], tint(color, channel));
-                grad = lanes(|i| grad[i] + above[i] * (c - below[i]));
+                let (above, below, c) = (g[channel], kept.below[channel], tints(&colors, channel));
+                grad = lanes(|i| grad[i] + above[i] * (c[i] - below[i]));
                 if channel < CHANNELS {
-                    sums.color[channel] = lanes(|i| sums.color[channel][i] + above[i] * painted[i]);
+                    own[channel] = lanes(|i| above[i] * painted[i]);
+                    sums.color[channel] = lanes(|i| sums.color[channel][i] + own[channel][i]);
                 }
                 g[channel] = lanes(|i| above[i] * (one - painted[i]));
             }
             sums.confidence = lanes(|i| sums.confidence[i] + p[i] * grad[i]);
+            if let Some(ramp) = sums.ramp {
+                self.scratch.pull_ramp(drawing, ramp, place, self.composition.size.width(), &own);
+            }
             if let Some(chunk) = layer.chunk {
                 self.composition.tiles[k].grad[chunk] = lanes(|i| grad[i] * f);
             }

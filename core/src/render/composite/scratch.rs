@@ -2,12 +2,13 @@
 
 use alloc::vec::Vec;
 
+use super::ramp::RampSums;
 use super::{Active, Layer, ground, tint};
 use crate::image::{CHANNELS, RGBA_CHANNELS};
 use crate::real::Real;
 use crate::render::Compositing;
 use crate::render::tile::{LANES, Lanes};
-use crate::scene::{Drawing, DrawingGrad};
+use crate::scene::{ColorStop, Drawing, DrawingGrad};
 use crate::simd::total;
 
 /// Memory of the pass, kept between calls.
@@ -22,6 +23,9 @@ pub(in crate::render) struct CompositeScratch<T> {
     pub(super) layers: Vec<Layer>,
     /// What the general formulas keep per layer between their way up and their way down.
     pub(super) kept: Vec<Kept<T>>,
+    /// The ramps of the drawing, and the gradient of their stops.
+    pub(super) ramps: Vec<RampSums<T>>,
+    pub(super) stops: Vec<ColorStop<T>>,
 }
 
 /// What is known of an object, and what is summed up for it; g stands for the gradient of a pixel.
@@ -29,12 +33,14 @@ pub(in crate::render) struct CompositeScratch<T> {
 pub(super) struct Sums<T> {
     /// exp(10 (f - 1)).
     pub(super) weight: T,
-    /// Alone in a pixel, its color is the mean: the guard of the division never acts.
+    /// Of one color, and alone in a pixel this is the mean: the guard of the division never acts.
     pub(super) plain: bool,
+    /// Which ramp paints it.
+    pub(super) ramp: Option<usize>,
     /// Where the object is alone: sum of p g per channel. There pixel = b + p f (c - b), so that the gradient of c is
     /// f x this, that of f is this . (c - b), and that of b is sum g - f x this.
     pub(super) covered: [Lanes<T>; RGBA_CHANNELS],
-    /// Elsewhere: the gradient of the color.
+    /// Elsewhere: the gradient of the color; of a ramp it is not looked at.
     pub(super) color: [Lanes<T>; CHANNELS],
     /// Elsewhere: the gradient of the confidence.
     pub(super) confidence: Lanes<T>,
@@ -50,7 +56,15 @@ pub(super) struct Kept<T> {
 
 impl<T: Real> Default for CompositeScratch<T> {
     fn default() -> Self {
-        Self { objects: Vec::new(), background: zeros(), active: Vec::new(), layers: Vec::new(), kept: Vec::new() }
+        Self {
+            objects: Vec::new(),
+            background: zeros(),
+            active: Vec::new(),
+            layers: Vec::new(),
+            kept: Vec::new(),
+            ramps: Vec::new(),
+            stops: Vec::new(),
+        }
     }
 }
 
@@ -66,6 +80,7 @@ impl<T: Real> CompositeScratch<T> {
                 weight,
                 plain: compositing == Compositing::Over
                     || weight * smallest_coverage >= T::of(Compositing::SMALLEST_WEIGHT),
+                ramp: None,
                 covered: zeros(),
                 color: zeros(),
                 confidence: [T::zero(); LANES],
@@ -78,9 +93,10 @@ impl<T: Real> CompositeScratch<T> {
         }
     }
 
-    /// Adds the gradient of background, colors and confidences from a pass over `N` channels. Images with alpha have no
-    /// background.
-    pub(in crate::render) fn add_grad<const N: usize>(&self, drawing: &Drawing<T>, grad: &mut DrawingGrad<T>) {
+    /// Adds the gradient of background, colors, ramps and confidences from a pass over `N` channels of an image with `unit` pixels
+    /// per scene unit. Images with alpha have no background.
+    pub(in crate::render) fn add_grad<const N: usize>(&self, drawing: &Drawing<T>, unit: T, grad: &mut DrawingGrad<T>) {
+        self.add_ramp_grad(drawing, unit, grad);
         for (sum, &own) in grad.background.iter_mut().zip(&self.background) {
             *sum += total(own);
         }
@@ -90,7 +106,7 @@ impl<T: Real> CompositeScratch<T> {
             for channel in 0..N {
                 let covered = total(sums.covered[channel]);
                 grad.confidences[k] += (tint(color, channel) - ground::<T, N>(drawing, channel)) * covered;
-                if channel < CHANNELS {
+                if channel < CHANNELS && sums.ramp.is_none() {
                     grad.colors[k][channel] += f * covered + total(sums.color[channel]);
                 }
                 if N == CHANNELS {

@@ -23,6 +23,7 @@ pub(super) fn check_drawing<T: Real>(drawing: &Drawing<T>) -> Result<(), RenderE
     if !all_finite(&drawing.background) {
         return Err(RenderError::NotFinite { what: "background", object: None });
     }
+    check_ramps(drawing)?;
     let finite = all_finite(drawing.vertices.as_flattened())
         && all_finite(drawing.colors.as_flattened())
         && all_finite(&drawing.confidences);
@@ -31,6 +32,27 @@ pub(super) fn check_drawing<T: Real>(drawing: &Drawing<T>) -> Result<(), RenderE
     }
     let wild = drawing.confidences.iter().map(|f| f.as_f64()).find(|f| f.abs() > MOST_CONFIDENT);
     wild.map_or(Ok(()), |value| Err(RenderError::Setting { what: "confidence", value, must: "in [0, 1]" }))
+}
+
+/// Checks that each ramp paints an object of its own in stops of its own, one after the other.
+fn check_ramps<T: Real>(drawing: &Drawing<T>) -> Result<(), RenderError> {
+    let (mut least_object, mut first) = (0, 0);
+    for ramp in &drawing.ramps {
+        let (object, range) = (ramp.object, ramp.stops.clone());
+        let stops = drawing.stops.get(range.clone()).filter(|stops| range.start == first && !stops.is_empty());
+        let Some(stops) = stops.filter(|_| (least_object..drawing.object_count()).contains(&object)) else {
+            return Err(RenderError::Ramp { object });
+        };
+        let numbers = stops.iter().flat_map(|stop| stop.color.iter().chain([&stop.offset]));
+        if !numbers.chain(ramp.kind.points().as_flattened()).all(|v| v.is_finite()) {
+            return Err(RenderError::NotFinite { what: "color ramp", object: Some(object) });
+        }
+        if stops.windows(2).any(|pair| pair[0].offset > pair[1].offset) {
+            return Err(RenderError::Ramp { object });
+        }
+        (least_object, first) = (object + 1, range.end);
+    }
+    check_length("stops", first, drawing.stops.len())
 }
 
 /// Checks the length of planar image data of `N` channels.
@@ -51,6 +73,8 @@ pub(super) fn check_finite<T: Real>(what: &'static str, data: &[T]) -> Result<()
 pub(super) fn check_grad<T: Real>(drawing: &Drawing<T>, grad: &DrawingGrad<T>) -> Result<(), RenderError> {
     check_length("grad.vertices", drawing.vertices.len(), grad.vertices.len())?;
     check_length("grad.colors", drawing.colors.len(), grad.colors.len())?;
+    check_length("grad.ramps", drawing.ramps.len(), grad.ramps.len())?;
+    check_length("grad.stops", drawing.stops.len(), grad.stops.len())?;
     check_length("grad.confidences", drawing.confidences.len(), grad.confidences.len())
 }
 

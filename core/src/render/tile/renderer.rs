@@ -95,7 +95,8 @@ impl<C> TileRenderer<C> {
         C: CoverageModel<T>,
     {
         let objects = drawing.object_count();
-        scratch.composite.add_grad::<N>(drawing, grad);
+        let unit = T::of_usize(size.unit_px());
+        scratch.composite.add_grad::<N>(drawing, unit, grad);
         scratch.grad_px.clear();
         scratch.grad_px.resize(drawing.vertices.len(), [T::zero(); 2]);
         for (k, (tile, record)) in scratch.tiles[..objects].iter_mut().zip(&mut scratch.records).enumerate() {
@@ -105,7 +106,6 @@ impl<C> TileRenderer<C> {
                 self.coverage.cover_vjp(rings_px, size, tile, record, &mut scratch.grad_px[range]);
             }
         }
-        let unit = T::of_usize(size.unit_px());
         for (sum, &g) in grad.vertices.as_flattened_mut().iter_mut().zip(scratch.grad_px.as_flattened()) {
             *sum += g * unit;
         }

@@ -15,7 +15,7 @@ pub fn perturbed(truth: &Scene<f32>, rng: &mut impl Rng) -> Scene<f32> {
         object.pose.translation.iter_mut().for_each(|value| *value += normal(0.02));
         object.pose.scale *= 1.0 + normal(0.1);
         object.pose.rotation += normal(0.2);
-        object.color_mut().iter_mut().for_each(|value| *value += normal(0.05));
+        object.paint.colors_mut().flatten().for_each(|value| *value += normal(0.05));
     }
     scene.background.iter_mut().for_each(|value| *value += normal(0.05));
     scene

@@ -3,7 +3,7 @@
 
 use alloc::vec::Vec;
 
-use dvp_core::{Image, ImageView, Object, Real, Scene};
+use dvp_core::{Image, ImageView, Real, Scene};
 
 use super::{FitScratch, Fitter};
 use crate::colors::is_rounded;
@@ -58,7 +58,7 @@ impl<T: Real> Stretched<T> {
 
     /// The fit of the picture as it was.
     fn undo(&self, mut fit: Fit<T>) -> Fit<T> {
-        let colors = fit.scene.objects.iter_mut().map(Object::color_mut);
+        let colors = fit.scene.objects.iter_mut().flat_map(|object| object.paint.colors_mut());
         for color in colors.chain([&mut fit.scene.background]) {
             *color = core::array::from_fn(|c| self.lowest[c] + color[c] / self.gain);
         }

@@ -8,7 +8,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use dvp_core::render::{Compositing, EdgeLaw, EdgeProfile};
-use dvp_core::{ImageView, Object, Real};
+use dvp_core::{ImageView, Real};
 use dvp_trace::noise::noise_level;
 
 use super::run::{Care, Run, has_fractions, visible_error};
@@ -241,7 +241,7 @@ impl<T: Real> Fitter<T> {
                 return Ok(fit.bits);
             }
             let mut plain = fit.clone();
-            let colors = plain.scene.objects.iter_mut().map(Object::color_mut);
+            let colors = plain.scene.objects.iter_mut().flat_map(|object| object.paint.colors_mut());
             colors.chain([&mut plain.scene.background]).for_each(round_color);
             self.bits_at(image, &plain, fit.noise, scratch)
         };

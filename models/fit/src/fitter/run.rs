@@ -209,7 +209,7 @@ impl<T: Real> Run<'_, T> {
         let pixels = scratch.segmentation.soft_pixels(self.image.size().width());
         refine_colors(&self.image, pixels, &mut colors, &mut scratch.colors);
         for (object, &color) in scene.objects.iter_mut().zip(&colors) {
-            *object.color_mut() = color;
+            object.paint.set_color(color);
         }
         scene.background = colors[scene.objects.len()];
         Ok(())

@@ -271,7 +271,9 @@ impl<'a, T: Real> PathDescent<'a, T> {
             let (own, rest) = numbers.split_at(object.shape.number_count().min(numbers.len()));
             numbers = rest;
             object.shape.set_numbers(own)?;
-            object.color_mut().iter_mut().for_each(&mut take);
+            let mut color = object.color();
+            color.iter_mut().for_each(&mut take);
+            object.paint.set_color(color);
             if stage.opacity {
                 take(&mut object.confidence);
             }

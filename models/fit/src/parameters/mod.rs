@@ -181,7 +181,7 @@ fn store_object<T: Real>(slot: &[T], object: &mut Object<T>) {
     object.pose.translation.copy_from_slice(&slot[..2]);
     object.pose.scale = slot[2];
     object.pose.rotation = rotation_from_pair([slot[3], slot[4]]);
-    object.color_mut().copy_from_slice(&slot[5..POSE_AND_COLOR]);
+    object.paint.set_color([slot[5], slot[6], slot[7]]);
     if slot.len() > POSE_AND_COLOR
         && let Some(efd) = object.shape.efd_mut()
     {

@@ -3,12 +3,12 @@
 use alloc::vec::Vec;
 
 use dvp_core::shape::{Shape as _, ShapeError};
-use dvp_core::{Object, Real, Scene, SceneGrad};
+use dvp_core::{Object, Paint, Real, Scene, SceneGrad};
 
 /// Writes the numbers of `scene` that may move to `values`.
 ///
 /// Background unless there is none; per object what of its pose its shape does not say itself, the numbers of its shape
-/// unless they are given from outside, its color, and its confidence where it is an opacity in `start`: neither 0 nor 1. One
+/// unless they are given from outside, its color or the points and colors of its ramp, and its confidence where it is an opacity in `start`: neither 0 nor 1. One
 /// that has come to 0 or 1 on the way may leave it again.
 pub(super) fn load<T: Real>(start: &Scene<T>, scene: &Scene<T>, values: &mut Vec<T>) {
     values.clear();
@@ -23,7 +23,10 @@ pub(super) fn load<T: Real>(start: &Scene<T>, scene: &Scene<T>, values: &mut Vec
         if !object.shape.is_given() {
             object.shape.numbers(values);
         }
-        values.extend(object.color());
+        match object.paint.ramp() {
+            None => values.extend(object.color()),
+            Some(ramp) => ramp.numbers(values),
+        }
         values.extend(is_opacity(before).then_some(object.confidence));
     }
 }
@@ -45,7 +48,11 @@ pub(super) fn bounds<T: Real>(start: &Scene<T>, bounds: &mut Vec<[T; 2]>) {
         if !object.shape.is_given() {
             bounds.extend((0..object.shape.number_count()).map(|_| anything));
         }
-        bounds.extend([unit; 3]);
+        if let Some(ramp) = object.paint.ramp() {
+            bounds.extend(ramp.kind.points().iter().flat_map(|_| [anything; 2]));
+        }
+        let colors = object.paint.ramp().map_or(1, |ramp| ramp.stops.len());
+        bounds.extend((0..3 * colors).map(|_| unit));
         bounds.extend(is_opacity(object).then_some(unit));
     }
 }
@@ -64,7 +71,10 @@ pub(super) fn load_grad<T: Real>(start: &Scene<T>, grad: &SceneGrad<T>, values: 
         if !object.shape.is_given() {
             values.extend_from_slice(&grad.numbers);
         }
-        values.extend(grad.color);
+        match &grad.ramp {
+            None => values.extend(grad.color),
+            Some(ramp) => ramp.numbers(values),
+        }
         values.extend(is_opacity(object).then_some(grad.confidence));
     }
 }
@@ -101,7 +111,14 @@ pub(super) fn store<T: Real>(values: &[T], start: &Scene<T>, scene: &mut Scene<T
             numbers.iter_mut().for_each(&mut take);
             object.shape.set_numbers(&numbers)?;
         }
-        object.color_mut().iter_mut().for_each(&mut take);
+        match &mut object.paint {
+            Paint::Ramp(ramp) => ramp.numbers_mut().for_each(&mut take),
+            paint => {
+                let mut color = paint.color();
+                color.iter_mut().for_each(&mut take);
+                paint.set_color(color);
+            }
+        }
         if is_opacity(before) {
             take(&mut object.confidence);
         }

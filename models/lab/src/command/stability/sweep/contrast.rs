@@ -31,10 +31,10 @@ fn scene(contrast: f32, seed: u64) -> Scene<f32> {
     scene.background = core::array::from_fn(|c| if side[c] > 0.0 { room[c] } else { 1.0 - room[c] });
     for object in &mut scene.objects {
         let full = rng.random_range(0..3);
-        *object.color_mut() = core::array::from_fn(|c| {
+        object.paint.set_color(core::array::from_fn(|c| {
             let share: f32 = if c == full { 1.0 } else { rng.random() };
             scene.background[c] + side[c] * share * contrast
-        });
+        }));
     }
     scene
 }
