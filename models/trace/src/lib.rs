@@ -9,6 +9,7 @@
 //! | `tuning` | | every number that was chosen, with unit and reason |
 //! | `ruler` | misfits, numbers with their covariance | bits: the one price of everything |
 //! | `noise` | an image | its noise level, and the image without noise |
+//! | `ramps` | an image | colors that change from place to place, and the image without them |
 //! | `partition` | an image | faces of one color, and mixed pixels with the shares of two faces |
 //! | `boundary` | a partition | where two faces meet, to a few thousandths of a pixel |
 //! | `outline` | samples of a boundary | the shortest outline through them: circle, rectangle, path, ... |
@@ -39,11 +40,13 @@ extern crate std;
 
 pub mod boundary;
 pub mod centers;
+mod elimination;
 pub mod layers;
 pub mod missed;
 pub mod noise;
 pub mod outline;
 pub mod partition;
+pub mod ramps;
 pub mod ruler;
 pub mod sample;
 pub mod scene;

@@ -311,3 +311,10 @@ pub const PIXEL_BITS: f64 = 24.0;
 
 /// Standard deviation of a level line of coverage that is interpolated between the middles of pixels, pixels.
 pub const LEVEL_SIGMA: f64 = 0.08;
+
+/// Fewest pixels of a color ramp: of fewer, a flat color and what it misses are as short.
+pub const LEAST_RAMP_PIXELS: usize = 64;
+/// Least change of a channel over a color ramp, steps of 256: three are what rounding makes of one.
+pub const LEAST_RAMP_STEPS: f32 = 4.0;
+/// How far the color that stands for a ramp is from all others, of 1: that of edges that are read to a hundredth of a pixel.
+pub const MARKERS_APART: f64 = 0.12;

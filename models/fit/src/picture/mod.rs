@@ -14,6 +14,7 @@
 //! | `spare` | things of a drawing that it does not need |
 //! | `parts` | what changes in a picture where a drawing does |
 //! | `most` | fewer objects than a drawing has |
+//! | `ramps` | colors that change from place to place, taken out before and put back |
 //! | `openings` | [`cut_openings`]: what shows nothing in a transparent picture |
 //! | `squares` | pictures that were enlarged by repeating pixels, and sprites |
 //! | `wide` | large pictures with wide edges, read by every k-th pixel |
@@ -28,6 +29,7 @@ mod mend;
 mod most;
 mod openings;
 mod parts;
+mod ramps;
 mod spare;
 mod squares;
 #[cfg(test)]
@@ -125,12 +127,28 @@ pub fn fit_picture(
     // Who says how objects mix asks for a scene of the renderer, and no square has its edges.
     let small = if fitter.options().compositing.is_some() { None } else { squares::reduced(&image) };
     let image = small.as_ref().map_or(image, Image::view);
+    let has_ramps = fitter.options().bank.is_none() && fitter.options().compositing.is_none() && !known.coded;
+    let Some(leveled) = has_ramps.then(|| dvp_trace::ramps::level(&image)).flatten() else {
+        return fit_flat(fitter, image, small.is_some(), known, scratch);
+    };
+    let fit = fit_flat(fitter, leveled.image.view(), small.is_some(), known, scratch)?;
+    ramps::with_ramps(fit, &leveled, image, &mut scratch.canvas)
+}
+
+/// The scene of a picture without color ramps, `are_repeated` if it was enlarged by repeating pixels.
+fn fit_flat(
+    fitter: &Fitter<f32>,
+    image: ImageView<'_, f32>,
+    are_repeated: bool,
+    known: &Known,
+    scratch: &mut PictureScratch,
+) -> Result<Fit<f32>, FitError> {
     let fit = match wide::fit(fitter, image, known, scratch)? {
         Some(fit) => fit,
         None => drawing_or_segments(fitter, image, known, scratch)?,
     };
     let mut enlarged = None;
-    let (fit, image) = or_squares(fit, image, small.is_some(), &mut enlarged, (fitter, known), scratch)?;
+    let (fit, image) = or_squares(fit, image, are_repeated, &mut enlarged, (fitter, known), scratch)?;
     let fit = match known.matte {
         Some(matte) => cut_openings(fit, image, matte, &mut scratch.canvas)?,
         None => fit,

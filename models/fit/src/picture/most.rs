@@ -38,7 +38,7 @@ pub(super) fn at_most(
 }
 
 /// An ambiguity of an object that stands elsewhere; none if the object, or the one that it is about, is gone.
-fn moved(ambiguity: &Ambiguity, place: impl Fn(usize) -> Option<usize>) -> Option<Ambiguity> {
+pub(super) fn moved(ambiguity: &Ambiguity, place: impl Fn(usize) -> Option<usize>) -> Option<Ambiguity> {
     let mut moved = ambiguity.clone();
     match &mut moved {
         Ambiguity::Merged { object, other, .. } => (*object, *other) = (place(*object)?, place(*other)?),

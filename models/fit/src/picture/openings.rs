@@ -58,7 +58,7 @@ pub fn cut_openings(
 }
 
 /// A rectangle as large as the picture.
-fn sheet(color: [f64; 3], size: ImageSize) -> Object<f64> {
+pub(super) fn sheet(color: [f64; 3], size: ImageSize) -> Object<f64> {
     let unit = f64::of_usize(size.unit_px());
     let sides = [size.width(), size.height()].map(|side| f64::of_usize(side) / unit);
     let pose = Pose { translation: sides.map(|side| 0.5 * side), ..Pose::identity() };

@@ -1,13 +1,15 @@
 //! The objects that are seen, each as an element with its colors.
 
 use dvp_core::render::Compositing;
+use dvp_core::scene::ColorRamp;
 use dvp_core::shape::{OutlineBasis, REFERENCE_VERTICES, Shape as _, ShapeError};
-use dvp_core::{Object, Paint, Pose, Real, Scene};
+use dvp_core::{Object, Pose, Real, Scene};
 use dvp_fit::Bank;
 
 use super::element::{Element, element_of, needs_rings, polygons};
 use super::number::{KNOWN, hex, rounded, short};
 use super::overlap::Body;
+use super::ramp::definition;
 
 /// Decimals of opacities.
 const OPACITY: usize = 3;
@@ -19,7 +21,10 @@ pub(super) struct Drawn {
     element: Element,
     /// What it covers, under `blend`.
     pub(super) body: Body,
+    /// Its color, that of a ramp on the mean.
     pub(super) color: [f64; 3],
+    /// What a ramp is defined as, if one paints it.
+    ramp: Option<String>,
     /// Rounded, above 0.
     pub(super) confidence: f64,
 }
@@ -48,10 +53,16 @@ pub(super) fn drawn<T: Real>(
         let object = in_pixels(object, unit);
         let needs_rings = scene.compositing == Compositing::Blend || needs_rings(&object.shape, reach);
         let rings = if needs_rings { polygons(&object, &basis)? } else { Vec::new() };
+        let element = element_of(&object, &rings, reach)?;
+        let ramp = object.paint.ramp().map(|ramp| {
+            let posed = ColorRamp { kind: ramp.kind.posed(&object.pose), stops: ramp.stops.clone() };
+            definition(&format!("ramp-{number}"), &posed, element.turn)
+        });
         drawn.push(Drawn {
             id: format!("object-{number}"),
+            ramp,
             title: format!("{} {}", name.replace('_', " "), hex(object.color())),
-            element: element_of(&object, &rings, reach)?,
+            element,
             color: object.color(),
             confidence,
             body: Body { rings, reach },
@@ -70,7 +81,7 @@ fn in_pixels<T: Real>(object: &Object<T>, unit: f64) -> Object<f64> {
             scale: scale.as_f64() * unit,
             rotation: rotation.as_f64(),
         },
-        paint: Paint::Flat(object.color().map(T::as_f64)),
+        paint: object.paint.cast(),
         confidence: object.confidence.as_f64(),
     }
 }
@@ -78,13 +89,15 @@ fn in_pixels<T: Real>(object: &Object<T>, unit: f64) -> Object<f64> {
 impl Drawn {
     /// Appends the element in its own color.
     pub(super) fn write(&self, text: &mut String) {
-        self.write_with(&format!("{}{}", self.colors(&hex(self.color)), self.opacity()), text);
+        text.extend(self.ramp.as_deref());
+        self.write_with(&format!("{}{}", self.colors(&self.paint()), self.opacity()), text);
         text.push('\n');
     }
 
     /// Appends the element in a group that has the color, so that the element can be drawn again in another one.
     pub(super) fn write_group(&self, text: &mut String) {
-        text.extend(["<g", &self.colors(&hex(self.color)), &self.opacity(), ">"]);
+        text.extend(self.ramp.as_deref());
+        text.extend(["<g", &self.colors(&self.paint()), &self.opacity(), ">"]);
         self.write_with("", text);
         text.push_str("</g>\n");
     }
@@ -92,6 +105,14 @@ impl Drawn {
     /// The element once more, in another color.
     pub(super) fn again(&self, color: &str) -> String {
         format!("<use href=\"#{}\"{}/>", self.id, self.colors(color))
+    }
+
+    /// Its color, or the name of its ramp.
+    fn paint(&self) -> String {
+        match self.ramp {
+            Some(_) => format!("url(#{})", self.id.replace("object", "ramp")),
+            None => hex(self.color),
+        }
     }
 
     fn write_with(&self, paint: &str, text: &mut String) {

@@ -31,11 +31,13 @@ pub(super) struct Element {
     pub(super) geometry: String,
     /// Whether its color is that of a pen.
     pub(super) is_stroke: bool,
+    /// Degrees that it is turned by after it is painted, and around what.
+    pub(super) turn: (f64, Vec2<f64>),
 }
 
 impl Element {
     pub(super) fn new(tag: &'static str) -> Self {
-        Self { tag, geometry: String::new(), is_stroke: false }
+        Self { tag, geometry: String::new(), is_stroke: false, turn: (0.0, Vec2 { x: 0.0, y: 0.0 }) }
     }
 
     pub(super) fn numbers(mut self, numbers: &[(&str, f64)]) -> Self {
@@ -63,7 +65,8 @@ impl Element {
         let decimals = (3..7).find(|&decimals| radius * 8.7e-3 * 0.1_f64.powi(decimals) < 5e-4).unwrap_or(7);
         let decimals = usize::try_from(decimals).unwrap_or(7);
         let [x, y] = [center.x, center.y].map(|value| short(value, KNOWN));
-        self.text("transform", &format!("rotate({} {x} {y})", short(degrees, decimals)))
+        let turned = self.text("transform", &format!("rotate({} {x} {y})", short(degrees, decimals)));
+        Self { turn: (degrees, center), ..turned }
     }
 }
 

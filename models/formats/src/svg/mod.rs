@@ -10,7 +10,7 @@
 //!
 //! Approximations: the outermost pixel of the common part of objects under `blend`; translucent objects that overlap under `blend` on
 //! transparent ground are drawn one over the other, and so are common parts of more than 16 objects or beyond the first 4,096, which a
-//! comment in the file says; outlines of descriptors pass the 64 vertices that renderers paint within 0.15 px, but as
+//! comment in the file says; common parts of objects with color ramps mix their mean colors; outlines of descriptors pass the 64 vertices that renderers paint within 0.15 px, but as
 //! smooth curves; offsets below 0 are not drawn.
 //!
 //! `tests/command/svg.rs` compares with pixels drawn by another program (resvg).
@@ -22,6 +22,7 @@
 //! | `element` | an object as `<circle>`, `<ellipse>`, `<rect>`, `<polygon>` or `<path>` |
 //! | `figure` | closed lines that are circles or rectangles |
 //! | `path_data` | lines, arcs and cubics as path data |
+//! | `ramp` | color ramps as `<linearGradient>` and `<radialGradient>` |
 //! | `curves` | outlines of descriptors as few smooth curves |
 //! | `mixture` | the colors of overlaps under `blend` |
 //! | `overlap` | which sets of objects share pixels |
@@ -36,6 +37,7 @@ mod mixture;
 mod number;
 mod overlap;
 mod path_data;
+mod ramp;
 #[cfg(test)]
 mod tests;
 

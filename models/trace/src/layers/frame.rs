@@ -10,7 +10,7 @@ use dvp_core::Vec2;
 use dvp_core::sort;
 
 use super::complete::Completed;
-use super::junction::solve;
+use crate::elimination::solve;
 use crate::outline::{Outline, OutlineShape};
 use crate::sample::Sample;
 

@@ -9,6 +9,7 @@ use num_traits::Float as _;
 use dvp_core::Vec2;
 
 use crate::boundary::Ring;
+use crate::elimination::solve;
 use crate::partition::OUTSIDE;
 use crate::sample::Sample;
 use crate::tuning;
@@ -148,31 +149,4 @@ fn parabola_misfit(samples: &[Sample], origin: Vec2<f64>, along: Vec2<f64>) -> O
         })
         .sum();
     Some(chi2 * 0.5 * core::f64::consts::LOG2_E)
-}
-
-/// Solves equations by elimination with pivots; none if they are singular.
-pub(super) fn solve<const N: usize>(mut matrix: [[f64; N]; N], mut right: [f64; N]) -> Option<[f64; N]> {
-    for i in 0..N {
-        let pivot = (i..N).max_by(|&a, &b| matrix[a][i].abs().total_cmp(&matrix[b][i].abs()))?;
-        if matrix[pivot][i].abs() < 1e-12 {
-            return None;
-        }
-        matrix.swap(i, pivot);
-        right.swap(i, pivot);
-        for j in i + 1..N {
-            let factor = matrix[j][i] / matrix[i][i];
-            let above = matrix[i];
-            for (value, above) in matrix[j].iter_mut().zip(above).skip(i) {
-                *value -= factor * above;
-            }
-            right[j] -= factor * right[i];
-        }
-    }
-    for i in (0..N).rev() {
-        for k in i + 1..N {
-            right[i] -= matrix[i][k] * right[k];
-        }
-        right[i] /= matrix[i][i];
-    }
-    Some(right)
 }

@@ -14,7 +14,7 @@ use dvp_core::sort;
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
-use super::junction::solve;
+use crate::elimination::solve;
 use crate::sample::Sample;
 use crate::tuning;
 

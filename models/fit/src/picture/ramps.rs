@@ -1,0 +1,49 @@
+//! Pictures with color ramps: read as if each were of one color, and painted with them.
+
+use alloc::vec;
+
+use dvp_core::scene::ColorRamp;
+use dvp_core::{ImageView, Paint, Scene};
+use dvp_trace::ramps::{Leveled, LeveledRamp};
+
+use super::most::moved;
+use super::of_painted;
+use super::openings::sheet;
+use crate::paint::Canvas;
+use crate::{Fit, FitError};
+
+/// How far the color of an object may be from the one that stands for a ramp: that of edges is a mean, and colors that stand for ramps are much
+/// further apart.
+const NEAR: f32 = 0.02;
+
+/// The fit of a leveled picture with what was leveled, held against the picture as it is.
+pub(super) fn with_ramps(
+    fit: Fit<f32>,
+    leveled: &Leveled,
+    image: ImageView<'_, f32>,
+    canvas: &mut Canvas<f32>,
+) -> Result<Fit<f32>, FitError> {
+    let ramp_of = |color: [f32; 3]| {
+        leveled.ramps.iter().find(|ramp| ramp.color.iter().zip(color).all(|(a, b)| (a - b).abs() < NEAR))
+    };
+    let Fit { mut scene, mut covariance, mut ambiguity, .. } = fit;
+    // A background has one color: what has more is a thing as large as the picture.
+    if !scene.transparent && ramp_of(scene.background).is_some() {
+        let sheet =
+            Scene { objects: vec![sheet(scene.background.map(f64::from), image.size())], ..Scene::empty([0.0; 3]) };
+        scene.objects.splice(0..0, sheet.cast().objects);
+        if !covariance.is_empty() {
+            covariance.insert(0, [f32::NAN; 25]);
+        }
+        ambiguity = ambiguity.iter().filter_map(|ambiguity| moved(ambiguity, |object| Some(object + 1))).collect();
+    }
+    for object in &mut scene.objects {
+        let Some(LeveledRamp { ramp, .. }) = ramp_of(object.color()) else { continue };
+        if let Some(inverse) = object.pose.inverse() {
+            object.paint = Paint::Ramp(ColorRamp { kind: ramp.kind.posed(&inverse), stops: ramp.stops.clone() });
+        }
+    }
+    let (painted, drawing) = canvas.paint(&scene, image.size())?;
+    let painted = of_painted(&scene, &drawing, painted, image)?;
+    Ok(Fit { bits: fit.bits, stop: fit.stop, steps: fit.steps, noise: fit.noise, covariance, ambiguity, ..painted })
+}

@@ -1,0 +1,117 @@
+//! Colors that change steadily from place to place: found in a picture, and leveled there, so that what is left is a drawing of flat colors.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `mod` | [`level`]: what is found, and the picture without it |
+//! | `smooth` | parts of a picture in which colors change steadily |
+//! | `course` | along a line, or away from a center |
+//! | `profile` | which color is reached after which way |
+//! | `fit` | the course and profile that explain pixels |
+//! | `grow` | parts that are of one ramp, and pixels beside them |
+//! | `mix` | pixels between leveled parts |
+
+mod course;
+mod fit;
+mod grow;
+mod mix;
+mod profile;
+mod smooth;
+//TESTS
+
+use alloc::vec::Vec;
+
+use dvp_core::scene::{ColorRamp, RampKind};
+use dvp_core::{Image, ImageView};
+
+use crate::partition::Color;
+use crate::tuning::{LEAST_RAMP_PIXELS, LEAST_RAMP_STEPS, MARKERS_APART};
+
+use grow::Region;
+
+/// A step of the 256 that a channel of most pictures has.
+const STEP: f32 = 1.0 / 255.0;
+
+/// A picture without its ramps.
+#[derive(Clone, Debug)]
+pub struct Leveled {
+    /// The picture, every ramp in one color of its own.
+    pub image: Image<f32>,
+    /// What was taken out.
+    pub ramps: Vec<LeveledRamp>,
+}
+
+/// A ramp that was taken out of a picture.
+#[derive(Clone, Debug)]
+pub struct LeveledRamp {
+    /// The color that stands for it.
+    pub color: [f32; 3],
+    /// The ramp, its points in scene units.
+    pub ramp: ColorRamp<f32>,
+}
+
+/// The picture without its ramps; none if it has none.
+#[must_use]
+pub fn level(image: &ImageView<'_, f32>) -> Option<Leveled> {
+    let (width, count) = (image.size().width(), image.size().pixels());
+    let pixels: Vec<[f32; 3]> = (0..count).map(|i| image.pixel(i)).collect();
+    let smooth = smooth::Smooth::of(&pixels, width);
+    let changes = |part: &Vec<u32>| part.len() >= LEAST_RAMP_PIXELS && range(&pixels, part) >= LEAST_RAMP_STEPS * STEP;
+    if !smooth.parts.iter().any(changes) {
+        return None;
+    }
+    let regions = grow::regions(&pixels, width, smooth);
+    if regions.ramps.is_empty() {
+        return None;
+    }
+    let markers = markers(&regions);
+    let leveled = mix::leveled(&pixels, width, &regions, &markers);
+    let unit = image.size().unit_px() as f64;
+    let ramps = regions.ramps.iter().zip(&markers).map(|(region, color)| LeveledRamp {
+        color: color.map(|value| value as f32),
+        ramp: in_scene_units(region, unit),
+    });
+    let ramps = ramps.collect();
+    let flat: Vec<f32> = leveled.into_iter().flatten().collect();
+    Some(Leveled { image: Image::from_interleaved(image.size(), &flat).ok()?, ramps })
+}
+
+/// Most that a channel changes within pixels.
+fn range(pixels: &[[f32; 3]], part: &[u32]) -> f32 {
+    let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+    for &i in part {
+        for c in 0..3 {
+            low[c] = low[c].min(pixels[i as usize][c]);
+            high[c] = high[c].max(pixels[i as usize][c]);
+        }
+    }
+    (0..3).map(|c| high[c] - low[c]).fold(0.0, f32::max)
+}
+
+/// A color for each ramp: its mean, moved until it is clearly another one than those of the flat parts and of the other ramps.
+fn markers(regions: &grow::Regions) -> Vec<Color> {
+    let mut taken: Vec<Color> = regions.flat_colors.clone();
+    let mut markers = Vec::new();
+    for region in &regions.ramps {
+        let mean = region.mean;
+        // Brighter or darker by more and more, whichever is free first.
+        let shifts =
+            (0..64).map(|k: u32| f64::from(k.div_ceil(2)) * if k % 2 == 0 { 0.5 } else { -0.5 } * MARKERS_APART);
+        let shifted = shifts.map(|shift| mean.map(|value| (value + shift).clamp(0.0, 1.0)));
+        let is_free = |color: &Color| taken.iter().all(|other| profile::difference(*other, *color) >= MARKERS_APART);
+        let color = shifted.into_iter().find(is_free).unwrap_or(mean);
+        taken.push(color);
+        markers.push(color);
+    }
+    markers
+}
+
+fn in_scene_units(region: &Region, unit: f64) -> ColorRamp<f32> {
+    let places = &region.fitted.profile.places;
+    let is_centered = matches!(region.fitted.course, course::Course::Center { .. });
+    let ends = [if is_centered { 0.0 } else { places[0].0 }, places[places.len() - 1].0];
+    let (points, is_radial) = region.fitted.course.points(ends, region.near);
+    let points = points.map(|point| point.map(|value| (value / unit) as f32));
+    let [a, b, _] = points;
+    let kind = if is_radial { RampKind::Radial(points) } else { RampKind::Linear([a, b]) };
+    ColorRamp { kind, stops: region.fitted.profile.stops(ends) }
+}
