@@ -22,11 +22,11 @@ const CORE: Order = &[
 
 const TRACE: Order = &[
     &["tuning"],
-    &["noise", "ruler", "sample"],
+    &["elimination", "noise", "ruler", "sample"],
     &["outline"],
     &["stroke"],
     &["partition"],
-    &["boundary"],
+    &["ramps", "boundary"],
     &["layers"],
     &["ties"],
     &["centers"],

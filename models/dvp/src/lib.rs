@@ -11,11 +11,12 @@
 //!
 //! | feature | brings |
 //! |---|---|
+//! | `mimalloc` (default) | the allocator of the command, in C; programs that call this library keep theirs |
 //! | `lab` | the sub-commands `chart`, `gradients`, `parsimony` and `stability` |
 //! | `burn`, `candle` | `dvp train --backend burn` or `candle` |
 //! | `parquet` | tables as Apache Parquet |
 //!
-//! None is on by default: a first build takes half of the time without them. Released programs have `lab` and `parquet`.
+//! None of the others is on by default: a first build takes half of the time without them. Released programs have `lab` and `parquet`.
 
 pub mod command;
 

@@ -29,11 +29,23 @@ export type SceneObject = Shape & {
   scale?: number;
   /** Radians from +x to +y; 0 if missing. */
   rotation?: number;
+  /** Beside a ramp the mean of its stops. */
   color: Color;
+  /** What paints instead of the one color. */
+  ramp?: Ramp;
   /** Opacity, and probability of being there; 1 if missing. */
   confidence?: number;
   known?: ObjectKnown;
 };
+
+/** Colors between stops, in the frame of the shape; before the first and behind the last stop the color stays. */
+export type Ramp = {
+  /** Offsets never fall: 0 at the first point of the ramp. */
+  stops: { offset: number; color: Color }[];
+} & (
+  | { kind: 'linear'; /** Offsets 0 and 1. */ points: [Point, Point] }
+  | { kind: 'radial'; /** The center; two points of the ellipse of offset 1, in conjugate directions. */ points: [Point, Point, Point] }
+);
 
 export type Shape =
   | { kind: 'circle'; radius: number }

@@ -13,7 +13,7 @@ use crate::format::DEFAULT_MAX_PIXELS;
 
 /// Draws a scene or an SVG as PNG, SVG or scene.
 ///
-/// A PNG has alpha where the scene has no background. What a scene cannot hold of an SVG (gradients, text, filters) is named on
+/// A PNG has alpha where the scene has no background. What a scene cannot hold of an SVG (text, filters, patterns) is named on
 /// stderr.
 #[derive(Debug, Args)]
 #[command(before_help = "Example: dvp render out/picture.json -o again.png --width 512\n         \

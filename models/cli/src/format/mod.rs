@@ -26,10 +26,10 @@ mod tf_record;
 pub use atomic::write_atomic;
 pub use data_set::{DataSet, SCENES_FILE, Sample, bank_near, pictures_of, read_scene_lines};
 pub use dvp_formats::format::{
-    BitDepth, CapJson, ChannelValue, CompletionJson, CompositingJson, DeviationsJson, DoubtJson, EdgeJson, EdgeLawJson,
-    FillJson, FormatError, INVISIBLE, JoinJson, ObjectJson, ObjectKnownJson, Picture, Place, RingJson, SceneJson,
-    SceneKnownJson, SegmentJson, ShapeJson, StopJson, bank_to_json, edge_cut, mdshr_bank, parse_bank, read_bank,
-    read_scene,
+    BitDepth, CapJson, ChannelValue, ColorStopJson, CompletionJson, CompositingJson, DeviationsJson, DoubtJson,
+    EdgeJson, EdgeLawJson, FillJson, FormatError, INVISIBLE, JoinJson, ObjectJson, ObjectKnownJson, Picture, Place,
+    RampJson, RampKindJson, RingJson, SceneJson, SceneKnownJson, SegmentJson, ShapeJson, StopJson, bank_to_json,
+    edge_cut, mdshr_bank, parse_bank, read_bank, read_scene,
 };
 pub(crate) use dvp_formats::format::{MAX_TEXT, read_text, to_byte};
 pub(crate) use labels::WHOLE_ENDING;

@@ -132,7 +132,12 @@ pub fn fit_picture(
         return fit_flat(fitter, image, small.is_some(), known, scratch);
     };
     let fit = fit_flat(fitter, leveled.image.view(), small.is_some(), known, scratch)?;
-    ramps::with_ramps(fit, &leveled, image, &mut scratch.canvas)
+    let fit = ramps::with_ramps(fit, &leveled, image, &mut scratch.canvas)?;
+    if leveled.is_beyond_doubt() {
+        return Ok(fit);
+    }
+    let flat = fit_flat(fitter, image, small.is_some(), known, scratch)?;
+    Ok(ramps::better(fit, flat))
 }
 
 /// The scene of a picture without color ramps, `are_repeated` if it was enlarged by repeating pixels.

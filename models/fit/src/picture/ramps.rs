@@ -16,6 +16,9 @@ use crate::{Fit, FitError};
 /// further apart.
 const NEAR: f32 = 0.02;
 
+/// Difference of mean errors that is not seen, of 1: two steps of 256.
+const AS_NEAR: f32 = 2.0 / 255.0;
+
 /// The fit of a leveled picture with what was leveled, held against the picture as it is.
 pub(super) fn with_ramps(
     fit: Fit<f32>,
@@ -46,4 +49,12 @@ pub(super) fn with_ramps(
     let (painted, drawing) = canvas.paint(&scene, image.size())?;
     let painted = of_painted(&scene, &drawing, painted, image)?;
     Ok(Fit { bits: fit.bits, stop: fit.stop, steps: fit.steps, noise: fit.noise, covariance, ambiguity, ..painted })
+}
+
+/// The fit with ramps, or the one without where that is nearer, or as near with fewer things: wide edges can be read as ramps as well.
+pub(super) fn better(with: Fit<f32>, without: Fit<f32>) -> Fit<f32> {
+    let counts = [&with, &without].map(|fit| fit.scene.objects.len());
+    let are_as_near = (with.loss - without.loss).abs() < AS_NEAR;
+    let is_taken = if are_as_near { counts[0] < counts[1] } else { with.loss < without.loss };
+    if is_taken { with } else { without }
 }

@@ -19,7 +19,7 @@ pub use error::{FormatError, Place};
 pub use interleave::{interleaved_bytes, interleaved_rgba_bytes};
 pub use picture::{BitDepth, ChannelValue, Picture, to_byte, to_step};
 pub use scene_json::{
-    CapJson, CompletionJson, CompositingJson, DeviationsJson, DoubtJson, EdgeJson, EdgeLawJson, FillJson, INVISIBLE,
-    JoinJson, MAX_TEXT, ObjectJson, ObjectKnownJson, RingJson, SceneJson, SceneKnownJson, SegmentJson, ShapeJson,
-    StopJson, edge_cut, read_scene, read_text,
+    CapJson, ColorStopJson, CompletionJson, CompositingJson, DeviationsJson, DoubtJson, EdgeJson, EdgeLawJson,
+    FillJson, INVISIBLE, JoinJson, MAX_TEXT, ObjectJson, ObjectKnownJson, RampJson, RampKindJson, RingJson, SceneJson,
+    SceneKnownJson, SegmentJson, ShapeJson, StopJson, edge_cut, read_scene, read_text,
 };

@@ -130,7 +130,7 @@ fn missed_grays(lines: &[(Vec<f64>, f32)]) -> Vec<Paint<f32>> {
     let scene = Scene { objects: lines.iter().map(thing).collect(), ..Scene::empty([1.0; 3]) };
     let painted = Painted { scene: &scene, image: image.view(), painted: white.view(), step: tuning::LEAST_CONTRAST };
     let missed = painted.missed(&painted.off(&(0..size.pixels())));
-    missed.iter().map(|missed| missed.object.paint).collect()
+    missed.iter().map(|missed| missed.object.paint.clone()).collect()
 }
 
 /// A gray line that begins at a black one shows as much as a black hairline would, and stays gray.

@@ -5,6 +5,9 @@ use num_traits::Float as _;
 
 use crate::elimination::solve;
 
+/// Logarithm of the root of the ratio of an ellipse's axes: 1 : 20.
+const MOST_STRETCH: f64 = 1.5;
+
 /// Which way colors change.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Course {
@@ -15,15 +18,38 @@ pub(super) enum Course {
     Center { center: [f64; 2], stretch: [f64; 2], is_circle: bool },
 }
 
+/// A course made ready: affine functions of a point, the first of which is the way, or the length of both.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Way {
+    rows: [[f64; 3]; 2],
+    is_centered: bool,
+}
+
+impl Way {
+    /// Way to a point from the beginning, pixels; of ellipses the mean of their axes.
+    pub(super) fn to(&self, [x, y]: [f64; 2]) -> f64 {
+        let [u, v] = self.rows.map(|[a, b, c]| a * x + b * y + c);
+        if self.is_centered { (u * u + v * v).sqrt() } else { u }
+    }
+}
+
 impl Course {
-    /// Way from the beginning, pixels; of ellipses the mean of their axes.
-    pub(super) fn way(&self, [x, y]: [f64; 2]) -> f64 {
+    /// The course made ready.
+    pub(super) fn way(&self) -> Way {
         match *self {
-            Self::Line { angle } => x * angle.cos() + y * angle.sin(),
+            Self::Line { angle } => Way { rows: [[angle.cos(), angle.sin(), 0.0], [0.0; 3]], is_centered: false },
+            Self::Center { center: [x, y], stretch, .. } => {
+                Way { rows: matrix(stretch).map(|[a, b]| [a, b, -a * x - b * y]), is_centered: true }
+            }
+        }
+    }
+
+    /// Whether its numbers are those of something that people draw: ellipses that are so long are lines.
+    pub(super) fn is_sound(&self) -> bool {
+        match self {
+            Self::Line { angle } => angle.is_finite(),
             Self::Center { center, stretch, .. } => {
-                let (dx, dy) = (x - center[0], y - center[1]);
-                let [[a, b], [c, d]] = matrix(stretch);
-                (a * dx + b * dy).hypot(c * dx + d * dy)
+                center.iter().all(|value| value.is_finite()) && stretch[0].hypot(stretch[1]) <= MOST_STRETCH
             }
         }
     }

@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use num_traits::Float as _;
 
 use super::STEP;
-use super::course::{self, Course};
+use super::course::{self, Course, Way};
 use super::profile::{Profile, difference};
 use crate::elimination::solve;
 use crate::partition::Color;
@@ -15,10 +15,22 @@ use crate::partition::Color;
 pub(super) const TOLERANCE: f64 = 1.6 * STEP as f64;
 /// Share of the pixels that it may miss by more.
 const SPARE: f64 = 0.02;
+/// What of the way from one end of the colors to the other is looked at for a first course.
+const CHANGING: core::ops::Range<f64> = 0.04..0.96;
+/// How far behind the middle of the last pixel in full there are edges, pixels.
+const BEYOND: f64 = 1.5;
+/// How far stops may miss the mean colors along the way, steps.
+const EXACT_STEPS: f64 = 1.0;
+/// What a ramp that does not explain a part may leave of its squares.
+const NEARLY_LEFT: f64 = 0.8;
+/// How far its stops may miss the mean colors, steps: less is not seen beside what it leaves.
+const NEARLY_STEPS: f64 = 4.0;
+/// What a course may miss before it is refined, of 1, in the mean of squares.
+const FAR: f64 = 0.06;
 /// Pixels that are looked at to find a course: more say no more.
-const LOOKED_AT: usize = 4096;
+const LOOKED_AT: usize = 1024;
 /// Steps of a refinement.
-const STEPS: usize = 6;
+const STEPS: usize = 12;
 
 /// A place, and its color.
 pub(super) type Sample = ([f64; 2], Color);
@@ -27,33 +39,67 @@ pub(super) type Sample = ([f64; 2], Color);
 #[derive(Clone, Debug)]
 pub(super) struct Fitted {
     pub(super) course: Course,
+    way: Way,
     pub(super) profile: Profile,
 }
 
 impl Fitted {
+    /// The ramp along a course, with as many stops as explain the mean colors within `tolerance`.
+    fn of(course: Course, samples: &[Sample], tolerance: f64) -> Self {
+        Self { course, way: course.way(), profile: measured(&course.way(), samples).simplified(tolerance) }
+    }
+
+    /// The ramp with the stops that more samples of it tell, from one end of them to the other.
+    pub(super) fn of_more(&self, samples: &[Sample], is_exact: bool) -> Self {
+        let steps = if is_exact { EXACT_STEPS } else { NEARLY_STEPS };
+        let mut more = Self::of(self.course, samples, steps * f64::from(STEP));
+        let least = if matches!(self.course, Course::Center { .. }) { 0.0 } else { f64::NEG_INFINITY };
+        more.profile.reach(BEYOND, least);
+        more
+    }
+
+    /// Whether it misses no more of the samples than a few.
+    pub(super) fn explains(&self, samples: &[Sample]) -> bool {
+        let is_missed = |&&(point, color): &&Sample| difference(self.color_beyond(point), color) > TOLERANCE;
+        samples.iter().filter(is_missed).count() as f64 <= SPARE * samples.len() as f64
+    }
+
+    /// Whether samples change along its course.
+    pub(super) fn goes_on(&self, samples: &[Sample]) -> bool {
+        Self::of(self.course, samples, EXACT_STEPS * f64::from(STEP)).explains(samples)
+    }
+
+    /// Sum of the squares that it misses.
+    fn squares(&self, samples: &[Sample]) -> f64 {
+        samples.iter().map(|&(point, color)| square(self.color(point), color)).sum()
+    }
+
     /// The color of a place.
     pub(super) fn color(&self, point: [f64; 2]) -> Color {
-        let way = self.course.way(point);
+        let way = self.way.to(point);
         let (first, last) = (self.profile.places[0].0, self.profile.places[self.profile.places.len() - 1].0);
         self.profile.at(way.clamp(first, last)).0
     }
 
     /// The color of a place, up to two pixels beyond what was seen as the ramp goes on there.
     pub(super) fn color_beyond(&self, point: [f64; 2]) -> Color {
-        let way = self.course.way(point);
+        let way = self.way.to(point);
         let (first, last) = (self.profile.places[0].0, self.profile.places[self.profile.places.len() - 1].0);
         self.profile.at(way.clamp(first - 2.0, last + 2.0)).0
     }
 }
 
-/// The ramp of samples: along a line if that explains them, else in circles, else in ellipses.
-pub(super) fn fit(samples: &[Sample]) -> Option<Fitted> {
+/// The ramp of samples: along a line if that explains them, else in circles, else in ellipses. If none does, the nearest of them, where it is
+/// near enough.
+pub(super) fn fit(samples: &[Sample], is_exact: bool) -> Option<Fitted> {
     let few = thinned(samples);
     let values = principal(&few)?;
     // About 0, and of about 1: squares of pixels are large.
     let (mean, size) = extent(&few);
     let normal = |[x, y]: [f64; 2]| [(x - mean[0]) / size, (y - mean[1]) / size];
-    let placed = || few.iter().zip(&values).map(|(&(point, _), &value)| (normal(point), value));
+    // Before the first stop and behind the last nothing changes, and nothing says where it does.
+    let changing = || few.iter().zip(&values).filter(|(_, value)| CHANGING.contains(*value));
+    let placed = || changing().map(|(&(point, _), &value)| (normal(point), value));
     let center = |is_circle| match course::center(placed(), is_circle)? {
         Course::Center { center: [x, y], stretch, is_circle } => {
             Some(Course::Center { center: [mean[0] + size * x, mean[1] + size * y], stretch, is_circle })
@@ -61,21 +107,55 @@ pub(super) fn fit(samples: &[Sample]) -> Option<Fitted> {
         line @ Course::Line { .. } => Some(line),
     };
     let tries: [&dyn Fn() -> Option<Course>; 3] = [&|| course::line(placed()), &|| center(true), &|| center(false)];
-    tries.iter().find_map(|course| along(course()?, samples, &few, &[samples.len()]))
+    let sound = |course: &dyn Fn() -> Option<Course>| course().filter(Course::is_sound);
+    if is_exact {
+        return tries.into_iter().find_map(|course| along(sound(course)?, samples, &few, &[samples.len()]));
+    }
+    let nearest = tries.into_iter().filter_map(|course| {
+        let fitted = Fitted::of(refined(sound(course)?, &few), samples, NEARLY_STEPS * f64::from(STEP));
+        Some((fitted.squares(&few), fitted))
+    });
+    let (left, fitted) = nearest.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    (left <= NEARLY_LEFT * squares_of_flat(&few)).then_some(fitted)
 }
 
 /// The ramp along a course near `course`, if it explains the samples, those of each part: of both up to each of `ends`.
 pub(super) fn along(course: Course, samples: &[Sample], few: &[Sample], ends: &[usize]) -> Option<Fitted> {
-    let course = refined(course, few);
-    let profile = Profile::of(samples.iter().map(|&(point, color)| (course.way(point), color)));
-    if !profile.is_connected(6.0) {
+    // Nothing that is so far off comes near.
+    if square_left(&course, few) > FAR * FAR {
         return None;
     }
-    let fitted = Fitted { course, profile: profile.simplified(f64::from(STEP)) };
-    let is_missed = |&&(point, color): &&Sample| difference(fitted.color(point), color) > TOLERANCE;
-    let is_explained = |part: &[Sample]| part.iter().filter(is_missed).count() as f64 <= SPARE * part.len() as f64;
+    let course = refined(course, few);
+    if !measured(&course.way(), samples).is_connected(6.0) {
+        return None;
+    }
+    let fitted = Fitted::of(course, samples, EXACT_STEPS * f64::from(STEP));
     let mut from = 0;
-    ends.iter().all(|&end| is_explained(&samples[core::mem::replace(&mut from, end)..end])).then_some(fitted)
+    ends.iter().all(|&end| fitted.explains(&samples[core::mem::replace(&mut from, end)..end])).then_some(fitted)
+}
+
+/// The mean colors along a course.
+fn measured(way: &Way, samples: &[Sample]) -> Profile {
+    Profile::of(samples.iter().map(|&(point, color)| (way.to(point), color)))
+}
+
+/// Mean square of what the measured profile misses.
+fn square_left(course: &Course, samples: &[Sample]) -> f64 {
+    let way = course.way();
+    let profile = measured(&way, samples);
+    let squares = samples.iter().map(|&(point, color)| square(profile.at(way.to(point)).0, color));
+    squares.sum::<f64>() / samples.len().max(1) as f64
+}
+
+/// Sum of the squares that the mean color misses.
+fn squares_of_flat(samples: &[Sample]) -> f64 {
+    let count = samples.len().max(1) as f64;
+    let mean: Color = core::array::from_fn(|c| samples.iter().map(|(_, color)| color[c]).sum::<f64>() / count);
+    samples.iter().map(|&(_, color)| square(mean, color)).sum()
+}
+
+fn square(a: Color, b: Color) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum()
 }
 
 /// As many of the samples as are looked at.
@@ -87,34 +167,31 @@ pub(super) fn thinned(samples: &[Sample]) -> Vec<Sample> {
 /// samples at one way is the profile's to change.
 fn refined(mut course: Course, samples: &[Sample]) -> Course {
     let missed = |course: &Course| {
-        let profile = Profile::of(samples.iter().map(|&(point, color)| (course.way(point), color)));
-        let squares = samples.iter().map(|&(point, color)| {
-            let found = profile.at(course.way(point)).0;
-            found.iter().zip(color).map(|(a, b)| (a - b).powi(2)).sum::<f64>()
-        });
+        let way = course.way();
+        let profile = measured(&way, samples);
+        let squares = samples.iter().map(|&(point, color)| square(profile.at(way.to(point)).0, color));
         (squares.sum::<f64>(), profile)
     };
     let (mut error, mut profile) = missed(&course);
     for _ in 0..STEPS {
         let numbers = course.numbers();
         let by = 1e-4;
-        let turned: [Course; 4] = core::array::from_fn(|k| course.moved(k.min(numbers - 1), by));
-        let slopes = |point: [f64; 2]| -> [f64; 4] {
-            let way = course.way(point);
-            core::array::from_fn(|k| if k < numbers { (turned[k].way(point) - way) / by } else { 0.0 })
-        };
+        let turned: [Way; 4] = core::array::from_fn(|k| course.moved(k.min(numbers - 1), by).way());
+        let own_way = course.way();
+        let slopes = samples.iter().map(|&(point, _)| {
+            let way = own_way.to(point);
+            core::array::from_fn(|k| if k < numbers { (turned[k].to(point) - way) / by } else { 0.0 })
+        });
+        let slopes: Vec<[f64; 4]> = slopes.collect();
         let means: [Profile; 2] = [0, 2].map(|first| {
-            Profile::of(samples.iter().map(|&(point, _)| {
-                let own = slopes(point);
-                (course.way(point), [own[first], own[first + 1], 0.0])
-            }))
+            let placed = samples.iter().zip(&slopes);
+            Profile::of(placed.map(|(&(point, _), own)| (own_way.to(point), [own[first], own[first + 1], 0.0])))
         });
         let (mut matrix, mut right) = ([[0.0; 4]; 4], [0.0; 4]);
-        for &(point, color) in samples {
-            let way = course.way(point);
+        for (&(point, color), own) in samples.iter().zip(&slopes) {
+            let way = own_way.to(point);
             let (found, slope) = profile.at(way);
             let means = [means[0].at(way).0, means[1].at(way).0];
-            let own = slopes(point);
             let own: [f64; 4] = core::array::from_fn(|k| own[k] - means[k / 2][k % 2]);
             for c in 0..3 {
                 for i in 0..4 {
@@ -129,11 +206,11 @@ fn refined(mut course: Course, samples: &[Sample]) -> Course {
             row[i] = if i < numbers { row[i] * (1.0 + 1e-6) + 1e-12 } else { 1.0 };
         }
         let Some(step) = solve(matrix, right) else { break };
-        let next = (0..numbers).fold(course, |course, k| course.moved(k, step[k]));
-        let (lower, its) = missed(&next);
-        if !(lower < error) {
-            break;
-        }
+        // The whole step, or the first part of it that gains.
+        let parts =
+            [1.0, 0.5, 0.25, 0.125].map(|part| (0..numbers).fold(course, |course, k| course.moved(k, part * step[k])));
+        let tried = parts.into_iter().filter(Course::is_sound).map(|next| (next, missed(&next)));
+        let Some((next, (lower, its))) = tried.into_iter().find(|(_, (lower, _))| *lower < error) else { break };
         let gain = (error - lower) / error.max(1e-12);
         (course, error, profile) = (next, lower, its);
         if gain < 1e-3 {

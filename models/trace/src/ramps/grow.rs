@@ -25,6 +25,8 @@ pub(super) struct Regions {
 pub(super) struct Region {
     pub(super) fitted: Fitted,
     pub(super) mean: Color,
+    /// Whether it explains all of its pixels.
+    pub(super) is_exact: bool,
     /// A place in the middle.
     pub(super) near: [f64; 2],
 }
@@ -39,14 +41,14 @@ pub(super) fn regions(pixels: &[[f32; 3]], width: usize, smooth: Smooth) -> Regi
     let mut ramp_of = alloc::vec![OUTSIDE; parts.len()];
     let mut ramps: Vec<Fitted> = Vec::new();
     let samples = |part: usize| parts[part].iter().map(|&i| sample(pixels, width, i as usize));
+    let may_be = |part: usize| parts[part].len() >= LEAST_RAMP_PIXELS && ranges[part] >= LEAST_RAMP_STEPS * STEP;
     for &seed in &order {
-        let is_ramp = parts[seed].len() >= LEAST_RAMP_PIXELS && ranges[seed] >= LEAST_RAMP_STEPS * STEP;
-        if !is_ramp || ramp_of[seed] != OUTSIDE {
+        if !may_be(seed) || ramp_of[seed] != OUTSIDE {
             continue;
         }
         let mut own: Vec<Sample> = samples(seed).collect();
         let mut ends = alloc::vec![own.len()];
-        let Some(mut fitted) = fit(&own) else { continue };
+        let Some(mut fitted) = fit(&own, true) else { continue };
         ramp_of[seed] = ramps.len() as u32;
         // What lies beside it, and beside that, as long as one ramp explains it all.
         let mut open: Vec<u32> = beside.get(&(seed as u32)).into_iter().flatten().copied().collect();
@@ -67,9 +69,36 @@ pub(super) fn regions(pixels: &[[f32; 3]], width: usize, smooth: Smooth) -> Regi
                 own.truncate(*ends.last().unwrap_or(&0));
             }
         }
+        // And what shows further away: what changes along the same course may be of the same ramp.
+        for other in (0..parts.len()).filter(|&other| may_be(other)) {
+            if ramp_of[other] != OUTSIDE {
+                continue;
+            }
+            let before = own.len();
+            own.extend(samples(other));
+            let both = fitted
+                .goes_on(&own[before..])
+                .then(|| along(fitted.course, &own, &thinned(&own), &[before, own.len()]));
+            match both.flatten() {
+                Some(both) => {
+                    fitted = both;
+                    ramp_of[other] = ramps.len() as u32;
+                }
+                None => own.truncate(before),
+            }
+        }
         ramps.push(fitted);
     }
-    finished(pixels, width, (labels, &parts, &ranges), (ramps, &ramp_of))
+    let exact = ramps.len();
+    for &part in order.iter().filter(|&&part| may_be(part)) {
+        if ramp_of[part] == OUTSIDE
+            && let Some(fitted) = fit(&samples(part).collect::<Vec<_>>(), false)
+        {
+            ramp_of[part] = ramps.len() as u32;
+            ramps.push(fitted);
+        }
+    }
+    finished(pixels, width, (labels, &parts, &ranges), (ramps, exact, &ramp_of))
 }
 
 /// Labels of ramps and flat colors, ramps grown over pixels beside them that they explain.
@@ -77,7 +106,7 @@ fn finished(
     pixels: &[[f32; 3]],
     width: usize,
     (mut labels, parts, ranges): (Vec<u32>, &[Vec<u32>], &[f32]),
-    (ramps, ramp_of): (Vec<Fitted>, &[u32]),
+    (ramps, exact, ramp_of): (Vec<Fitted>, usize, &[u32]),
 ) -> Regions {
     let height = pixels.len() / width;
     let mut flat_colors = Vec::new();
@@ -105,21 +134,36 @@ fn finished(
         next += 1;
         let label = labels[i as usize];
         let (point, color) = sample(pixels, width, i as usize);
+        let ramp = &ramps[label as usize];
+        let shown = ramp.color_beyond(point);
+        let left: Color = core::array::from_fn(|c| color[c] - shown[c]);
         let (mean, near, count) = &mut sums[label as usize];
         (0..3).for_each(|c| mean[c] += color[c]);
         (0..2).for_each(|k| near[k] += point[k]);
         *count += 1.0;
         for neighbor in neighbors(i as usize, width, height).into_iter().flatten() {
             let (point, color) = sample(pixels, width, neighbor);
-            let is_free = labels[neighbor] == OUTSIDE;
-            if is_free && difference(ramps[label as usize].color_beyond(point), color) <= TOLERANCE {
+            if labels[neighbor] != OUTSIDE {
+                continue;
+            }
+            // A ramp that does not explain its part goes on as that does; behind its ends one goes on, or stays as it is.
+            let left = if (label as usize) < exact { [0.0; 3] } else { left };
+            let seen: Color = core::array::from_fn(|c| color[c] - left[c]);
+            if [ramp.color_beyond(point), ramp.color(point)].iter().any(|&shown| difference(shown, seen) <= TOLERANCE) {
                 labels[neighbor] = label;
                 border.push(neighbor as u32);
             }
         }
     }
-    let ramps = ramps.into_iter().zip(sums).map(|(fitted, (mean, near, count))| Region {
+    // What was seen of the ramps by now reaches further than what they were found by.
+    let mut seen: Vec<Vec<Sample>> = alloc::vec![Vec::new(); ramps.len()];
+    for &i in &border {
+        seen[labels[i as usize] as usize].push(sample(pixels, width, i as usize));
+    }
+    let ramps = ramps.iter().zip(&seen).enumerate().map(|(index, (fitted, seen))| fitted.of_more(seen, index < exact));
+    let ramps = ramps.zip(sums).enumerate().map(|(index, (fitted, (mean, near, count)))| Region {
         fitted,
+        is_exact: index < exact,
         mean: mean.map(|sum| sum / count),
         near: near.map(|sum| sum / count),
     });

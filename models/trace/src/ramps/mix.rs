@@ -2,6 +2,9 @@
 
 use alloc::vec::Vec;
 
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
+
 use super::STEP;
 use super::grow::{Regions, sample};
 use crate::partition::{Color, OUTSIDE};
@@ -22,28 +25,34 @@ struct Surface {
 pub(super) fn leveled(pixels: &[[f32; 3]], width: usize, regions: &Regions, markers: &[Color]) -> Vec<[f32; 3]> {
     let mut near = Vec::new();
     let mut leveled = pixels.to_vec();
-    for i in 0..pixels.len() {
-        let label = regions.labels[i] as usize;
-        if label < markers.len() {
-            leveled[i] = markers[label].map(|value| value as f32);
+    for (i, (leveled, &label)) in leveled.iter_mut().zip(&regions.labels).enumerate() {
+        if let Some(marker) = markers.get(label as usize) {
+            *leveled = marker.map(|value| value as f32);
             continue;
         }
-        if regions.labels[i] != OUTSIDE {
+        if label != OUTSIDE {
             continue;
         }
         labels_near(&regions.labels, width, i, &mut near);
-        if !near.iter().any(|&label| (label as usize) < markers.len()) {
+        if !near.iter().any(|&(label, _)| (label as usize) < markers.len()) {
             continue;
         }
         let (point, color) = sample(pixels, width, i);
-        let surface = |label: usize| match regions.ramps.get(label) {
-            Some(region) => Surface { shown: region.fitted.color(point), leveled: markers[label] },
+        let surface = |label: usize, from: usize| match regions.ramps.get(label) {
+            Some(region) => {
+                let shown = region.fitted.color(point);
+                // What a ramp that does not explain its part leaves beside the pixel, it leaves there too.
+                let (place, its) = sample(pixels, width, from);
+                let beside = region.fitted.color(place);
+                let left = if region.is_exact { [0.0; 3] } else { minus(its, beside) };
+                Surface { shown: core::array::from_fn(|c| shown[c] + left[c]), leveled: markers[label] }
+            }
             None => {
                 let color = regions.flat_colors[label - markers.len()];
                 Surface { shown: color, leveled: color }
             }
         };
-        let own: Vec<Surface> = near.iter().map(|&label| surface(label as usize)).collect();
+        let own: Vec<Surface> = near.iter().map(|&(label, from)| surface(label as usize, from)).collect();
         let (mut missed, mut best) = mixture(&own, color);
         if missed > EXPLAINED {
             // A line without a pixel of its own, in one of the colors of the picture.
@@ -56,21 +65,21 @@ pub(super) fn leveled(pixels: &[[f32; 3]], width: usize, regions: &Regions, mark
                 }
             }
         }
-        leveled[i] = best.map(|value| value.clamp(0.0, 1.0) as f32);
+        *leveled = best.map(|value| value.clamp(0.0, 1.0) as f32);
     }
     leveled
 }
 
-/// The labels around a pixel, the nearest first, each once.
-fn labels_near(labels: &[u32], width: usize, i: usize, near: &mut Vec<u32>) {
+/// The labels around a pixel, the nearest first, each once, with a pixel that has it.
+fn labels_near(labels: &[u32], width: usize, i: usize, near: &mut Vec<(u32, usize)>) {
     near.clear();
     let (x, y, height) = (i % width, i / width, labels.len() / width);
     for reach in 1..=REACH {
         for row in y.saturating_sub(reach)..=(y + reach).min(height - 1) {
             for column in x.saturating_sub(reach)..=(x + reach).min(width - 1) {
                 let label = labels[row * width + column];
-                if label != OUTSIDE && !near.contains(&label) {
-                    near.push(label);
+                if label != OUTSIDE && near.iter().all(|&(other, _)| other != label) {
+                    near.push((label, row * width + column));
                 }
             }
         }

@@ -16,7 +16,8 @@ mod grow;
 mod mix;
 mod profile;
 mod smooth;
-//TESTS
+#[cfg(test)]
+mod tests;
 
 use alloc::vec::Vec;
 
@@ -47,6 +48,16 @@ pub struct LeveledRamp {
     pub color: [f32; 3],
     /// The ramp, its points in scene units.
     pub ramp: ColorRamp<f32>,
+    /// Whether it explains what it stands for, and is no wide edge: colors change at its ends as they do in its middle.
+    pub is_beyond_doubt: bool,
+}
+
+impl Leveled {
+    /// Whether nothing but ramps explains what was taken out.
+    #[must_use]
+    pub fn is_beyond_doubt(&self) -> bool {
+        self.ramps.iter().all(|ramp| ramp.is_beyond_doubt)
+    }
 }
 
 /// The picture without its ramps; none if it has none.
@@ -54,7 +65,7 @@ pub struct LeveledRamp {
 pub fn level(image: &ImageView<'_, f32>) -> Option<Leveled> {
     let (width, count) = (image.size().width(), image.size().pixels());
     let pixels: Vec<[f32; 3]> = (0..count).map(|i| image.pixel(i)).collect();
-    let smooth = smooth::Smooth::of(&pixels, width);
+    let smooth = smooth::Smooth::of(&pixels, width)?;
     let changes = |part: &Vec<u32>| part.len() >= LEAST_RAMP_PIXELS && range(&pixels, part) >= LEAST_RAMP_STEPS * STEP;
     if !smooth.parts.iter().any(changes) {
         return None;
@@ -69,6 +80,7 @@ pub fn level(image: &ImageView<'_, f32>) -> Option<Leveled> {
     let ramps = regions.ramps.iter().zip(&markers).map(|(region, color)| LeveledRamp {
         color: color.map(|value| value as f32),
         ramp: in_scene_units(region, unit),
+        is_beyond_doubt: region.is_exact && !region.fitted.profile.is_edge(),
     });
     let ramps = ramps.collect();
     let flat: Vec<f32> = leveled.into_iter().flatten().collect();
@@ -94,8 +106,7 @@ fn markers(regions: &grow::Regions) -> Vec<Color> {
     for region in &regions.ramps {
         let mean = region.mean;
         // Brighter or darker by more and more, whichever is free first.
-        let shifts =
-            (0..64).map(|k: u32| f64::from(k.div_ceil(2)) * if k % 2 == 0 { 0.5 } else { -0.5 } * MARKERS_APART);
+        let shifts = (0..32).flat_map(|k: u32| [1.0, -1.0].map(|sign| 0.5 * sign * f64::from(k) * MARKERS_APART));
         let shifted = shifts.map(|shift| mean.map(|value| (value + shift).clamp(0.0, 1.0)));
         let is_free = |color: &Color| taken.iter().all(|other| profile::difference(*other, *color) >= MARKERS_APART);
         let color = shifted.into_iter().find(is_free).unwrap_or(mean);

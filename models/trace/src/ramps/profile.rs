@@ -2,12 +2,21 @@
 
 use alloc::vec::Vec;
 
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
+
 use dvp_core::scene::ColorStop;
 
 use super::STEP;
 use crate::partition::Color;
 
-/// Colors along a way, one per pixel of it at most, where there is any.
+/// Least distance between stops, pixels: what changes over less is an edge.
+const LEAST_APART: f64 = 1.0;
+
+/// Places per pixel of a way: at a stop colors turn within one.
+const PLACES: f64 = 2.0;
+
+/// Mean colors along a way, where there are any.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Profile {
     /// Way and mean color, rising by way.
@@ -25,9 +34,9 @@ impl Profile {
         if low > high {
             return Self::default();
         }
-        let mut sums = alloc::vec![(0.0, 0.0, [0.0; 3]); (high - low) as usize + 1];
+        let mut sums = alloc::vec![(0.0, 0.0, [0.0; 3]); (PLACES * (high - low)) as usize + 1];
         for (way, color) in samples {
-            let (count, ways, colors) = &mut sums[(way - low) as usize];
+            let (count, ways, colors) = &mut sums[(PLACES * (way - low)) as usize];
             *count += 1.0;
             *ways += way;
             colors.iter_mut().zip(color).for_each(|(sum, value)| *sum += value);
@@ -39,10 +48,9 @@ impl Profile {
 
     /// The color after a way, and its slope there; beyond the ends as the last part goes on.
     pub(super) fn at(&self, way: f64) -> (Color, Color) {
-        let [first, .., last] = &self.places[..] else {
+        if self.places.len() < 2 {
             return (self.places.first().map_or([0.0; 3], |place| place.1), [0.0; 3]);
-        };
-        let _ = (first, last);
+        }
         let next = self.places.partition_point(|place| place.0 <= way).clamp(1, self.places.len() - 1);
         let ((from, a), (to, b)) = (self.places[next - 1], self.places[next]);
         let slope = [0, 1, 2].map(|c| (b[c] - a[c]) / (to - from));
@@ -63,36 +71,71 @@ impl Profile {
         slopes.map(|pair| difference(pair[0].1, pair[1].1) / (pair[1].0 - pair[0].0)).fold(0.0, f64::max)
     }
 
-    /// The fewest places between which straight ways explain all others within `tolerance`, by halving where most is missed; their colors by
-    /// least squares.
+    /// Whether colors change in its middle, and at neither end: so does an edge that is wide.
+    pub(super) fn is_edge(&self) -> bool {
+        let slopes: Vec<f64> =
+            self.places.windows(2).map(|pair| difference(pair[0].1, pair[1].1) / (pair[1].0 - pair[0].0)).collect();
+        let [first, .., last] = slopes[..] else { return false };
+        first.max(last) < 0.25 * slopes.into_iter().fold(0.0, f64::max)
+    }
+
+    /// As few stops as explain all places within `tolerance`, straight ways between them: one more where most is missed, as long as that is too
+    /// much, all of them then moved to where they miss least.
     pub(super) fn simplified(&self, tolerance: f64) -> Self {
-        let mut kept = alloc::vec![0, self.places.len() - 1];
-        kept.dedup();
+        let mut ways: Vec<f64> = self.places.iter().map(|place| place.0).collect();
+        ways.drain(1..ways.len().saturating_sub(1).max(1));
+        ways.dedup();
         loop {
-            let rough = self.solved(&kept);
-            let missed = self.places.iter().map(|&(way, color)| difference(rough.at(way).0, color));
-            let worst = missed.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
-            let Some((worst, _)) = worst.filter(|&(worst, missed)| missed > tolerance && !kept.contains(&worst)) else {
-                return rough;
-            };
-            kept.push(worst);
-            kept.sort_unstable();
+            let rough = self.polished(&mut ways);
+            let is_far = |way: f64| ways.iter().all(|stop| (way - stop).abs() >= LEAST_APART);
+            let others = self.places.iter().filter(|place| is_far(place.0));
+            let missed = others.map(|&(way, color)| (way, difference(rough.at(way).0, color)));
+            let worst = missed.max_by(|a, b| a.1.total_cmp(&b.1));
+            let Some((worst, _)) = worst.filter(|&(_, missed)| missed > tolerance) else { return rough };
+            ways.push(worst);
+            ways.sort_by(f64::total_cmp);
         }
     }
 
-    /// The colors at `kept` places with which straight ways between them are nearest to all places.
-    fn solved(&self, kept: &[usize]) -> Self {
-        let n = kept.len();
+    /// The stops near `ways` that miss least; the first and the last stay.
+    fn polished(&self, ways: &mut [f64]) -> Self {
+        let mut best = self.solved(ways);
+        for step in [8.0, 4.0, 2.0, 1.0, 0.5, 0.25, 0.125] {
+            for stop in 1..ways.len().saturating_sub(1) {
+                for by in [-step, step] {
+                    loop {
+                        let (old, room) = (ways[stop], 0.5 * LEAST_APART);
+                        let moved = old + by;
+                        if moved - ways[stop - 1] < room || ways[stop + 1] - moved < room {
+                            break;
+                        }
+                        ways[stop] = moved;
+                        let other = self.solved(ways);
+                        if other.1 >= best.1 {
+                            ways[stop] = old;
+                            break;
+                        }
+                        best = other;
+                    }
+                }
+            }
+        }
+        best.0
+    }
+
+    /// The colors of stops at `ways` with which straight ways between them are nearest to all places, and the squares that they leave.
+    fn solved(&self, ways: &[f64]) -> (Self, f64) {
+        let n = ways.len();
         let (mut diagonal, mut beside, mut right) =
             (alloc::vec![1e-9; n], alloc::vec![0.0; n], alloc::vec![[0.0; 3]; n]);
-        for (i, color) in right.iter_mut().enumerate() {
-            *color = self.places[kept[i]].1.map(|value| 1e-9 * value);
+        for (way, color) in ways.iter().zip(&mut right) {
+            *color = self.at(*way).0.map(|value| 1e-9 * value);
         }
         for (&(way, color), &count) in self.places.iter().zip(&self.counts) {
-            let next = kept.partition_point(|&k| self.places[k].0 <= way).min(n - 1);
+            let next = ways.partition_point(|&stop| stop <= way).min(n - 1);
             let from = next.saturating_sub(1);
-            let length = self.places[kept[next]].0 - self.places[kept[from]].0;
-            let share = if length > 0.0 { (way - self.places[kept[from]].0) / length } else { 1.0 };
+            let length = ways[next] - ways[from];
+            let share = if length > 0.0 { (way - ways[from]) / length } else { 1.0 };
             for (i, weight) in [(from, 1.0 - share), (next, share)] {
                 diagonal[i] += count * weight * weight;
                 right[i].iter_mut().zip(color).for_each(|(sum, value)| *sum += count * weight * value);
@@ -104,27 +147,48 @@ impl Profile {
         for i in 1..n {
             let factor = beside[i - 1] / diagonal[i - 1];
             diagonal[i] -= factor * beside[i - 1];
-            for c in 0..3 {
-                right[i][c] -= factor * right[i - 1][c];
-            }
+            let before = right[i - 1];
+            right[i].iter_mut().zip(before).for_each(|(value, before)| *value -= factor * before);
         }
         for i in (0..n).rev() {
-            for c in 0..3 {
-                let above = if i + 1 < n { beside[i] * right[i + 1][c] } else { 0.0 };
-                right[i][c] = (right[i][c] - above) / diagonal[i];
-            }
+            let behind = right.get(i + 1).copied().unwrap_or_default();
+            right[i]
+                .iter_mut()
+                .zip(behind)
+                .for_each(|(value, behind)| *value = (*value - beside[i] * behind) / diagonal[i]);
         }
-        let places = kept.iter().zip(right).map(|(&k, color)| (self.places[k].0, color)).collect();
-        Self { places, counts: alloc::vec![1.0; n] }
+        let solved = Self { places: ways.iter().copied().zip(right).collect(), counts: alloc::vec![1.0; n] };
+        let left = self.places.iter().zip(&self.counts).map(|(&(way, color), count)| {
+            let found = solved.at(way).0;
+            count * (0..3).map(|c| (found[c] - color[c]).powi(2)).sum::<f64>()
+        });
+        let left = left.sum();
+        (solved, left)
     }
 
-    /// Stops, with the offset 0 at the way `from` and 1 at `to`.
+    /// Goes on by `more` at both ends, as colors change there, but not below `least`.
+    pub(super) fn reach(&mut self, more: f64, least: f64) {
+        let Some((&(first, _), &(last, _))) = self.places.first().zip(self.places.last()) else { return };
+        let ends = [(first - more).max(least), last + more].map(|way| (way, self.at(way).0));
+        self.places[0] = ends[0];
+        let end = self.places.len() - 1;
+        self.places[end] = ends[1];
+    }
+
+    /// Stops, with the offset 0 at the way `from` and 1 at `to`. Where a channel leaves [0, 1], it stays at the bound from there on.
     pub(super) fn stops(&self, [from, to]: [f64; 2]) -> Vec<ColorStop<f32>> {
-        let stop = |&(way, color): &(f64, Color)| ColorStop {
+        let mut ways: Vec<f64> = self.places.iter().map(|place| place.0).collect();
+        for pair in self.places.windows(2) {
+            let (length, crossings) = (pair[1].0 - pair[0].0, (0..6).map(|k| (k % 3, f64::from(u8::from(k > 2)))));
+            let shares = crossings.map(|(c, bound)| (bound - pair[0].1[c]) / (pair[1].1[c] - pair[0].1[c]));
+            ways.extend(shares.filter(|share| *share > 0.0 && *share < 1.0).map(|share| pair[0].0 + share * length));
+        }
+        ways.sort_by(f64::total_cmp);
+        let stop = |way: f64| ColorStop {
             offset: ((way - from) / (to - from)) as f32,
-            color: color.map(|value| value.clamp(0.0, 1.0) as f32),
+            color: self.at(way).0.map(|value| value.clamp(0.0, 1.0) as f32),
         };
-        self.places.iter().map(stop).collect()
+        ways.into_iter().map(stop).collect()
     }
 }
 

@@ -5,9 +5,9 @@ use alloc::vec::Vec;
 use super::STEP;
 use crate::partition::OUTSIDE;
 
-/// How far a pixel may lie off the middle of its neighbors: each of the three is rounded, by half a step, and what curves a little
-/// is steady too.
-const BEND: f32 = 2.5 * STEP;
+/// How far a pixel may lie off the middle of its neighbors, twice: each of the three is rounded, by half a step for every layer that was painted
+/// there, and what curves a little is steady too.
+const BEND: f32 = 4.0 * STEP;
 
 /// Connected parts of a picture in which colors change steadily, or not at all.
 pub(super) struct Smooth {
@@ -18,27 +18,15 @@ pub(super) struct Smooth {
 }
 
 impl Smooth {
-    /// The parts of a picture of `width` columns. Every pixel of a part belongs to a block of three by three that is steady all
-    /// through: the middle of a straight edge lies between its neighbors as well.
-    pub(super) fn of(pixels: &[[f32; 3]], width: usize) -> Self {
+    /// The parts of a picture of `width` columns; none if no color changes in any of them. Every pixel of a part belongs to a block of three by
+    /// three that is steady all through: the middle of a straight edge lies between its neighbors as well.
+    pub(super) fn of(pixels: &[[f32; 3]], width: usize) -> Option<Self> {
         let height = pixels.len() / width;
-        let bend = |i: usize, step: usize| {
-            (0..3).any(|c| (pixels[i - step][c] + pixels[i + step][c] - 2.0 * pixels[i][c]).abs() > BEND)
-        };
-        let is_steady = |i: usize| {
-            let (x, y) = (i % width, i / width);
-            let inner = [x > 0 && x + 1 < width, y > 0 && y + 1 < height];
-            !(inner[0] && bend(i, 1) || inner[1] && bend(i, width))
-        };
-        let steady: Vec<bool> = (0..pixels.len()).map(is_steady).collect();
-        let mut is_in = alloc::vec![false; pixels.len()];
-        for y in 1..height.saturating_sub(1) {
-            for x in 1..width.saturating_sub(1) {
-                let block = || (y - 1..=y + 1).map(|row| row * width + x - 1..row * width + x + 2);
-                if block().flatten().all(|i| steady[i]) {
-                    block().for_each(|row| is_in[row].fill(true));
-                }
-            }
+        let is_in = spread(&all_around(&steady(pixels, width), width), width);
+        let changes = |i: usize, step: usize| is_in[i] && is_in[i + step] && pixels[i] != pixels[i + step];
+        let beside = (0..pixels.len() - 1).any(|i| (i + 1) % width != 0 && changes(i, 1));
+        if !beside && !(0..pixels.len() - width).any(|i| changes(i, width)) {
+            return None;
         }
         let (mut labels, mut parts) = (alloc::vec![OUTSIDE; pixels.len()], Vec::new());
         for first in 0..pixels.len() {
@@ -60,8 +48,52 @@ impl Smooth {
             part.sort_unstable();
             parts.push(part);
         }
-        Self { labels, parts }
+        Some(Self { labels, parts })
     }
+}
+
+/// Which pixels lie on the line between their neighbors, along the row and along the column. Beyond the border there is none.
+fn steady(pixels: &[[f32; 3]], width: usize) -> Vec<bool> {
+    let bends = |a: &[f32; 3], b: &[f32; 3], c: &[f32; 3]| (0..3).any(|k| (a[k] + c[k] - 2.0 * b[k]).abs() > BEND);
+    let mut steady = alloc::vec![true; pixels.len()];
+    for (row, its) in pixels.chunks(width).zip(steady.chunks_mut(width)) {
+        for (three, its) in row.windows(3).zip(its.iter_mut().skip(1)) {
+            *its = !bends(&three[0], &three[1], &three[2]);
+        }
+    }
+    let below = pixels.iter().skip(2 * width);
+    for (((a, b), c), its) in
+        pixels.iter().zip(&pixels[width.min(pixels.len())..]).zip(below).zip(steady.iter_mut().skip(width))
+    {
+        *its &= !bends(a, b, c);
+    }
+    steady
+}
+
+/// Which pixels are the middle of three by three that are all marked.
+fn all_around(marked: &[bool], width: usize) -> Vec<bool> {
+    let mut across = alloc::vec![false; marked.len()];
+    for (row, its) in marked.chunks(width).zip(across.chunks_mut(width)) {
+        for (three, its) in row.windows(3).zip(its.iter_mut().skip(1)) {
+            *its = three.iter().all(|&is_marked| is_marked);
+        }
+    }
+    let mut all = alloc::vec![false; marked.len()];
+    for (i, its) in all.iter_mut().enumerate().take(marked.len().saturating_sub(width)).skip(width) {
+        *its = across[i - width] && across[i] && across[i + width];
+    }
+    all
+}
+
+/// Which pixels belong to three by three around a marked one.
+fn spread(marked: &[bool], width: usize) -> Vec<bool> {
+    let mut spread = alloc::vec![false; marked.len()];
+    for (i, _) in marked.iter().enumerate().filter(|(_, is_marked)| **is_marked) {
+        for row in [i - width, i, i + width] {
+            spread[row - 1..row + 2].fill(true);
+        }
+    }
+    spread
 }
 
 /// The pixels above, left, right and below.

@@ -138,9 +138,9 @@ impl Walk<'_> {
 }
 
 /// Adds what shows, takes out what hides; false if it does something between.
-fn paint((placed, flat): &Layer, kind: MaskType, tolerance: f64, region: &mut Region) -> Result<bool, SvgError> {
-    let luminance: f64 = flat.color.iter().zip(LUMINANCE).map(|(value, share)| value * share).sum();
-    let is_opaque = flat.opacity > 1.0 - CLEAR;
+fn paint((placed, coat): &Layer, kind: MaskType, tolerance: f64, region: &mut Region) -> Result<bool, SvgError> {
+    let luminance: f64 = coat.paint.color().iter().zip(LUMINANCE).map(|(value, share)| value * share).sum();
+    let is_opaque = coat.opacity > 1.0 - CLEAR;
     let own = Region::of(placed, tolerance)?;
     if is_opaque && (kind == MaskType::Alpha || luminance > 1.0 - CLEAR) {
         *region = region.union(&own)?;

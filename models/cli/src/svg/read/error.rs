@@ -54,10 +54,10 @@ pub enum SvgError {
         /// How many elements there are.
         elements: usize,
     },
-    /// More lines and curves than are read.
-    #[error("the SVG has more than {limit} lines and curves")]
+    /// More lines and curves, and stops of gradients in all that is painted with them, than are read.
+    #[error("the SVG has more than {limit} lines and curves, or stops of gradients")]
     TooManySegments {
-        /// Most lines and curves.
+        /// Most of all of them.
         limit: usize,
     },
     /// A width or height of no pixel, or of too many.

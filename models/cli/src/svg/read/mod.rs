@@ -15,7 +15,8 @@
 //! | `path_data` | path data | rings of lines, arcs and cubics |
 //! | `place` | figure, transform | shape and pose |
 //! | `stroke` | figure, transform, style | stroke |
-//! | `paint` | paint | color and opacity |
+//! | `paint` | paint | color or ramp of colors, and opacity |
+//! | `gradient` | gradient | ramp, or mean color |
 //! | `clip` | clip paths, masks | regions |
 //! | `losses` | | what was not kept |
 
@@ -23,6 +24,7 @@ mod clip;
 mod error;
 mod figure;
 mod forms;
+mod gradient;
 mod losses;
 mod numbers;
 mod paint;
@@ -58,7 +60,7 @@ const BORDER_PX: f64 = 1e-3;
 #[non_exhaustive]
 pub struct SvgDrawing {
     /// What is drawn: edges by exact area, later objects over earlier ones; transparent unless the first object covers
-    /// everything, which is the background then.
+    /// everything, which is the background then. One whose color changes stays, before its mean color.
     pub scene: Scene<f64>,
     /// The viewport, its sides rounded up to whole pixels.
     pub size: ImageSize,
@@ -69,7 +71,7 @@ pub struct SvgDrawing {
 /// Reads an SVG text.
 ///
 /// # Errors
-/// [`SvgError`] if it is no SVG, or has too much of something: text, elements, nesting, lines and curves, distance.
+/// [`SvgError`] if it is no SVG, or has too much of something: text, elements, nesting, lines and curves, stops of gradients, distance.
 pub fn from_svg(text: &str) -> Result<SvgDrawing, SvgError> {
     let labeled = source::labeled(text)?;
     let document = source::parse(&labeled)?;
@@ -85,7 +87,7 @@ pub fn from_svg(text: &str) -> Result<SvgDrawing, SvgError> {
     unseen(&document, &mut losses);
     let extent = [width, height].map(|side| f64::from(side) / unit);
     let background = objects.first().and_then(|object| background(object, extent, BORDER_PX / unit));
-    if background.is_some() {
+    if background.is_some() && objects.first().is_some_and(|object| object.paint.ramp().is_none()) {
         objects.remove(0);
     }
     let scene = Scene {
@@ -104,7 +106,7 @@ fn whole(width: f32, height: f32) -> Result<ImageSize, SizeError> {
     ImageSize::new(side(width), side(height))
 }
 
-/// The color of an object that covers the whole picture.
+/// The color of an object that covers the whole picture, or the mean of its colors.
 fn background(object: &Object<f64>, [width, height]: [f64; 2], border: f64) -> Option<[f64; 3]> {
     let AnyShape::Rectangle(Rectangle { size, corner_radius }) = object.shape else { return None };
     let is_plain = object.confidence >= 1.0 && corner_radius <= 0.0 && object.pose.rotation == 0.0;

@@ -1,72 +1,50 @@
-//! Paints to a color and an opacity.
+//! Paints to colors and an opacity.
 
-use usvg::{Opacity, Paint, Stop};
+use dvp_core::Pose;
+use dvp_core::scene::{ColorRamp, Paint};
+use kurbo::Affine;
+use usvg::Opacity;
 
+use super::gradient;
 use super::losses::Losses;
 
-/// RGB and opacity, each in [0, 1].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct FlatPaint {
-    pub(super) color: [f64; 3],
+/// What a shape is painted with.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Coat {
+    /// The points of a ramp stand in the drawing, scene units.
+    pub(super) paint: Paint<f64>,
+    /// [0, 1].
     pub(super) opacity: f64,
 }
 
-/// The one color nearest to a paint; none for what paints nothing.
-pub(super) fn flat(paint: &Paint, opacity: Opacity, losses: &mut Losses) -> Option<FlatPaint> {
-    let opacity = f64::from(opacity.get());
-    let flat = match paint {
-        Paint::Color(color) => FlatPaint { color: rgb(*color), opacity },
-        Paint::LinearGradient(gradient) => {
-            losses.add("linearGradient: painted in its mean color");
-            mean(gradient.stops(), opacity)?
+impl Coat {
+    /// The same paint, its ramp in the frame of an object that stands at `pose`.
+    pub(super) fn into_frame(self, pose: &Pose<f64>) -> Paint<f64> {
+        match (self.paint, pose.inverse()) {
+            (Paint::Ramp(ColorRamp { kind, stops }), Some(back)) => {
+                Paint::Ramp(ColorRamp { kind: kind.posed(&back), stops })
+            }
+            // An object of no size has no place for more than one color.
+            (paint, _) => Paint::Flat(paint.color()),
         }
-        Paint::RadialGradient(gradient) => {
-            losses.add("radialGradient: painted in its mean color");
-            mean(gradient.stops(), opacity)?
-        }
-        Paint::Pattern(_) => {
+    }
+}
+
+/// What a scene has for a paint; none for what paints nothing. `to_scene` leads from the user space of the shape to scene units.
+pub(super) fn coat(paint: &usvg::Paint, opacity: Opacity, to_scene: Affine, losses: &mut Losses) -> Option<Coat> {
+    let coat = match paint {
+        usvg::Paint::Color(color) => Coat { paint: rgb(*color).into(), opacity: 1.0 },
+        usvg::Paint::LinearGradient(own) => gradient::coat(own, gradient::linear(own, to_scene), losses)?,
+        usvg::Paint::RadialGradient(own) => gradient::coat(own, gradient::radial(own, to_scene), losses)?,
+        usvg::Paint::Pattern(_) => {
             losses.add("pattern: not painted");
             return None;
         }
     };
-    (flat.opacity > 0.0).then_some(flat)
+    let opacity = coat.opacity * f64::from(opacity.get());
+    (opacity > 0.0).then_some(Coat { opacity, ..coat })
 }
 
-fn rgb(color: usvg::Color) -> [f64; 3] {
+pub(super) fn rgb(color: usvg::Color) -> [f64; 3] {
     [color.red, color.green, color.blue].map(|value| f64::from(value) / 255.0)
-}
-
-/// The mean along the whole gradient, colors weighted with their opacity; none if all of it is transparent.
-fn mean(stops: &[Stop], opacity: f64) -> Option<FlatPaint> {
-    let offset = |stop: &Stop| f64::from(stop.offset().get());
-    let alpha = |stop: &Stop| f64::from(stop.opacity().get());
-    let (first, last) = (stops.first()?, stops.last()?);
-    let mut sum = Sum::default();
-    sum.add(first, offset(first));
-    sum.add(last, 1.0 - offset(last));
-    for (start, end) in stops.iter().zip(stops.iter().skip(1)) {
-        let half = 0.5 * (offset(end) - offset(start)).max(0.0);
-        sum.add(start, half);
-        sum.add(end, half);
-    }
-    let Sum { color, weight } = sum;
-    if weight > 0.0 {
-        return Some(FlatPaint { color: color.map(|value| value / weight), opacity: opacity * weight });
-    }
-    Some(FlatPaint { color: rgb(last.color()), opacity: opacity * alpha(last) })
-}
-
-/// Colors times opacities, and opacities, along a gradient of length 1.
-#[derive(Default)]
-struct Sum {
-    color: [f64; 3],
-    weight: f64,
-}
-
-impl Sum {
-    fn add(&mut self, stop: &Stop, length: f64) {
-        let weight = length * f64::from(stop.opacity().get());
-        self.color.iter_mut().zip(rgb(stop.color())).for_each(|(sum, value)| *sum += weight * value);
-        self.weight += weight;
-    }
 }

@@ -3,9 +3,9 @@
 use alloc::rc::Rc;
 use std::collections::HashMap;
 
+use dvp_core::Object;
 use dvp_core::scene::Region;
 use dvp_core::shape::{FillRule, ShapeError};
-use dvp_core::{Object, Paint};
 use kurbo::Affine;
 use usvg::roxmltree::{Document, Node as Element};
 use usvg::{BlendMode, Group, Node, PaintOrder, Rect, Transform};
@@ -15,12 +15,12 @@ use super::error::SvgError;
 use super::figure::Figure;
 use super::forms::Forms;
 use super::losses::Losses;
-use super::paint::{FlatPaint, flat};
+use super::paint::{Coat, coat};
 use super::place::{Frame, Placed};
 use super::source::by_id;
 use super::stroke;
 
-/// Most lines and curves.
+/// Most lines and curves, and stops of gradients in all that is painted with them.
 const MOST_SEGMENTS: usize = 1 << 18;
 
 /// Farthest place, pixels.
@@ -49,7 +49,7 @@ pub(super) struct Walk<'a> {
 }
 
 /// What is painted, and with what.
-pub(super) type Layer = (Placed, FlatPaint);
+pub(super) type Layer = (Placed, Coat);
 
 /// What groups do to everything in them.
 #[derive(Clone)]
@@ -151,8 +151,8 @@ impl<'a> Walk<'a> {
         }
         for is_fill in paint {
             let layer = if is_fill { self.fill_of(path, &sketch) } else { self.stroke_of(path, &sketch)? };
-            if let Some((placed, flat)) = layer {
-                self.push(placed, flat, seen, inherited)?;
+            if let Some((placed, coat)) = layer {
+                self.push(placed, coat, seen, inherited)?;
             }
         }
         Ok(())
@@ -161,13 +161,13 @@ impl<'a> Walk<'a> {
     /// What a path fills, and with what.
     pub(super) fn fill_of(&mut self, path: &usvg::Path, sketch: &Sketch) -> Option<Layer> {
         let fill = path.fill()?;
-        let flat = flat(fill.paint(), fill.opacity(), &mut self.losses)?;
+        let coat = coat(fill.paint(), fill.opacity(), sketch.frame.affine, &mut self.losses)?;
         let rule = match fill.rule() {
             usvg::FillRule::NonZero => FillRule::NonZero,
             usvg::FillRule::EvenOdd => FillRule::EvenOdd,
         };
         let placed = sketch.frame.fill(&sketch.figure, rule, sketch.tolerance);
-        Some((self.drawable(placed)??, flat))
+        Some((self.drawable(placed)??, coat))
     }
 
     /// What a path strokes, and with what.
@@ -176,13 +176,14 @@ impl<'a> Walk<'a> {
     /// [`SvgError::TooManySegments`] if dashes make too many.
     pub(super) fn stroke_of(&mut self, path: &usvg::Path, sketch: &Sketch) -> Result<Option<Layer>, SvgError> {
         let Some(stroke) = path.stroke() else { return Ok(None) };
-        let Some(flat) = flat(stroke.paint(), stroke.opacity(), &mut self.losses) else { return Ok(None) };
+        let coat = coat(stroke.paint(), stroke.opacity(), sketch.frame.affine, &mut self.losses);
+        let Some(coat) = coat else { return Ok(None) };
         let line = stroke::line(&sketch.figure, stroke, sketch.tolerance, &mut self.losses);
         let Some(line) = self.drawable(line).flatten() else { return Ok(None) };
         // Those of the figure are counted already.
         self.count(stroke::segment_count(&line).saturating_sub(sketch.figure.segment_count()))?;
         let placed = sketch.frame.stroke(line, sketch.tolerance, &mut self.losses);
-        Ok(self.drawable(placed).flatten().map(|placed| (placed, flat)))
+        Ok(self.drawable(placed).flatten().map(|placed| (placed, coat)))
     }
 
     /// What the scene accepts; the rest is lost.
@@ -201,7 +202,7 @@ impl<'a> Walk<'a> {
         Ok(())
     }
 
-    fn push(&mut self, placed: Placed, flat: FlatPaint, seen: Rect, inherited: &Inherited) -> Result<(), SvgError> {
+    fn push(&mut self, placed: Placed, coat: Coat, seen: Rect, inherited: &Inherited) -> Result<(), SvgError> {
         let (shape, pose) = match &inherited.region {
             None => placed,
             Some(region) => match cut(placed, region, self.tolerance(), self.px)? {
@@ -213,8 +214,10 @@ impl<'a> Walk<'a> {
                 }
             },
         };
-        let confidence = flat.opacity * inherited.opacity;
-        self.objects.push(Object { shape, pose, paint: Paint::Flat(flat.color), confidence });
+        // The stops of one gradient are as many times in memory as shapes are painted with it.
+        self.count(coat.paint.ramp().map_or(0, |ramp| ramp.stops.len()))?;
+        let confidence = coat.opacity * inherited.opacity;
+        self.objects.push(Object { shape, pose, paint: coat.into_frame(&pose), confidence });
         self.boxes.push(seen);
         Ok(())
     }

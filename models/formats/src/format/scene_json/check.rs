@@ -1,7 +1,6 @@
 //! From the text's structure to a scene with every number checked.
 
 use dvp_core::render::{Compositing, EdgeLaw, EdgeProfile};
-use dvp_core::scene::Paint;
 use dvp_core::{Efd, ImageSize, Object, Pose, Real, Scene};
 use dvp_fit::Bank;
 
@@ -63,7 +62,7 @@ impl Checker<'_> {
         Ok(checked)
     }
 
-    fn color<T: Real>(&self, field: &str, color: [f64; 3]) -> Result<[T; 3], FormatError> {
+    pub(super) fn color<T: Real>(&self, field: &str, color: [f64; 3]) -> Result<[T; 3], FormatError> {
         self.all_within(field, color, [0.0, 1.0])
     }
 
@@ -87,7 +86,7 @@ impl Checker<'_> {
         Ok(Object {
             shape,
             pose,
-            paint: Paint::Flat(self.color(&field("color"), from.color)?),
+            paint: self.paint(&own, from)?,
             confidence: self.within(&field("confidence"), from.confidence, [0.0, 1.0])?,
         })
     }

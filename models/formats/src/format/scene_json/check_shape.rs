@@ -127,7 +127,7 @@ impl Checker<'_> {
         Ok(())
     }
 
-    fn points<T: Real>(&self, field: &str, points: &[[f64; 2]]) -> Result<Vec<[T; 2]>, FormatError> {
+    pub(super) fn points<T: Real>(&self, field: &str, points: &[[f64; 2]]) -> Result<Vec<[T; 2]>, FormatError> {
         let points = points.iter().enumerate();
         points.map(|(k, &point)| self.all_within(&format!("{field}[{k}]"), point, REACH)).collect()
     }

@@ -95,6 +95,6 @@ impl EarlierObject {
             (None, None) => return Err(("efd", "is missing, and there is no `prototype` to take it from")),
         };
         let Self { translation, scale, color, confidence, .. } = self;
-        Ok(ObjectJson { shape, translation, scale, rotation, color, confidence, known: None })
+        Ok(ObjectJson { shape, translation, scale, rotation, color, ramp: None, confidence, known: None })
     }
 }

@@ -3,23 +3,26 @@
 //! | file | what it holds |
 //! |---|---|
 //! | `object` | [`ObjectJson`]: a shape, where it stands, its color |
+//! | `ramp` | [`RampJson`]: colors that change from place to place |
 //! | `shape` | [`ShapeJson`]: the kinds of shapes and their numbers |
 //! | `edge` | [`EdgeJson`], [`CompositingJson`] |
 //! | `known` | [`SceneKnownJson`], [`ObjectKnownJson`]: what a fit knows of the numbers |
 //! | `earlier` | the structure of versions 1 and 2, and from there to version 3 |
 //! | `strict` | what serde would take and the schema does not |
-//! | `check`, `check_shape`, `check_known` | from the structure to a scene with every number checked |
+//! | `check`, `check_shape`, `check_ramp`, `check_known` | from the structure to a scene with every number checked |
 //! | `write` | from a scene to the structure |
 //!
 //! `models/cli/schema/scene-3.schema.json` says the same as these structures; `tests/property/scene_json.rs` holds the two together.
 
 mod check;
 mod check_known;
+mod check_ramp;
 mod check_shape;
 mod earlier;
 mod edge;
 mod known;
 mod object;
+mod ramp;
 mod shape;
 mod strict;
 #[cfg(test)]
@@ -40,6 +43,7 @@ pub(super) use check::checked_efd;
 pub use edge::{CompositingJson, EdgeJson, EdgeLawJson, edge_cut};
 pub use known::{CompletionJson, DeviationsJson, DoubtJson, INVISIBLE, ObjectKnownJson, SceneKnownJson, StopJson};
 pub use object::ObjectJson;
+pub use ramp::{ColorStopJson, RampJson, RampKindJson};
 pub use shape::{CapJson, FillJson, JoinJson, RingJson, SegmentJson, ShapeJson};
 
 /// Longest scene file or line that is read, bytes.

@@ -7,6 +7,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::{Map, Value};
 
 use super::known::ObjectKnownJson;
+use super::ramp::RampJson;
 use super::shape::ShapeJson;
 use super::strict::present;
 
@@ -26,8 +27,11 @@ pub struct ObjectJson {
     /// Radians, from +x to +y.
     #[serde(skip_serializing_if = "is_zero")]
     pub rotation: f64,
-    /// RGB, [0, 1].
+    /// RGB, [0, 1]; beside a ramp the mean of its stops, for readers that want one color.
     pub color: [f64; 3],
+    /// What paints instead of the one color.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ramp: Option<RampJson>,
     /// Probability of being there, and opacity; [0, 1].
     #[serde(skip_serializing_if = "is_one")]
     pub confidence: f64,
@@ -46,6 +50,8 @@ struct Placed {
     #[serde(default)]
     rotation: f64,
     color: [f64; 3],
+    #[serde(default, deserialize_with = "present")]
+    ramp: Option<RampJson>,
     #[serde(default = "one")]
     confidence: f64,
     #[serde(default, deserialize_with = "present")]
@@ -53,7 +59,7 @@ struct Placed {
 }
 
 /// The names of the fields of [`Placed`].
-const PLACED: [&str; 6] = ["translation", "scale", "rotation", "color", "confidence", "known"];
+const PLACED: [&str; 7] = ["translation", "scale", "rotation", "color", "ramp", "confidence", "known"];
 
 impl<'de> Deserialize<'de> for ObjectJson {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
@@ -82,8 +88,8 @@ impl<'de> Visitor<'de> for Fields {
         }
         let shape = ShapeJson::deserialize(Value::Object(shape)).map_err(A::Error::custom)?;
         let placed = Placed::deserialize(Value::Object(placed)).map_err(A::Error::custom)?;
-        let Placed { translation, scale, rotation, color, confidence, known } = placed;
-        Ok(ObjectJson { shape, translation, scale, rotation, color, confidence, known })
+        let Placed { translation, scale, rotation, color, ramp, confidence, known } = placed;
+        Ok(ObjectJson { shape, translation, scale, rotation, color, ramp, confidence, known })
     }
 }
 

@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use dvp_core::{ImageSize, Scene};
+use dvp_core::scene::{ColorRamp, ColorStop, Paint, RampKind};
+use dvp_core::{ImageSize, Object, Real, Scene};
 
 use super::super::{FormatError, Place};
 use super::*;
@@ -55,6 +56,86 @@ fn earlier_versions_become_version_3() {
     assert_eq!(json.version, 3);
     assert_eq!(json.objects[0].shape, ShapeJson::Prototype { prototype: 2, efd: None, symmetry: None });
     assert_eq!(json.objects[0].rotation, core::f64::consts::FRAC_PI_2);
+}
+
+const LINEAR: &str = r#"{"kind":"linear","points":[[-0.25,0.0],[0.25,0.1]],"stops":[{"offset":-0.5,"color":[0.1,0.2,0.3]},{"offset":0.5,"color":[0.2,0.2,0.3]},{"offset":0.5,"color":[0.6,0.5,0.4]}]}"#;
+const RADIAL: &str = r#"{"kind":"radial","points":[[0.1,0.2],[0.35,0.2],[0.1,0.7]],"stops":[{"offset":0.0,"color":[0.1,0.2,0.3]},{"offset":1.0,"color":[0.5,0.2,0.3]}]}"#;
+
+fn assert_ramps_come_back<T: Real>() {
+    let of = |value: f64| T::of(value);
+    let points = [[-0.25, 0.0], [0.25, 0.1], [0.1, 0.7]].map(|point| point.map(of));
+    let stop = |offset: f64, color: [f64; 3]| ColorStop { offset: of(offset), color: color.map(of) };
+    let linear = ColorRamp {
+        kind: RampKind::Linear([points[0], points[1]]),
+        stops: vec![stop(-0.5, [0.1, 0.2, 0.3]), stop(0.5, [0.2, 0.2, 0.3]), stop(0.5, [0.6, 0.5, 0.4])],
+    };
+    let thirds = [1.0 / 3.0, 0.0, 1.0];
+    let radial = ColorRamp { kind: RampKind::Radial(points), stops: vec![stop(thirds[0], thirds)] };
+    let text = circle(&format!(r#","ramp":{LINEAR}"#));
+    let size = ImageSize::new(8, 6).unwrap();
+    let mut scene: Scene<T> = SceneJson::parse(text.as_bytes(), &place()).unwrap().to_scene(None, &place()).unwrap();
+    assert_eq!(scene.objects[0].paint, Paint::Ramp(linear));
+    let written = SceneJson::from_scene(&scene, size).unwrap().to_line(&place()).unwrap();
+    assert!(written.contains(LINEAR), "{written}");
+    scene.objects.push(Object { paint: Paint::Ramp(radial), ..scene.objects[0].clone() });
+    let json = SceneJson::from_scene(&scene, size).unwrap();
+    assert_eq!(json.objects[1].color.map(T::of), scene.objects[1].color());
+    let text = json.to_line(&place()).unwrap();
+    let again = SceneJson::parse(text.as_bytes(), &place()).unwrap();
+    assert_eq!(again, json);
+    assert_eq!(again.to_scene::<T>(None, &place()).unwrap(), scene, "{text}");
+}
+
+#[test]
+fn ramps_come_back_exactly() {
+    assert_ramps_come_back::<f32>();
+    assert_ramps_come_back::<f64>();
+    // Colors are clamped as others are.
+    let mut scene = read(&circle(&format!(r#","ramp":{RADIAL}"#))).unwrap();
+    scene.objects[0].paint.colors_mut().for_each(|color| color[2] = 1.0 + 1e-12);
+    let json = SceneJson::from_scene(&scene, ImageSize::new(1, 1).unwrap()).unwrap();
+    assert!(json.objects[0].ramp.as_ref().unwrap().stops.iter().all(|stop| stop.color[2] == 1.0));
+}
+
+#[test]
+fn broken_ramps_are_refused() {
+    let one = r#"{"offset":0,"color":[0,0,0]}"#;
+    let stops = |stops: &str| format!(r#"{{"kind":"linear","points":[[0,0],[1,0]],"stops":[{stops}]}}"#);
+    let points = |kind: &str, points: &str| format!(r#"{{"kind":"{kind}","points":[{points}],"stops":[{one}]}}"#);
+    for (ramp, parts) in [
+        (stops(""), ["objects[0].ramp.stops has 0 stops", "must have 1 to 256", "line 3"]),
+        (stops(&vec![one; 257].join(",")), ["objects[0].ramp.stops has 257 stops", "must have 1 to 256", "line 3"]),
+        (
+            stops(r#"{"offset":0.5,"color":[0,0,0]},{"offset":0.25,"color":[0,0,0]}"#),
+            ["objects[0].ramp.stops[1].offset is 0.25", "at least 0.5", "the stop before"],
+        ),
+        (
+            stops(r#"{"offset":1e9,"color":[0,0,0]}"#),
+            ["objects[0].ramp.stops[0].offset is 1000000000", "from -1000000", "to 1000000"],
+        ),
+        (stops(r#"{"offset":0,"color":[0,2,0]}"#), ["objects[0].ramp.stops[0].color is 2", "from 0", "to 1"]),
+        (stops(r#"{"offset":0,"color":[0,0]}"#), ["invalid length 2", "array of length 3", "not a scene"]),
+        (stops(r#"{"color":[0,0,0]}"#), ["missing field `offset`", "not a scene", "line 1"]),
+        (stops(r#"{"offset":0,"color":[0,0,0],"opacity":1}"#), ["unknown field `opacity`", "offset", "line 1"]),
+        (stops("[0,[0,0,0]]"), ["invalid type: sequence", "a JSON object", "line 1"]),
+        (points("linear", "[0,0]"), ["objects[0].ramp.points has 1 points", "must have 2", "linear"]),
+        (points("linear", "[0,0],[1,0],[0,1]"), ["objects[0].ramp.points has 3 points", "must have 2", "linear"]),
+        (points("radial", "[0,0],[1,0]"), ["objects[0].ramp.points has 2 points", "must have 3", "radial"]),
+        (points("linear", "[0,0],[1,1e4]"), ["objects[0].ramp.points[1] is 10000", "from -1000", "to 1000"]),
+        (points("conic", "[0,0],[1,0]"), ["unknown variant `conic`", "`linear`", "`radial`"]),
+        (LINEAR.replace(r#""stops""#, r#""spread":1,"stops""#), ["unknown field `spread`", "points", "line 1"]),
+        ("null".to_owned(), ["invalid type: null", "a JSON object", "line 1"]),
+    ] {
+        let error = read(&circle(&format!(r#","ramp":{ramp}"#))).unwrap_err().to_string();
+        for part in parts {
+            assert!(error.contains(part), "{ramp} gives '{error}', which lacks '{part}'");
+        }
+    }
+    let most = stops(&vec![one; 256].join(","));
+    assert!(read(&circle(&format!(r#","ramp":{most}"#))).is_ok());
+    // The one color must be there, and be one.
+    let text = circle(&format!(r#","ramp":{LINEAR}"#)).replace("[1,0,0]", "[2,0,0]");
+    assert!(read(&text).unwrap_err().to_string().contains("objects[0].color is 2"));
 }
 
 #[test]

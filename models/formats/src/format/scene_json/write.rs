@@ -1,6 +1,7 @@
 //! From a scene, or a fit, to the text's structure.
 
 use dvp_core::render::{Compositing, EdgeLaw, EdgeProfile};
+use dvp_core::scene::{ColorRamp, ColorStop, RampKind};
 use dvp_core::shape::{
     AnyShape, Cap, Circle, Ellipse, FillRule, Join, Path, PathRing, Prototype, Rectangle, RegularPolygon,
     SYMMETRY_TOLERANCE, Segment, Shape as _, Star, Stroke, Symmetry,
@@ -11,8 +12,8 @@ use dvp_fit::Fit;
 use super::super::{FormatError, Picture};
 use super::edge::edge_cut;
 use super::{
-    CapJson, CompositingJson, EdgeJson, EdgeLawJson, FillJson, JoinJson, ObjectJson, ObjectKnownJson, RingJson,
-    SceneJson, SceneKnownJson, SegmentJson, ShapeJson, VERSION,
+    CapJson, ColorStopJson, CompositingJson, EdgeJson, EdgeLawJson, FillJson, JoinJson, ObjectJson, ObjectKnownJson,
+    RampJson, RampKindJson, RingJson, SceneJson, SceneKnownJson, SegmentJson, ShapeJson, VERSION,
 };
 
 impl SceneJson {
@@ -78,9 +79,25 @@ impl ObjectJson {
             scale: shortest(object.pose.scale),
             rotation: shortest(object.pose.rotation),
             color: shortest_color(object.color()),
+            ramp: object.paint.ramp().map(RampJson::from_ramp),
             confidence: shortest(object.confidence).clamp(0.0, 1.0),
             known: None,
         })
+    }
+}
+
+impl RampJson {
+    fn from_ramp<T: Real>(ramp: &ColorRamp<T>) -> Self {
+        let stop =
+            |&ColorStop { offset, color }| ColorStopJson { offset: shortest(offset), color: shortest_color(color) };
+        Self {
+            kind: match ramp.kind {
+                RampKind::Linear(_) => RampKindJson::Linear,
+                RampKind::Radial(_) => RampKindJson::Radial,
+            },
+            points: points(ramp.kind.points()),
+            stops: ramp.stops.iter().map(stop).collect(),
+        }
     }
 }
 

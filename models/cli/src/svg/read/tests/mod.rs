@@ -5,6 +5,7 @@ use dvp_core::{Object, Pose};
 
 use super::{SvgDrawing, SvgError, from_svg};
 
+mod gradient;
 mod limits;
 
 fn read(body: &str) -> Result<SvgDrawing, SvgError> {
@@ -236,11 +237,6 @@ fn the_first_full_rectangle_is_the_background() {
 
 #[test]
 fn what_cannot_be_kept_is_named() {
-    let gradient =
-        "<linearGradient id='g'><stop stop-color='#ff0000'/><stop offset='1' stop-color='#0000ff'/></linearGradient>";
-    let drawing = read(&format!("{gradient}<circle r='5' fill='url(#g)'/>")).unwrap();
-    assert_eq!(drawing.losses.to_string(), "linearGradient: painted in its mean color");
-    assert_eq!(drawing.scene.objects[0].color(), [0.5, 0.0, 0.5]);
     for (body, named) in [
         ("<text>a</text>", "text: not drawn"),
         ("<image href='a.png' width='9' height='9'/>", "image: not drawn"),

@@ -1,0 +1,130 @@
+use alloc::vec;
+use alloc::vec::Vec;
+
+use dvp_core::render::{Compositing, ExactArea, ExactRenderer, Renderer as _};
+use dvp_core::scene::{ColorRamp, ColorStop, RampKind};
+use dvp_core::shape::{Circle, OutlineBasis, Rectangle};
+use dvp_core::{AnyShape, Drawing, Image, ImageSize, Object, Paint, Pose, Scene};
+use proptest::prelude::*;
+
+use super::level;
+
+const SIDE: usize = 80;
+const WHITE: [f32; 3] = [1.0; 3];
+
+/// An object whose numbers are shares of the picture, painted with a ramp between colors at equal distances.
+fn object(shape: impl Into<AnyShape<f32>>, center: [f32; 2], kind: RampKind<f32>, colors: &[[f32; 3]]) -> Object<f32> {
+    let last = (colors.len() - 1) as f32;
+    let stops = colors.iter().enumerate().map(|(i, &color)| ColorStop { offset: i as f32 / last, color });
+    let pose = Pose { translation: center, ..Pose::identity() };
+    Object {
+        shape: shape.into(),
+        pose,
+        paint: Paint::Ramp(ColorRamp { kind, stops: stops.collect() }),
+        confidence: 1.0,
+    }
+}
+
+/// The picture of objects on white, rounded to 8 bits, and how much of each pixel the first one covers.
+fn picture(objects: Vec<Object<f32>>) -> (Image<f32>, Vec<f32>) {
+    let size = ImageSize::new(SIDE, SIDE).unwrap();
+    let renderer = ExactRenderer { coverage: ExactArea, compositing: Compositing::Over };
+    let paint = |scene: &Scene<f32>| {
+        let (mut drawing, mut image) = (Drawing::default(), vec![0.0; 3 * size.pixels()]);
+        scene.draw(&OutlineBasis::new(64, 1).unwrap(), &mut drawing).unwrap();
+        renderer.render(&drawing, size, &mut Default::default(), &mut image).unwrap();
+        image
+    };
+    let mask = Object { paint: [1.0; 3].into(), ..objects[0].clone() };
+    let mask = paint(&Scene { objects: vec![mask], ..Scene::empty([0.0; 3]) });
+    let image = paint(&Scene { objects, ..Scene::empty(WHITE) });
+    let rounded = image.into_iter().map(|value: f32| (value * 255.0).round() / 255.0).collect();
+    (Image::from_planar(size, rounded).unwrap(), mask[..size.pixels()].to_vec())
+}
+
+/// Share of the pixels that the object covers of which the ramp found misses more than two steps.
+fn missed(image: &Image<f32>, mask: &[f32], ramp: &ColorRamp<f32>) -> f64 {
+    let inner = || (0..mask.len()).filter(|&i| mask[i] > 0.999);
+    let is_missed = |&i: &usize| {
+        let point = [i % SIDE, i / SIDE].map(|at| (at as f32 + 0.5) / SIDE as f32);
+        let (found, painted) = (ramp.color_at(ramp.kind.offset(point)), image.view().pixel(i));
+        (0..3).any(|c| (found[c] - painted[c]).abs() > 2.0 / 255.0)
+    };
+    inner().filter(is_missed).count() as f64 / inner().count() as f64
+}
+
+fn color() -> impl Strategy<Value = [f32; 3]> {
+    prop::array::uniform3(0.0..0.8_f32)
+}
+
+/// Points of ramps around the middle of an object.
+fn kind() -> impl Strategy<Value = RampKind<f32>> {
+    let line = (0.0..6.3_f32, 0.25..0.5_f32)
+        .prop_map(|(angle, half)| RampKind::Linear([-half, half].map(|at| [at * angle.cos(), at * angle.sin()])));
+    let circle = (prop::array::uniform2(-0.2..0.2_f32), 0.35..0.7_f32)
+        .prop_map(|([x, y], radius)| RampKind::Radial([[x, y], [x + radius, y], [x, y + radius]]));
+    let ellipse = (prop::array::uniform2(-0.2..0.2_f32), 0.35..0.7_f32, 0.6..1.4_f32, 0.0..3.0_f32).prop_map(
+        |([x, y], radius, ratio, angle)| {
+            let ([cos, sin], short) = ([radius * angle.cos(), radius * angle.sin()], ratio);
+            RampKind::Radial([[x, y], [x + cos, y + sin], [x - short * sin, y + short * cos]])
+        },
+    );
+    prop_oneof![line, circle, ellipse]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    /// What is painted with a ramp is found as that ramp, but for a few pixels where colors stop to change just before an edge, and leveled as if it had been painted with one color.
+    #[test]
+    fn ramps_are_found_and_leveled(from in color(), to in color(), kind in kind(), center in prop::array::uniform2(0.4..0.6_f32)) {
+        prop_assume!((0..3).any(|c| (from[c] - to[c]).abs() > 0.2));
+        let (image, mask) = picture(vec![object(Circle { radius: 0.3 }, center, kind, &[from, to])]);
+        let leveled = level(&image.view()).ok_or_else(|| TestCaseError::fail("no ramp"))?;
+        prop_assert_eq!(leveled.ramps.len(), 1);
+        let found = &leveled.ramps[0];
+        let off = missed(&image, &mask, &found.ramp);
+        prop_assert!(off <= 0.02, "{off}");
+        for (i, &share) in mask.iter().enumerate() {
+            for (c, white) in WHITE.iter().enumerate() {
+                let expected = share * found.color[c] + (1.0 - share) * white;
+                let got = leveled.image.view().channel(c)[i];
+                // Rounding tells less of the share the nearer the colors are.
+                prop_assert!((got - expected).abs() < 0.04, "pixel {i}: {got}, not {expected}");
+            }
+        }
+    }
+}
+
+#[test]
+fn flat_pictures_have_no_ramps() {
+    let mut disk = object(Circle { radius: 0.3 }, [0.5, 0.5], RampKind::Linear([[0.0; 2], [1.0; 2]]), &[WHITE, WHITE]);
+    disk.paint = [0.2, 0.4, 0.7].into();
+    assert!(level(&picture(vec![disk]).0.view()).is_none());
+}
+
+#[test]
+fn three_stops_are_three_stops() {
+    let colors = [[0.9, 0.5, 0.1], [0.8, 0.1, 0.5], [0.2, 0.3, 0.8]];
+    let kind = RampKind::Linear([[-0.4, 0.0], [0.4, 0.1]]);
+    let bar = Rectangle { size: [0.8, 0.5], corner_radius: 0.1 };
+    let (image, mask) = picture(vec![object(bar, [0.5, 0.5], kind, &colors)]);
+    let leveled = level(&image.view()).unwrap();
+    let [found] = &leveled.ramps[..] else { panic!("{} ramps", leveled.ramps.len()) };
+    assert_eq!(found.ramp.stops.len(), 3);
+    assert!(found.is_beyond_doubt);
+    assert!(missed(&image, &mask, &found.ramp) <= 0.005);
+}
+
+#[test]
+fn what_shows_in_two_places_is_one_ramp() {
+    let kind = RampKind::Linear([[-0.4, -0.3], [0.4, 0.3]]);
+    let colors = [[0.9, 0.5, 0.1], [0.2, 0.3, 0.8]];
+    let behind = object(Rectangle { size: [0.9, 0.7], corner_radius: 0.0 }, [0.5, 0.5], kind, &colors);
+    let mut bar = object(Rectangle { size: [0.1, 1.0], corner_radius: 0.0 }, [0.5, 0.5], kind, &colors);
+    bar.paint = [0.1; 3].into();
+    let leveled = level(&picture(vec![behind, bar]).0.view()).unwrap();
+    assert_eq!(leveled.ramps.len(), 1);
+    let sides = [SIDE / 4, 3 * SIDE / 4].map(|column| leveled.image.view().pixel(SIDE / 2 * SIDE + column));
+    assert_eq!(sides[0], sides[1]);
+}
