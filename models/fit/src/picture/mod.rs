@@ -133,7 +133,8 @@ pub fn fit_picture(
     };
     let fit = fit_flat(fitter, leveled.image.view(), small.is_some(), known, scratch)?;
     let fit = ramps::with_ramps(fit, &leveled, image, &mut scratch.canvas)?;
-    if leveled.is_beyond_doubt() {
+    // Wide edges can be read as ramps as well; and what ramps leave unexplained may be something else.
+    if fit.unexplained <= NOT_FLAT_SHARE && !leveled.ramps.iter().any(|ramp| ramp.may_be_edge) {
         return Ok(fit);
     }
     let flat = fit_flat(fitter, image, small.is_some(), known, scratch)?;

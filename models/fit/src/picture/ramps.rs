@@ -51,7 +51,7 @@ pub(super) fn with_ramps(
     Ok(Fit { bits: fit.bits, stop: fit.stop, steps: fit.steps, noise: fit.noise, covariance, ambiguity, ..painted })
 }
 
-/// The fit with ramps, or the one without where that is nearer, or as near with fewer things: wide edges can be read as ramps as well.
+/// The fit with ramps, or the one without where that is nearer, or as near with no more things.
 pub(super) fn better(with: Fit<f32>, without: Fit<f32>) -> Fit<f32> {
     let counts = [&with, &without].map(|fit| fit.scene.objects.len());
     let are_as_near = (with.loss - without.loss).abs() < AS_NEAR;

@@ -60,8 +60,7 @@ impl Fitted {
 
     /// Whether it misses no more of the samples than a few.
     pub(super) fn explains(&self, samples: &[Sample]) -> bool {
-        let is_missed = |&&(point, color): &&Sample| difference(self.color_beyond(point), color) > TOLERANCE;
-        samples.iter().filter(is_missed).count() as f64 <= SPARE * samples.len() as f64
+        explain(|point| self.color_beyond(point), samples)
     }
 
     /// Whether samples change along its course.
@@ -126,12 +125,21 @@ pub(super) fn along(course: Course, samples: &[Sample], few: &[Sample], ends: &[
         return None;
     }
     let course = refined(course, few);
-    if !measured(&course.way(), samples).is_connected(6.0) {
+    let way = course.way();
+    let profile = measured(&way, samples);
+    // Stops explain no more than what they are for.
+    if !profile.is_connected(6.0) || !explain(|point| profile.at(way.to(point)).0, samples) {
         return None;
     }
     let fitted = Fitted::of(course, samples, EXACT_STEPS * f64::from(STEP));
     let mut from = 0;
     ends.iter().all(|&end| fitted.explains(&samples[core::mem::replace(&mut from, end)..end])).then_some(fitted)
+}
+
+/// Whether colors miss no more of the samples than a few.
+fn explain(shown: impl Fn([f64; 2]) -> Color, samples: &[Sample]) -> bool {
+    let missed = samples.iter().filter(|&&(point, color)| difference(shown(point), color) > TOLERANCE).count();
+    missed as f64 <= SPARE * samples.len() as f64
 }
 
 /// The mean colors along a course.

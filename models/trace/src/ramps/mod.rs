@@ -48,16 +48,8 @@ pub struct LeveledRamp {
     pub color: [f32; 3],
     /// The ramp, its points in scene units.
     pub ramp: ColorRamp<f32>,
-    /// Whether it explains what it stands for, and is no wide edge: colors change at its ends as they do in its middle.
-    pub is_beyond_doubt: bool,
-}
-
-impl Leveled {
-    /// Whether nothing but ramps explains what was taken out.
-    #[must_use]
-    pub fn is_beyond_doubt(&self) -> bool {
-        self.ramps.iter().all(|ramp| ramp.is_beyond_doubt)
-    }
+    /// Whether it may be a wide edge: colors change in its middle, and at neither end.
+    pub may_be_edge: bool,
 }
 
 /// The picture without its ramps; none if it has none.
@@ -80,7 +72,7 @@ pub fn level(image: &ImageView<'_, f32>) -> Option<Leveled> {
     let ramps = regions.ramps.iter().zip(&markers).map(|(region, color)| LeveledRamp {
         color: color.map(|value| value as f32),
         ramp: in_scene_units(region, unit),
-        is_beyond_doubt: region.is_exact && !region.fitted.profile.is_edge(),
+        may_be_edge: region.fitted.profile.is_edge(),
     });
     let ramps = ramps.collect();
     let flat: Vec<f32> = leveled.into_iter().flatten().collect();

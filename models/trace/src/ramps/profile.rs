@@ -1,6 +1,7 @@
 //! Which color is reached after which way: measured, and as few stops as explain it.
 
 use alloc::vec::Vec;
+use core::ops::Range;
 
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
@@ -10,6 +11,10 @@ use dvp_core::scene::ColorStop;
 use super::STEP;
 use crate::partition::Color;
 
+/// Stops that are nearer (pixels) are one.
+const SAME: f64 = 0.1;
+/// Most stops of a ramp: artists take few.
+const MOST_STOPS: usize = 8;
 /// Least distance between stops, pixels: what changes over less is an edge.
 const LEAST_APART: f64 = 1.0;
 
@@ -80,28 +85,30 @@ impl Profile {
     }
 
     /// As few stops as explain all places within `tolerance`, straight ways between them: one more where most is missed, as long as that is too
-    /// much, all of them then moved to where they miss least.
+    /// much and there are not too many, moved with the stops beside it to where they miss least.
     pub(super) fn simplified(&self, tolerance: f64) -> Self {
         let mut ways: Vec<f64> = self.places.iter().map(|place| place.0).collect();
         ways.drain(1..ways.len().saturating_sub(1).max(1));
         ways.dedup();
-        loop {
-            let rough = self.polished(&mut ways);
+        let mut rough = self.solved(&ways).0;
+        while ways.len() < MOST_STOPS {
             let is_far = |way: f64| ways.iter().all(|stop| (way - stop).abs() >= LEAST_APART);
             let others = self.places.iter().filter(|place| is_far(place.0));
             let missed = others.map(|&(way, color)| (way, difference(rough.at(way).0, color)));
             let worst = missed.max_by(|a, b| a.1.total_cmp(&b.1));
-            let Some((worst, _)) = worst.filter(|&(_, missed)| missed > tolerance) else { return rough };
-            ways.push(worst);
-            ways.sort_by(f64::total_cmp);
+            let Some((worst, _)) = worst.filter(|&(_, missed)| missed > tolerance) else { break };
+            let index = ways.partition_point(|&way| way < worst);
+            ways.insert(index, worst);
+            rough = self.polished(&mut ways, index.saturating_sub(1)..index + 2);
         }
+        rough
     }
 
-    /// The stops near `ways` that miss least; the first and the last stay.
-    fn polished(&self, ways: &mut [f64]) -> Self {
+    /// The stops near `ways` that miss least, those of `moving` moved; the first and the last stay.
+    fn polished(&self, ways: &mut [f64], moving: Range<usize>) -> Self {
         let mut best = self.solved(ways);
-        for step in [8.0, 4.0, 2.0, 1.0, 0.5, 0.25, 0.125] {
-            for stop in 1..ways.len().saturating_sub(1) {
+        for step in [4.0, 1.0, 0.25] {
+            for stop in moving.start.max(1)..moving.end.min(ways.len() - 1) {
                 for by in [-step, step] {
                     loop {
                         let (old, room) = (ways[stop], 0.5 * LEAST_APART);
@@ -184,6 +191,7 @@ impl Profile {
             ways.extend(shares.filter(|share| *share > 0.0 && *share < 1.0).map(|share| pair[0].0 + share * length));
         }
         ways.sort_by(f64::total_cmp);
+        ways.dedup_by(|next, way| *next - *way < SAME);
         let stop = |way: f64| ColorStop {
             offset: ((way - from) / (to - from)) as f32,
             color: self.at(way).0.map(|value| value.clamp(0.0, 1.0) as f32),

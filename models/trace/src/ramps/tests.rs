@@ -112,7 +112,7 @@ fn three_stops_are_three_stops() {
     let leveled = level(&image.view()).unwrap();
     let [found] = &leveled.ramps[..] else { panic!("{} ramps", leveled.ramps.len()) };
     assert_eq!(found.ramp.stops.len(), 3);
-    assert!(found.is_beyond_doubt);
+    assert!(!found.may_be_edge);
     assert!(missed(&image, &mask, &found.ramp) <= 0.005);
 }
 
