@@ -45,6 +45,19 @@ def test_tables_of_pyarrow(square: Any) -> None:
     assert table["error"].to_pylist() == [None, "no"]
 
 
+def test_colors_may_change_from_place_to_place() -> None:
+    picture = np.full((64, 64, 3), 255, np.uint8)
+    picture[8:56, 8:56] = (np.linspace(0, 1, 48)[:, None, None] * np.array([160.0, 60.0, 0.0]) + 20).round()
+    (square,) = dvp.fit(picture).objects
+    assert square.ramp is not None and square.ramp["kind"] == "linear"
+    stops = square.ramp["stops"]
+    ends = sorted([stops[0]["color"][0], stops[-1]["color"][0]])
+    assert ends == pytest.approx([20 / 255, 180 / 255], abs=0.03)
+    assert square.color == pytest.approx(np.mean([stop["color"] for stop in stops], axis=0))
+    flat = dvp.fit(np.full((16, 16, 3), 255, np.uint8))
+    assert all(thing.ramp is None for thing in flat.objects)
+
+
 def test_every_object_is_whole() -> None:
     picture = np.full((64, 64, 3), 255, np.uint8)
     picture[10:40, 10:40] = (200, 0, 0)

@@ -32,10 +32,10 @@ export function scaled(state, k, factor, [cx, cy]) {
   return replaced(state, k, { translation: [cx + factor * (x - cx), cy + factor * (y - cy)], scale: scale * factor });
 }
 
-/** In another color, `#rrggbb`. */
+/** In another color, `#rrggbb`: one, where a ramp had many. */
 export function recolored(state, k, hex) {
   const color = [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16) / 255);
-  return replaced(state, k, { color }, true);
+  return replaced(state, k, { color, ramp: undefined }, true);
 }
 
 /** Painted at another place of the order. */
@@ -68,12 +68,18 @@ function arranged(state, order) {
 /** Every object moved, turned, scaled and colored a little: something to refine. `random` gives numbers in [0, 1). */
 export function shaken(state, random) {
   const amount = (most) => (2 * random() - 1) * most;
+  const shifted = (color, by) => color.map((value, c) => Math.min(1, Math.max(0, value + by[c])));
+  const recolored = ({ color, ramp }) => {
+    const by = color.map(() => amount(0.08));
+    const stops = ramp?.stops.map((stop) => ({ ...stop, color: shifted(stop.color, by) }));
+    return { color: shifted(color, by), ramp: ramp && { ...ramp, stops } };
+  };
   const objects = state.scene.objects.map(({ known, ...own }) => ({
     ...own,
     translation: (own.translation ?? [0, 0]).map((x) => x + amount(0.015)),
     rotation: (own.rotation ?? 0) + amount(0.03),
     scale: (own.scale ?? 1) * Math.exp(amount(0.03)),
-    color: own.color.map((value) => Math.min(1, Math.max(0, value + amount(0.08)))),
+    ...recolored(own),
   }));
   return { scene: { ...state.scene, objects }, covariance: objects.map(() => null) };
 }

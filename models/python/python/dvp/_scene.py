@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 # What every object has beside the numbers of its shape; what changes nothing is left out of files.
-_PLACED = ("translation", "scale", "rotation", "color", "confidence", "known")
+_PLACED = ("translation", "scale", "rotation", "color", "ramp", "confidence", "known")
 
 
 @dataclass(frozen=True)
@@ -38,12 +38,14 @@ class Object:
     translation: tuple[float, float]
     scale: float
     rotation: float
-    #: Red, green, blue; 0 to 1.
+    #: Red, green, blue; 0 to 1. Of a ramp the mean of its stops.
     color: tuple[float, float, float]
     #: Probability of being there, and opacity; 0 to 1.
     confidence: float
     #: What the fit knows of its numbers (deviations, marginal gain, doubts), as in scene files; empty if nothing.
     known: dict[str, Any] = field(repr=False)
+    #: The colors between which it changes from place to place, as in scene files; None if it has one color.
+    ramp: dict[str, Any] | None = field(default=None, repr=False)
 
 
 class Scene:
@@ -241,6 +243,7 @@ def _object(of: dict[str, Any], number: int) -> Object:
         color=(red, green, blue),
         confidence=of.get("confidence", 1.0),
         known=of.get("known") or {},
+        ramp=of.get("ramp"),
     )
 
 

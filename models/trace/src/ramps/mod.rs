@@ -55,6 +55,9 @@ pub struct LeveledRamp {
 /// The picture without its ramps; none if it has none.
 #[must_use]
 pub fn level(image: &ImageView<'_, f32>) -> Option<Leveled> {
+    if !smooth::may_change(image) {
+        return None;
+    }
     let (width, count) = (image.size().width(), image.size().pixels());
     let pixels: Vec<[f32; 3]> = (0..count).map(|i| image.pixel(i)).collect();
     let smooth = smooth::Smooth::of(&pixels, width)?;

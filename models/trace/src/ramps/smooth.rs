@@ -2,12 +2,46 @@
 
 use alloc::vec::Vec;
 
+use dvp_core::ImageView;
+
 use super::STEP;
 use crate::partition::OUTSIDE;
 
 /// How far a pixel may lie off the middle of its neighbors, twice: each of the three is rounded, by half a step for every layer that was painted
 /// there, and what curves a little is steady too.
 const BEND: f32 = 4.0 * STEP;
+
+/// Rows and columns of a picture that are looked at before all are.
+const LOOKED_AT: usize = 64;
+
+/// Whether colors change steadily anywhere: along a row or a column, where every pixel lies on the lines between its neighbors, by more than may
+/// lie between neighbors there. In large pictures a part of the rows and columns is looked at, since most have no ramps: what lies between them is
+/// small there.
+pub(super) fn may_change(image: &ImageView<'_, f32>) -> bool {
+    let (width, height) = (image.size().width(), image.size().height());
+    let channels = [0, 1, 2].map(|c| image.channel(c));
+    let is_steady = |i: usize, step: usize| {
+        channels.iter().all(|channel| (channel[i - step] + channel[i + step] - 2.0 * channel[i]).abs() <= BEND)
+    };
+    // Along a line of pixels: the least and the most of each channel since it was not steady.
+    let changes = |start: usize, step: usize, count: usize| {
+        let mut range = [[f32::INFINITY, f32::NEG_INFINITY]; 3];
+        (0..count).map(|k| start + k * step).any(|i| {
+            if !(is_steady(i, 1) && is_steady(i, width)) {
+                range = [[f32::INFINITY, f32::NEG_INFINITY]; 3];
+                return false;
+            }
+            range.iter_mut().zip(channels).any(|(range, channel)| {
+                *range = [range[0].min(channel[i]), range[1].max(channel[i])];
+                range[1] - range[0] > BEND
+            })
+        })
+    };
+    let part = (width.min(height) / LOOKED_AT).max(1);
+    let [across, down] = [width, height].map(|side| side.saturating_sub(2));
+    (0..down).step_by(part).any(|k| changes((k + 1) * width + 1, 1, across))
+        || (0..across).step_by(part).any(|k| changes(width + 1 + k, width, down))
+}
 
 /// Connected parts of a picture in which colors change steadily, or not at all.
 pub(super) struct Smooth {
