@@ -266,7 +266,7 @@ impl<T: Real> Step<T> {
         let (confidences, background) = rest.split_at_mut(self.objects);
         background.copy_from_slice(&scene_grad.background);
         let width = self.shapes.numbers();
-        for (k, ObjectGrad { translation: [x, y], scale, rotation, color, confidence, numbers }) in
+        for (k, ObjectGrad { translation: [x, y], scale, rotation, color, confidence, numbers, ramp: _ }) in
             scene_grad.objects.iter().enumerate()
         {
             shapes[k * width..][..width].copy_from_slice(numbers);
