@@ -392,37 +392,3 @@ proptest! {
         prop_assert_eq!(repeated(&small, back), large);
     }
 }
-
-/// A ramp between two colors along a line, of points in the frame of the object that it paints.
-fn ramp(ends: [[f32; 2]; 2], colors: [[f32; 3]; 2]) -> Paint<f32> {
-    let stop = |offset, color| ColorStop { offset, color };
-    Paint::Ramp(ColorRamp { kind: RampKind::Linear(ends), stops: vec![stop(0.0, colors[0]), stop(1.0, colors[1])] })
-}
-
-#[test]
-fn ramps_are_painted_where_they_were_seen() {
-    // A disk over a sky, each in colors of its own.
-    let sheet = Rectangle { size: [1.0, 1.0], corner_radius: 0.0 };
-    let middle = Pose { translation: [0.5, 0.5], ..Pose::identity() };
-    let sky = ramp([[0.0, -0.5], [0.0, 0.5]], [[0.5, 0.8, 1.0], [0.9, 0.95, 1.0]]);
-    let sun = ramp([[-0.2, -0.2], [0.2, 0.2]], [[1.0, 0.9, 0.3], [0.9, 0.4, 0.1]]);
-    let object = |shape: AnyShape<f32>, paint| Object { shape, pose: middle, paint, confidence: 1.0 };
-    let truth = Scene {
-        objects: vec![object(sheet.into(), sky), object(Circle { radius: 0.3 }.into(), sun)],
-        edge: EdgeProfile::area(),
-        compositing: Compositing::Over,
-        ..Scene::empty([1.0; 3])
-    };
-    let size = ImageSize::new(96, 96).unwrap();
-    let painted = Canvas::default().paint(&truth, size).unwrap().0.clone();
-    let rounded = painted.data().iter().map(|value| (value * 255.0).round() / 255.0).collect();
-    let image = Image::from_planar(size, rounded).unwrap();
-    let fit = fit(&image, &Known::default(), FitOptions::default());
-    let [sky, sun] = &fit.scene.objects[..] else { panic!("{:?}", fit.scene.objects) };
-    assert!(sky.paint.ramp().is_some() && sun.paint.ramp().is_some());
-    let AnyShape::Circle(Circle { radius }) = sun.shape else { panic!("{:?}", sun.shape) };
-    assert!((96.0 * (radius * sun.pose.scale - 0.3)).abs() < 0.05, "{radius}");
-    // Rounding leaves a quarter of a step.
-    assert!(fit.loss < 0.6 / 255.0, "{} steps", 255.0 * fit.loss);
-    assert_eq!(fit.covariance.len(), 2);
-}

@@ -48,7 +48,7 @@ pub struct LeveledRamp {
     pub color: [f32; 3],
     /// The ramp, its points in scene units.
     pub ramp: ColorRamp<f32>,
-    /// Whether it may be a wide edge: colors change in its middle, and at neither end.
+    /// Whether it may be a wide edge: colors change in its middle and at neither end, or over a few pixels.
     pub may_be_edge: bool,
 }
 

@@ -1,5 +1,8 @@
 //! Pictures with color ramps: read as if each were of one color, and painted with them.
 
+#[cfg(test)]
+mod tests;
+
 use alloc::vec;
 
 use dvp_core::scene::ColorRamp;

@@ -1,0 +1,66 @@
+use alloc::vec;
+use alloc::vec::Vec;
+
+use dvp_core::render::{Compositing, EdgeProfile};
+use dvp_core::scene::{ColorRamp, ColorStop, RampKind};
+use dvp_core::shape::{AnyShape, Circle, Rectangle};
+use dvp_core::{Image, ImageSize, Object, Paint, Pose, Scene};
+
+use super::super::{Known, PictureScratch, fit_picture};
+use super::better;
+use crate::paint::Canvas;
+use crate::{FitOptions, Fitter};
+
+/// A ramp between two colors along a line, of points in the frame of the object that it paints.
+fn ramp(ends: [[f32; 2]; 2], colors: [[f32; 3]; 2]) -> Paint<f32> {
+    let stop = |offset, color| ColorStop { offset, color };
+    Paint::Ramp(ColorRamp { kind: RampKind::Linear(ends), stops: vec![stop(0.0, colors[0]), stop(1.0, colors[1])] })
+}
+
+#[test]
+fn ramps_are_painted_where_they_were_seen() {
+    // A disk over a sky, each in colors of its own.
+    let sheet = Rectangle { size: [1.0, 1.0], corner_radius: 0.0 };
+    let middle = Pose { translation: [0.5, 0.5], ..Pose::identity() };
+    let sky = ramp([[0.0, -0.5], [0.0, 0.5]], [[0.5, 0.8, 1.0], [0.9, 0.95, 1.0]]);
+    let sun = ramp([[-0.2, -0.2], [0.2, 0.2]], [[1.0, 0.9, 0.3], [0.9, 0.4, 0.1]]);
+    let object = |shape: AnyShape<f32>, paint| Object { shape, pose: middle, paint, confidence: 1.0 };
+    let truth = Scene {
+        objects: vec![object(sheet.into(), sky), object(Circle { radius: 0.3 }.into(), sun)],
+        edge: EdgeProfile::area(),
+        compositing: Compositing::Over,
+        ..Scene::empty([1.0; 3])
+    };
+    let size = ImageSize::new(96, 96).unwrap();
+    let painted = Canvas::default().paint(&truth, size).unwrap().0.clone();
+    let rounded = painted.data().iter().map(|value| (value * 255.0).round() / 255.0).collect();
+    let image = Image::from_planar(size, rounded).unwrap();
+    let fitter = Fitter::new(FitOptions::default()).unwrap();
+    let fit = fit_picture(&fitter, image.view(), &Known::default(), &mut PictureScratch::default()).unwrap();
+    let [sky, sun] = &fit.scene.objects[..] else { panic!("{:?}", fit.scene.objects) };
+    assert!(sky.paint.ramp().is_some() && sun.paint.ramp().is_some());
+    let AnyShape::Circle(Circle { radius }) = sun.shape else { panic!("{:?}", sun.shape) };
+    assert!((96.0 * (radius * sun.pose.scale - 0.3)).abs() < 0.05, "{radius}");
+    // Rounding leaves a quarter of a step.
+    assert!(fit.loss < 0.6 / 255.0, "{} steps", 255.0 * fit.loss);
+    assert_eq!(fit.covariance.len(), 2);
+}
+
+#[test]
+fn of_two_that_are_as_near_the_one_with_fewer_things_is_taken() {
+    let size = ImageSize::new(32, 32).unwrap();
+    let dark = |i: usize| (8..24).contains(&(i % 32)) && (8..24).contains(&(i / 32));
+    let pixels: Vec<f32> = (0..size.pixels()).flat_map(|i| [if dark(i) { 0.1 } else { 1.0 }; 3]).collect();
+    let image = Image::from_interleaved(size, &pixels).unwrap();
+    let fitter = Fitter::new(FitOptions::default()).unwrap();
+    let one = fit_picture(&fitter, image.view(), &Known::default(), &mut PictureScratch::default()).unwrap();
+    let mut two = one.clone();
+    two.scene.objects.extend(one.scene.objects.clone());
+    assert_eq!(better(one.clone(), two.clone()).scene.objects.len(), 1);
+    assert_eq!(better(two.clone(), one.clone()).scene.objects.len(), 1);
+    // Three steps of 256 nearer: that is seen.
+    two.loss = one.loss;
+    let mut far = one;
+    far.loss += 3.0 / 255.0;
+    assert_eq!(better(two, far).scene.objects.len(), 2);
+}
