@@ -6,9 +6,8 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use dvp_core::render::Compositing;
-use dvp_core::scene::{ColorRamp, ColorStop, RampKind};
 use dvp_core::shape::{AnyShape, Cap, Circle, Join, PathRing, Rectangle, Stroke};
-use dvp_core::{Efd, Image, ImageSize, Object, Paint, Pose, Scene};
+use dvp_core::{Efd, Image, ImageSize, Object, Pose, Scene};
 
 use proptest::prelude::*;
 
