@@ -115,6 +115,8 @@ pub struct Known {
     pub spoiled: bool,
     /// Whether it is made of squares of one color, as a sprite is whose pixels are enlarged: those that touch in a corner are one thing.
     pub squares: bool,
+    /// Whether it may have color ramps, which a fit takes out before it is read and puts back: edges that a blur has made wide can look like them.
+    pub ramps: bool,
 }
 
 impl Known {
@@ -146,6 +148,12 @@ impl Known {
     #[must_use]
     pub fn with_squares(self, squares: bool) -> Self {
         Self { squares, ..self }
+    }
+
+    /// The same, with color ramps or not.
+    #[must_use]
+    pub fn with_ramps(self, ramps: bool) -> Self {
+        Self { ramps, ..self }
     }
 }
 

@@ -127,8 +127,9 @@ pub fn fit_picture(
     // Who says how objects mix asks for a scene of the renderer, and no square has its edges.
     let small = if fitter.options().compositing.is_some() { None } else { squares::reduced(&image) };
     let image = small.as_ref().map_or(image, Image::view);
-    let has_ramps = fitter.options().bank.is_none() && fitter.options().compositing.is_none() && !known.coded;
-    let Some(leveled) = has_ramps.then(|| dvp_trace::ramps::level(&image)).flatten() else {
+    let may_have_ramps =
+        known.ramps && fitter.options().bank.is_none() && fitter.options().compositing.is_none() && !known.coded;
+    let Some(leveled) = may_have_ramps.then(|| dvp_trace::ramps::level(&image)).flatten() else {
         return fit_flat(fitter, image, small.is_some(), known, scratch);
     };
     let fit = fit_flat(fitter, leveled.image.view(), small.is_some(), known, scratch)?;

@@ -36,7 +36,8 @@ fn ramps_are_painted_where_they_were_seen() {
     let rounded = painted.data().iter().map(|value| (value * 255.0).round() / 255.0).collect();
     let image = Image::from_planar(size, rounded).unwrap();
     let fitter = Fitter::new(FitOptions::default()).unwrap();
-    let fit = fit_picture(&fitter, image.view(), &Known::default(), &mut PictureScratch::default()).unwrap();
+    let fit =
+        fit_picture(&fitter, image.view(), &Known::default().with_ramps(true), &mut PictureScratch::default()).unwrap();
     let [sky, sun] = &fit.scene.objects[..] else { panic!("{:?}", fit.scene.objects) };
     assert!(sky.paint.ramp().is_some() && sun.paint.ramp().is_some());
     let AnyShape::Circle(Circle { radius }) = sun.shape else { panic!("{:?}", sun.shape) };
