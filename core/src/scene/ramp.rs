@@ -158,8 +158,9 @@ impl<T: Real> RampKind<T> {
         }
     }
 
-    /// The same kind in another precision.
-    pub(crate) fn cast<U: Real>(&self) -> RampKind<U> {
+    /// The same kind in another precision, every number rounded to the nearest.
+    #[must_use]
+    pub fn cast<U: Real>(&self) -> RampKind<U> {
         let number = |v: T| U::of(v.as_f64());
         match self {
             Self::Linear(points) => RampKind::Linear(points.map(|point| point.map(number))),

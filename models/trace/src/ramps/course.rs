@@ -3,6 +3,8 @@
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
+use dvp_core::scene::RampKind;
+
 use crate::elimination::solve;
 
 /// Logarithm of the root of the ratio of an ellipse's axes: 1 : 20.
@@ -75,20 +77,20 @@ impl Course {
         self
     }
 
-    /// Points where the way is `from` and `to`: on a line two, about a center that and two on the ellipse of `to`.
-    pub(super) fn points(&self, [from, to]: [f64; 2], near: [f64; 2]) -> ([[f64; 2]; 3], bool) {
+    /// As a scene has it, the offset 0 where the way is `from` (0 about a center) and 1 where it is `to`; pixels.
+    pub(super) fn kind(&self, [from, to]: [f64; 2], near: [f64; 2]) -> RampKind<f64> {
         match *self {
             Self::Line { angle } => {
                 // On the line through what is painted, so that the points lie there.
                 let (cos, sin) = (angle.cos(), angle.sin());
                 let across = near[1] * cos - near[0] * sin;
                 let point = |way: f64| [way * cos - across * sin, way * sin + across * cos];
-                ([point(from), point(to), [0.0; 2]], false)
+                RampKind::Linear([point(from), point(to)])
             }
             Self::Center { center: [x, y], stretch, .. } => {
                 // The inverse of exp(S) is exp(-S).
                 let [[a, b], [c, d]] = matrix(stretch.map(|v| -v));
-                ([[x, y], [x + to * a, y + to * c], [x + to * b, y + to * d]], true)
+                RampKind::Radial([[x, y], [x + to * a, y + to * c], [x + to * b, y + to * d]])
             }
         }
     }
@@ -111,11 +113,11 @@ pub(super) fn line(samples: impl Iterator<Item = ([f64; 2], f64)>) -> Option<Cou
     Some(Course::Line { angle: b.atan2(a) })
 }
 
-/// The center from which a value changes in proportion to the distance, in circles or ellipses.
+/// The center from which a value changes in proportion to the distance, in circles or ellipses, and the stretch of these.
 ///
 /// With value u = c + |M (p - center)|, the square u^2 is 2 c u plus a polynomial of the point of second degree: linear in all that is
 /// not known, but for one condition between them, which is left to the refinement.
-pub(super) fn center(samples: impl Iterator<Item = ([f64; 2], f64)>, is_circle: bool) -> Option<Course> {
+pub(super) fn center(samples: impl Iterator<Item = ([f64; 2], f64)>, is_circle: bool) -> Option<([f64; 2], [f64; 2])> {
     let (mut matrix, mut right) = ([[0.0; 7]; 7], [0.0; 7]);
     for ([x, y], u) in samples {
         let squares = if is_circle { [x * x + y * y, 0.0, 0.0] } else { [x * x, x * y, y * y] };
@@ -139,7 +141,7 @@ pub(super) fn center(samples: impl Iterator<Item = ([f64; 2], f64)>, is_circle: 
     let cosh = 0.5 * (a + d);
     let twice = cosh.max(1.0).acosh();
     let share = if twice > 1e-9 { 0.5 * twice / twice.sinh() } else { 0.5 };
-    Some(Course::Center { center, stretch: [share * 0.5 * (a - d), share * b], is_circle })
+    Some((center, [share * 0.5 * (a - d), share * b]))
 }
 
 fn add<const N: usize>(matrix: &mut [[f64; N]; N], right: &mut [f64; N], row: [f64; N], value: f64) {

@@ -99,11 +99,9 @@ pub(super) fn fit(samples: &[Sample], is_exact: bool) -> Option<Fitted> {
     // Before the first stop and behind the last nothing changes, and nothing says where it does.
     let changing = || few.iter().zip(&values).filter(|(_, value)| CHANGING.contains(*value));
     let placed = || changing().map(|(&(point, _), &value)| (normal(point), value));
-    let center = |is_circle| match course::center(placed(), is_circle)? {
-        Course::Center { center: [x, y], stretch, is_circle } => {
-            Some(Course::Center { center: [mean[0] + size * x, mean[1] + size * y], stretch, is_circle })
-        }
-        line @ Course::Line { .. } => Some(line),
+    let center = |is_circle| {
+        let ([x, y], stretch) = course::center(placed(), is_circle)?;
+        Some(Course::Center { center: [mean[0] + size * x, mean[1] + size * y], stretch, is_circle })
     };
     let tries: [&dyn Fn() -> Option<Course>; 3] = [&|| course::line(placed()), &|| center(true), &|| center(false)];
     let sound = |course: &dyn Fn() -> Option<Course>| course().filter(Course::is_sound);
@@ -121,7 +119,7 @@ pub(super) fn fit(samples: &[Sample], is_exact: bool) -> Option<Fitted> {
 /// The ramp along a course near `course`, if it explains the samples, those of each part: of both up to each of `ends`.
 pub(super) fn along(course: Course, samples: &[Sample], few: &[Sample], ends: &[usize]) -> Option<Fitted> {
     // Nothing that is so far off comes near.
-    if square_left(&course, few) > FAR * FAR {
+    if missed(&course, few).0 > FAR * FAR * few.len() as f64 {
         return None;
     }
     let course = refined(course, few);
@@ -147,12 +145,12 @@ fn measured(way: &Way, samples: &[Sample]) -> Profile {
     Profile::of(samples.iter().map(|&(point, color)| (way.to(point), color)))
 }
 
-/// Mean square of what the measured profile misses.
-fn square_left(course: &Course, samples: &[Sample]) -> f64 {
+/// The squares that the measured profile along a course misses, and that profile.
+fn missed(course: &Course, samples: &[Sample]) -> (f64, Profile) {
     let way = course.way();
     let profile = measured(&way, samples);
     let squares = samples.iter().map(|&(point, color)| square(profile.at(way.to(point)).0, color));
-    squares.sum::<f64>() / samples.len().max(1) as f64
+    (squares.sum::<f64>(), profile)
 }
 
 /// Sum of the squares that the mean color misses.
@@ -174,13 +172,7 @@ pub(super) fn thinned(samples: &[Sample]) -> Vec<Sample> {
 /// The course along which the measured profile is nearest to the samples, by Gauss-Newton steps. What a number changes alike for all
 /// samples at one way is the profile's to change.
 fn refined(mut course: Course, samples: &[Sample]) -> Course {
-    let missed = |course: &Course| {
-        let way = course.way();
-        let profile = measured(&way, samples);
-        let squares = samples.iter().map(|&(point, color)| square(profile.at(way.to(point)).0, color));
-        (squares.sum::<f64>(), profile)
-    };
-    let (mut error, mut profile) = missed(&course);
+    let (mut error, mut profile) = missed(&course, samples);
     for _ in 0..STEPS {
         let numbers = course.numbers();
         let by = 1e-4;
@@ -217,7 +209,7 @@ fn refined(mut course: Course, samples: &[Sample]) -> Course {
         // The whole step, or the first part of it that gains.
         let parts =
             [1.0, 0.5, 0.25, 0.125].map(|part| (0..numbers).fold(course, |course, k| course.moved(k, part * step[k])));
-        let tried = parts.into_iter().filter(Course::is_sound).map(|next| (next, missed(&next)));
+        let tried = parts.into_iter().filter(Course::is_sound).map(|next| (next, missed(&next, samples)));
         let Some((next, (lower, its))) = tried.into_iter().find(|(_, (lower, _))| *lower < error) else { break };
         let gain = (error - lower) / error.max(1e-12);
         (course, error, profile) = (next, lower, its);

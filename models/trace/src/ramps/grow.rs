@@ -3,10 +3,10 @@
 use alloc::collections::{BTreeMap, BTreeSet};
 use alloc::vec::Vec;
 
+use super::STEP;
 use super::fit::{Fitted, Sample, TOLERANCE, along, fit, thinned};
 use super::profile::difference;
 use super::smooth::{Smooth, neighbors};
-use super::{STEP, range};
 use crate::partition::{Color, OUTSIDE};
 use crate::tuning::{LEAST_RAMP_PIXELS, LEAST_RAMP_STEPS};
 
@@ -191,4 +191,16 @@ fn beside(labels: &[u32], width: usize) -> BTreeMap<u32, BTreeSet<u32>> {
         }
     }
     beside
+}
+
+/// Most that a channel changes within pixels.
+fn range(pixels: &[[f32; 3]], part: &[u32]) -> f32 {
+    let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+    for &i in part {
+        for c in 0..3 {
+            low[c] = low[c].min(pixels[i as usize][c]);
+            high[c] = high[c].max(pixels[i as usize][c]);
+        }
+    }
+    (0..3).map(|c| high[c] - low[c]).fold(0.0, f32::max)
 }

@@ -21,11 +21,11 @@ mod tests;
 
 use alloc::vec::Vec;
 
-use dvp_core::scene::{ColorRamp, RampKind};
+use dvp_core::scene::ColorRamp;
 use dvp_core::{Image, ImageView};
 
 use crate::partition::Color;
-use crate::tuning::{LEAST_RAMP_PIXELS, LEAST_RAMP_STEPS, MARKERS_APART};
+use crate::tuning::MARKERS_APART;
 
 use grow::Region;
 
@@ -60,12 +60,7 @@ pub fn level(image: &ImageView<'_, f32>) -> Option<Leveled> {
     }
     let (width, count) = (image.size().width(), image.size().pixels());
     let pixels: Vec<[f32; 3]> = (0..count).map(|i| image.pixel(i)).collect();
-    let smooth = smooth::Smooth::of(&pixels, width)?;
-    let changes = |part: &Vec<u32>| part.len() >= LEAST_RAMP_PIXELS && range(&pixels, part) >= LEAST_RAMP_STEPS * STEP;
-    if !smooth.parts.iter().any(changes) {
-        return None;
-    }
-    let regions = grow::regions(&pixels, width, smooth);
+    let regions = grow::regions(&pixels, width, smooth::Smooth::of(&pixels, width));
     if regions.ramps.is_empty() {
         return None;
     }
@@ -80,18 +75,6 @@ pub fn level(image: &ImageView<'_, f32>) -> Option<Leveled> {
     let ramps = ramps.collect();
     let flat: Vec<f32> = leveled.into_iter().flatten().collect();
     Some(Leveled { image: Image::from_interleaved(image.size(), &flat).ok()?, ramps })
-}
-
-/// Most that a channel changes within pixels.
-fn range(pixels: &[[f32; 3]], part: &[u32]) -> f32 {
-    let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
-    for &i in part {
-        for c in 0..3 {
-            low[c] = low[c].min(pixels[i as usize][c]);
-            high[c] = high[c].max(pixels[i as usize][c]);
-        }
-    }
-    (0..3).map(|c| high[c] - low[c]).fold(0.0, f32::max)
 }
 
 /// A color for each ramp: its mean, moved until it is clearly another one than those of the flat parts and of the other ramps.
@@ -115,9 +98,7 @@ fn in_scene_units(region: &Region, unit: f64) -> ColorRamp<f32> {
     let places = &region.fitted.profile.places;
     let is_centered = matches!(region.fitted.course, course::Course::Center { .. });
     let ends = [if is_centered { 0.0 } else { places[0].0 }, places[places.len() - 1].0];
-    let (points, is_radial) = region.fitted.course.points(ends, region.near);
-    let points = points.map(|point| point.map(|value| (value / unit) as f32));
-    let [a, b, _] = points;
-    let kind = if is_radial { RampKind::Radial(points) } else { RampKind::Linear([a, b]) };
-    ColorRamp { kind, stops: region.fitted.profile.stops(ends) }
+    let mut kind = region.fitted.course.kind(ends, region.near);
+    kind.points_mut().as_flattened_mut().iter_mut().for_each(|value| *value /= unit);
+    ColorRamp { kind: kind.cast(), stops: region.fitted.profile.stops(ends) }
 }

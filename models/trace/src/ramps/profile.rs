@@ -66,9 +66,10 @@ impl Profile {
 
     /// Whether nothing is missing between two places but a few pixels over which the color goes on as it did.
     pub(super) fn is_connected(&self, most_gap: f64) -> bool {
+        let steepest = self.steepest();
         self.places.windows(2).all(|pair| {
             let (gap, jump) = (pair[1].0 - pair[0].0, difference(pair[0].1, pair[1].1));
-            gap <= 2.0 || gap <= most_gap && jump <= 3.0 * f64::from(STEP) + gap * self.steepest()
+            gap <= 2.0 || gap <= most_gap && jump <= 3.0 * f64::from(STEP) + gap * steepest
         })
     }
 

@@ -52,16 +52,11 @@ pub(super) struct Smooth {
 }
 
 impl Smooth {
-    /// The parts of a picture of `width` columns; none if no color changes in any of them. Every pixel of a part belongs to a block of three by
-    /// three that is steady all through: the middle of a straight edge lies between its neighbors as well.
-    pub(super) fn of(pixels: &[[f32; 3]], width: usize) -> Option<Self> {
+    /// The parts of a picture of `width` columns. Every pixel of a part belongs to a block of three by three that is steady all through: the middle
+    /// of a straight edge lies between its neighbors as well.
+    pub(super) fn of(pixels: &[[f32; 3]], width: usize) -> Self {
         let height = pixels.len() / width;
         let is_in = spread(&all_around(&steady(pixels, width), width), width);
-        let changes = |i: usize, step: usize| is_in[i] && is_in[i + step] && pixels[i] != pixels[i + step];
-        let beside = (0..pixels.len() - 1).any(|i| (i + 1) % width != 0 && changes(i, 1));
-        if !beside && !(0..pixels.len() - width).any(|i| changes(i, width)) {
-            return None;
-        }
         let (mut labels, mut parts) = (alloc::vec![OUTSIDE; pixels.len()], Vec::new());
         for first in 0..pixels.len() {
             if !is_in[first] || labels[first] != OUTSIDE {
@@ -82,7 +77,7 @@ impl Smooth {
             part.sort_unstable();
             parts.push(part);
         }
-        Some(Self { labels, parts })
+        Self { labels, parts }
     }
 }
 
