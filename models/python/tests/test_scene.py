@@ -49,8 +49,8 @@ def test_colors_may_change_from_place_to_place() -> None:
     stops = [{"offset": 0, "color": [0.1, 0.2, 0.3]}, {"offset": 1, "color": [0.5, 0.4, 0.3]}]
     ramp = {"kind": "linear", "points": [[-0.2, 0], [0.2, 0]], "stops": stops}
     disk = {"kind": "circle", "radius": 0.2, "translation": [0.5, 0.5], "color": [0.3, 0.3, 0.3], "ramp": ramp}
-    text = json.dumps({"version": 3, "background": [1, 1, 1], "objects": [disk]})
-    (first,) = dvp.Scene.from_json(text).objects
+    scene = {"version": 3, "width": 32, "height": 32, "background": [1, 1, 1], "objects": [disk]}
+    (first,) = dvp.Scene.from_json(json.dumps(scene)).objects
     assert first.ramp is not None and first.ramp["kind"] == "linear" and len(first.ramp["stops"]) == 2
     assert first.color == pytest.approx((0.3, 0.3, 0.3))
 
