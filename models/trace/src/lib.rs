@@ -115,8 +115,8 @@ pub struct Known {
     pub spoiled: bool,
     /// Whether it is made of squares of one color, as a sprite is whose pixels are enlarged: those that touch in a corner are one thing.
     pub squares: bool,
-    /// Whether it may have color ramps, which a fit takes out before it is read and puts back: edges that a blur has made wide can look like them.
-    pub ramps: bool,
+    /// Whether every thing is of one color. Unless it is, a fit looks for color ramps, takes them out before the picture is read, and puts them back.
+    pub flat: bool,
 }
 
 impl Known {
@@ -150,10 +150,10 @@ impl Known {
         Self { squares, ..self }
     }
 
-    /// The same, with color ramps or not.
+    /// The same, every thing of one color or not.
     #[must_use]
-    pub fn with_ramps(self, ramps: bool) -> Self {
-        Self { ramps, ..self }
+    pub fn with_flat(self, flat: bool) -> Self {
+        Self { flat, ..self }
     }
 }
 

@@ -61,6 +61,7 @@ pub use openings::cut_openings;
 use likelier::{CLEARLY_WORSE, is_likelier, is_of_renderer, likelier, likeliest, shorter};
 use mend::Wrong;
 use most::at_most;
+use ramps::AS_NEAR;
 use spare::Spare;
 use squares::Squares;
 
@@ -128,18 +129,19 @@ pub fn fit_picture(
     let small = if fitter.options().compositing.is_some() { None } else { squares::reduced(&image) };
     let image = small.as_ref().map_or(image, Image::view);
     let may_have_ramps =
-        known.ramps && fitter.options().bank.is_none() && fitter.options().compositing.is_none() && !known.coded;
+        !known.flat && fitter.options().bank.is_none() && fitter.options().compositing.is_none() && !known.coded;
     let Some(leveled) = may_have_ramps.then(|| dvp_trace::ramps::level(&image)).flatten() else {
         return fit_flat(fitter, image, small.is_some(), known, scratch);
     };
     let fit = fit_flat(fitter, leveled.image.view(), small.is_some(), known, scratch)?;
+    // What coders leave can look like ramps that explain a part of it, and blurs of edges like any.
+    let is_blurred = fit.scene.edge.law != EdgeLaw::Area;
     let fit = ramps::with_ramps(fit, &leveled, image, &mut scratch.canvas)?;
-    // Wide edges can be read as ramps as well; and what ramps leave unexplained may be something else.
-    if fit.unexplained <= NOT_FLAT_SHARE && !leveled.ramps.iter().any(|ramp| ramp.may_be_edge) {
+    if !is_blurred && fit.loss <= AS_NEAR && leveled.ramps.iter().any(|ramp| ramp.is_exact) {
         return Ok(fit);
     }
     let flat = fit_flat(fitter, image, small.is_some(), known, scratch)?;
-    Ok(ramps::better(fit, flat))
+    Ok(if is_blurred { flat } else { ramps::better(fit, flat) })
 }
 
 /// The scene of a picture without color ramps, `are_repeated` if it was enlarged by repeating pixels.

@@ -10,6 +10,7 @@ use super::course::{self, Course, Way};
 use super::profile::{Profile, difference};
 use crate::elimination::solve;
 use crate::partition::Color;
+use crate::tuning::LEAST_RAMP_STEPS;
 
 /// What a ramp may miss of a pixel: rounding, of the picture and of who painted it.
 pub(super) const TOLERANCE: f64 = 1.6 * STEP as f64;
@@ -105,15 +106,19 @@ pub(super) fn fit(samples: &[Sample], is_exact: bool) -> Option<Fitted> {
     };
     let tries: [&dyn Fn() -> Option<Course>; 3] = [&|| course::line(placed()), &|| center(true), &|| center(false)];
     let sound = |course: &dyn Fn() -> Option<Course>| course().filter(Course::is_sound);
+    // What changes in a few pixels only is no ramp.
+    let changes = |fitted: &Fitted| fitted.profile.range() >= f64::from(LEAST_RAMP_STEPS * STEP);
     if is_exact {
-        return tries.into_iter().find_map(|course| along(sound(course)?, samples, &few, &[samples.len()]));
+        return tries
+            .into_iter()
+            .find_map(|course| along(sound(course)?, samples, &few, &[samples.len()]).filter(changes));
     }
     let nearest = tries.into_iter().filter_map(|course| {
         let fitted = Fitted::of(refined(sound(course)?, &few), samples, NEARLY_STEPS * f64::from(STEP));
         Some((fitted.squares(&few), fitted))
     });
     let (left, fitted) = nearest.min_by(|a, b| a.0.total_cmp(&b.0))?;
-    (left <= NEARLY_LEFT * squares_of_flat(&few)).then_some(fitted)
+    (left <= NEARLY_LEFT * squares_of_flat(&few)).then_some(fitted).filter(changes)
 }
 
 /// The ramp along a course near `course`, if it explains the samples, those of each part: of both up to each of `ends`.

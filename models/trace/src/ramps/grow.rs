@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 use super::STEP;
 use super::fit::{Fitted, Sample, TOLERANCE, along, fit, thinned};
 use super::profile::difference;
-use super::smooth::{Smooth, neighbors};
+use super::smooth::{self, Smooth, neighbors};
 use crate::partition::{Color, OUTSIDE};
 use crate::tuning::{LEAST_RAMP_PIXELS, LEAST_RAMP_STEPS};
 
@@ -42,6 +42,9 @@ pub(super) fn regions(pixels: &[[f32; 3]], width: usize, smooth: Smooth) -> Regi
     let mut ramps: Vec<Fitted> = Vec::new();
     let samples = |part: usize| parts[part].iter().map(|&i| sample(pixels, width, i as usize));
     let may_be = |part: usize| parts[part].len() >= LEAST_RAMP_PIXELS && ranges[part] >= LEAST_RAMP_STEPS * STEP;
+    if smooth::is_rough(pixels, width, (0..parts.len()).filter(|&part| may_be(part)).map(|part| &parts[part])) {
+        return Regions { labels, ramps: Vec::new(), flat_colors: Vec::new() };
+    }
     for &seed in &order {
         if !may_be(seed) || ramp_of[seed] != OUTSIDE {
             continue;

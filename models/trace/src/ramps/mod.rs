@@ -3,6 +3,7 @@
 //! | file | holds |
 //! |---|---|
 //! | `mod` | [`level`]: what is found, and the picture without it |
+//! | `edge` | whether the edges of a picture are wide |
 //! | `smooth` | parts of a picture in which colors change steadily |
 //! | `course` | along a line, or away from a center |
 //! | `profile` | which color is reached after which way |
@@ -11,6 +12,7 @@
 //! | `mix` | pixels between leveled parts |
 
 mod course;
+mod edge;
 mod fit;
 mod grow;
 mod mix;
@@ -48,14 +50,14 @@ pub struct LeveledRamp {
     pub color: [f32; 3],
     /// The ramp, its points in scene units.
     pub ramp: ColorRamp<f32>,
-    /// Whether it may be a wide edge: colors change in its middle and at neither end, or over a few pixels.
-    pub may_be_edge: bool,
+    /// Whether it explains all of its pixels; else it is the one that is nearest to them.
+    pub is_exact: bool,
 }
 
-/// The picture without its ramps; none if it has none.
+/// The picture without its ramps; none if it has none, or if its edges are wide.
 #[must_use]
 pub fn level(image: &ImageView<'_, f32>) -> Option<Leveled> {
-    if !smooth::may_change(image) {
+    if !smooth::may_change(image) || edge::are_wide(image) {
         return None;
     }
     let (width, count) = (image.size().width(), image.size().pixels());
@@ -70,7 +72,7 @@ pub fn level(image: &ImageView<'_, f32>) -> Option<Leveled> {
     let ramps = regions.ramps.iter().zip(&markers).map(|(region, color)| LeveledRamp {
         color: color.map(|value| value as f32),
         ramp: in_scene_units(region, unit),
-        may_be_edge: region.fitted.profile.is_edge(),
+        is_exact: region.is_exact,
     });
     let ramps = ramps.collect();
     let flat: Vec<f32> = leveled.into_iter().flatten().collect();

@@ -11,8 +11,6 @@ use dvp_core::scene::ColorStop;
 use super::STEP;
 use crate::partition::Color;
 
-/// Colors that change over more pixels are no edge for all that tells: of a blur of six pixels that is half of the way.
-const WIDEST_EDGE: f64 = 20.0;
 /// Stops that are nearer (pixels) are one.
 const SAME: f64 = 0.1;
 /// Most stops of a ramp: artists take few.
@@ -79,15 +77,13 @@ impl Profile {
         slopes.map(|pair| difference(pair[0].1, pair[1].1) / (pair[1].0 - pair[0].0)).fold(0.0, f64::max)
     }
 
-    /// Whether colors change in its middle, and at neither end, or over a few pixels: so does an edge that is wide.
-    pub(super) fn is_edge(&self) -> bool {
-        if self.places.first().zip(self.places.last()).is_some_and(|(first, last)| last.0 - first.0 < WIDEST_EDGE) {
-            return true;
-        }
-        let slopes: Vec<f64> =
-            self.places.windows(2).map(|pair| difference(pair[0].1, pair[1].1) / (pair[1].0 - pair[0].0)).collect();
-        let [first, .., last] = slopes[..] else { return false };
-        first.max(last) < 0.25 * slopes.into_iter().fold(0.0, f64::max)
+    /// Most that a channel changes from one place to any other.
+    pub(super) fn range(&self) -> f64 {
+        let ranges = (0..3).map(|c| {
+            let values = self.places.iter().map(|(_, color)| color[c]);
+            values.clone().fold(f64::NEG_INFINITY, f64::max) - values.fold(f64::INFINITY, f64::min)
+        });
+        ranges.fold(0.0, f64::max)
     }
 
     /// As few stops as explain all places within `tolerance`, straight ways between them: one more where most is missed, as long as that is too

@@ -110,6 +110,50 @@ fn flat_pictures_have_no_ramps() {
     assert!(level(&picture(vec![disk]).0.view()).is_none());
 }
 
+/// A picture of one ramp that fills it.
+fn sheet() -> Image<f32> {
+    let shape = Rectangle { size: [1.0, 1.0], corner_radius: 0.0 };
+    let kind = RampKind::Linear([[-0.5, -0.2], [0.5, 0.2]]);
+    picture(vec![object(shape, [0.5, 0.5], kind, &[[0.1, 0.3, 0.5], [0.8, 0.6, 0.4]])]).0
+}
+
+#[test]
+fn wide_edges_are_no_ramps() {
+    let mut disk = object(Circle { radius: 0.3 }, [0.5, 0.5], RampKind::Linear([[0.0; 2], [1.0; 2]]), &[WHITE, WHITE]);
+    disk.paint = [0.8, 0.85, 0.9].into();
+    let (mut image, _) = picture(vec![disk]);
+    // Means over five by five pixels, three times: nearly a blur of 2.4.
+    for _ in 0..3 {
+        let before = image.clone();
+        let at = |i: usize, by: usize| (i + by).saturating_sub(2).min(SIDE - 1);
+        for (i, value) in image.data_mut().iter_mut().enumerate() {
+            let (plane, y, x) = (i / (SIDE * SIDE), i / SIDE % SIDE, i % SIDE);
+            let row = |y: usize| (0..5).map(|by| before.data()[(plane * SIDE + y) * SIDE + at(x, by)]).sum::<f32>();
+            *value = (0..5).map(|by| row(at(y, by))).sum::<f32>() / 25.0;
+        }
+    }
+    assert!(level(&image.view()).is_none());
+}
+
+#[test]
+fn noise_hides_ramps() {
+    let mut image = sheet();
+    assert!(level(&image.view()).is_some());
+    crate::noise::tests::add_noise(&mut image, 0.004);
+    assert!(level(&image.view()).is_none());
+}
+
+/// One color explains nearly all pixels: so does a ramp that hardly changes.
+#[test]
+fn a_spot_on_one_color_is_no_ramp() {
+    let mut image = Image::from_planar(ImageSize::new(SIDE, SIDE).unwrap(), vec![0.5; 3 * SIDE * SIDE]).unwrap();
+    for (i, value) in image.data_mut().iter_mut().enumerate() {
+        let (x, y) = (i % SIDE, i / SIDE % SIDE);
+        *value += if x >= 20 && (30..50).contains(&y) { 26_usize.saturating_sub(x) as f32 / 255.0 } else { 0.0 };
+    }
+    assert!(level(&image.view()).is_none());
+}
+
 #[test]
 fn three_stops_are_three_stops() {
     let colors = [[0.9, 0.5, 0.1], [0.8, 0.1, 0.5], [0.2, 0.3, 0.8]];
@@ -119,7 +163,7 @@ fn three_stops_are_three_stops() {
     let leveled = level(&image.view()).unwrap();
     let [found] = &leveled.ramps[..] else { panic!("{} ramps", leveled.ramps.len()) };
     assert_eq!(found.ramp.stops.len(), 3);
-    assert!(!found.may_be_edge);
+    assert!(found.is_exact);
     assert!(missed(&image, &mask, &found.ramp) <= 0.005);
 }
 

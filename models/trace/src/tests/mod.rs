@@ -344,7 +344,7 @@ proptest! {
             pixels[place % (width * height)] = color(code);
         }
         let picture = Image::from_interleaved(ImageSize::new(width, height).unwrap(), pixels.as_flattened()).unwrap();
-        let known = Known { matte: is_transparent.then_some(color(63)), coded, loose: false, spoiled, squares, ramps: false };
+        let known = Known { matte: is_transparent.then_some(color(63)), coded, loose: false, spoiled, squares, flat: false };
         if let Ok(traced) = trace(&picture.view(), &known) {
             let mut drawing = Drawing::default();
             traced.scene.draw(&OutlineBasis::new(64, 1).unwrap(), &mut drawing).unwrap();

@@ -19,8 +19,8 @@ use crate::{Fit, FitError};
 /// further apart.
 const NEAR: f32 = 0.02;
 
-/// Difference of mean errors that is not seen, of 1: two steps of 256.
-const AS_NEAR: f32 = 2.0 / 255.0;
+/// Mean error that is not seen, of 1: two steps of 256.
+pub(super) const AS_NEAR: f32 = 2.0 / 255.0;
 
 /// The fit of a leveled picture with what was leveled, held against the picture as it is.
 pub(super) fn with_ramps(
@@ -54,10 +54,9 @@ pub(super) fn with_ramps(
     Ok(Fit { bits: fit.bits, stop: fit.stop, steps: fit.steps, noise: fit.noise, covariance, ambiguity, ..painted })
 }
 
-/// The fit with ramps, or the one without where that is nearer, or as near with no more things.
+/// The nearer of a fit with ramps and one without; where that is not seen, the one with ramps if it has fewer things.
 pub(super) fn better(with: Fit<f32>, without: Fit<f32>) -> Fit<f32> {
-    let counts = [&with, &without].map(|fit| fit.scene.objects.len());
-    let are_as_near = (with.loss - without.loss).abs() < AS_NEAR;
-    let is_taken = if are_as_near { counts[0] < counts[1] } else { with.loss < without.loss };
+    let is_fewer = with.scene.objects.len() < without.scene.objects.len();
+    let is_taken = with.loss - without.loss < if is_fewer { AS_NEAR } else { 0.0 };
     if is_taken { with } else { without }
 }

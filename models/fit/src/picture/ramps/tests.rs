@@ -36,8 +36,7 @@ fn ramps_are_painted_where_they_were_seen() {
     let rounded = painted.data().iter().map(|value| (value * 255.0).round() / 255.0).collect();
     let image = Image::from_planar(size, rounded).unwrap();
     let fitter = Fitter::new(FitOptions::default()).unwrap();
-    let fit =
-        fit_picture(&fitter, image.view(), &Known::default().with_ramps(true), &mut PictureScratch::default()).unwrap();
+    let fit = fit_picture(&fitter, image.view(), &Known::default(), &mut PictureScratch::default()).unwrap();
     let [sky, sun] = &fit.scene.objects[..] else { panic!("{:?}", fit.scene.objects) };
     assert!(sky.paint.ramp().is_some() && sun.paint.ramp().is_some());
     let AnyShape::Circle(Circle { radius }) = sun.shape else { panic!("{:?}", sun.shape) };
@@ -45,6 +44,9 @@ fn ramps_are_painted_where_they_were_seen() {
     // Rounding leaves a quarter of a step.
     assert!(fit.loss < 0.6 / 255.0, "{} steps", 255.0 * fit.loss);
     assert_eq!(fit.covariance.len(), 2);
+    let flat = Known::default().with_flat(true);
+    let flat = fit_picture(&fitter, image.view(), &flat, &mut PictureScratch::default()).unwrap();
+    assert!(flat.scene.objects.iter().all(|object| object.paint.ramp().is_none()));
 }
 
 #[test]
