@@ -1,5 +1,6 @@
 //! Pictures with color ramps: read as if each were of one color, and painted with them.
 
+mod shown;
 #[cfg(test)]
 mod tests;
 
@@ -49,7 +50,10 @@ pub(super) fn with_ramps(
             object.paint = Paint::Ramp(ColorRamp { kind: ramp.kind.posed(&inverse), stops: ramp.stops.clone() });
         }
     }
-    let (painted, drawing) = canvas.paint(&scene, image.size())?;
+    let (mut painted, mut drawing) = canvas.paint(&scene, image.size())?;
+    if shown::recolor(&mut scene, (&drawing, painted), &leveled.image.view(), &image)? {
+        (painted, drawing) = canvas.paint(&scene, image.size())?;
+    }
     let painted = of_painted(&scene, &drawing, painted, image)?;
     Ok(Fit { bits: fit.bits, stop: fit.stop, steps: fit.steps, noise: fit.noise, covariance, ambiguity, ..painted })
 }

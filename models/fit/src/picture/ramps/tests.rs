@@ -17,6 +17,14 @@ fn ramp(ends: [[f32; 2]; 2], colors: [[f32; 3]; 2]) -> Paint<f32> {
     Paint::Ramp(ColorRamp { kind: RampKind::Linear(ends), stops: vec![stop(0.0, colors[0]), stop(1.0, colors[1])] })
 }
 
+/// A scene as a picture of 96 x 96 pixels, rounded to 8 bits.
+fn picture(scene: &Scene<f32>) -> Image<f32> {
+    let size = ImageSize::new(96, 96).unwrap();
+    let painted = Canvas::default().paint(scene, size).unwrap().0.clone();
+    let rounded = painted.data().iter().map(|value| (value * 255.0).round() / 255.0).collect();
+    Image::from_planar(size, rounded).unwrap()
+}
+
 #[test]
 fn ramps_are_painted_where_they_were_seen() {
     // A disk over a sky, each in colors of its own.
@@ -31,10 +39,7 @@ fn ramps_are_painted_where_they_were_seen() {
         compositing: Compositing::Over,
         ..Scene::empty([1.0; 3])
     };
-    let size = ImageSize::new(96, 96).unwrap();
-    let painted = Canvas::default().paint(&truth, size).unwrap().0.clone();
-    let rounded = painted.data().iter().map(|value| (value * 255.0).round() / 255.0).collect();
-    let image = Image::from_planar(size, rounded).unwrap();
+    let image = picture(&truth);
     let fitter = Fitter::new(FitOptions::default()).unwrap();
     let fit = fit_picture(&fitter, image.view(), &Known::default(), &mut PictureScratch::default()).unwrap();
     let [sky, sun] = &fit.scene.objects[..] else { panic!("{:?}", fit.scene.objects) };
@@ -47,6 +52,33 @@ fn ramps_are_painted_where_they_were_seen() {
     let flat = Known::default().with_flat(true);
     let flat = fit_picture(&fitter, image.view(), &flat, &mut PictureScratch::default()).unwrap();
     assert!(flat.scene.objects.iter().all(|object| object.paint.ramp().is_none()));
+}
+
+/// A bar that darkens a ramp by half where that is darkest, far from the color that stands for it.
+#[test]
+fn what_shades_a_ramp_has_the_color_that_it_shows() {
+    let sheet = Rectangle { size: [1.0, 1.0], corner_radius: 0.0 };
+    let sky = ramp([[0.0, -0.5], [0.0, 0.5]], [[0.9, 0.9, 1.0], [0.1, 0.3, 0.5]]);
+    let object = |shape: Rectangle<f32>, y, paint, confidence| Object {
+        shape: shape.into(),
+        pose: Pose { translation: [0.5, y], ..Pose::identity() },
+        paint,
+        confidence,
+    };
+    let bar = Rectangle { size: [0.5, 3.0 / 96.0], corner_radius: 0.0 };
+    let truth = Scene {
+        objects: vec![object(sheet, 0.5, sky, 1.0), object(bar, 80.5 / 96.0, [0.0; 3].into(), 0.5)],
+        edge: EdgeProfile::area(),
+        compositing: Compositing::Over,
+        ..Scene::empty([1.0; 3])
+    };
+    let image = picture(&truth);
+    let fitter = Fitter::new(FitOptions::default()).unwrap();
+    let fit = fit_picture(&fitter, image.view(), &Known::default(), &mut PictureScratch::default()).unwrap();
+    let shown = image.view().pixel(80 * 96 + 48);
+    let off = |object: &Object<f32>| (0..3).map(|c| (object.color()[c] - shown[c]).abs()).fold(0.0, f32::max);
+    let flat = fit.scene.objects.iter().filter(|object| object.paint.ramp().is_none());
+    assert!(flat.map(off).fold(f32::INFINITY, f32::min) < 2.0 / 255.0, "{:?}", fit.scene.objects);
 }
 
 #[test]
