@@ -134,14 +134,17 @@ pub fn fit_picture(
         return fit_flat(fitter, image, small.is_some(), known, scratch);
     };
     let fit = fit_flat(fitter, leveled.image.view(), small.is_some(), known, scratch)?;
-    // What coders leave can look like ramps that explain a part of it, and blurs of edges like any.
-    let is_blurred = fit.scene.edge.law != EdgeLaw::Area;
+    // A blur makes edges look like ramps.
+    if fit.scene.edge.law != EdgeLaw::Area {
+        return fit_flat(fitter, image, small.is_some(), known, scratch);
+    }
     let fit = ramps::with_ramps(fit, &leveled, image, &mut scratch.canvas)?;
-    if !is_blurred && fit.loss <= AS_NEAR && leveled.ramps.iter().any(|ramp| ramp.is_exact) {
+    if fit.loss <= AS_NEAR && leveled.ramps.iter().any(|ramp| ramp.is_exact) {
         return Ok(fit);
     }
+    // What ramps leave unexplained, a coder may have left, or several that lie on one another.
     let flat = fit_flat(fitter, image, small.is_some(), known, scratch)?;
-    Ok(if is_blurred { flat } else { ramps::better(fit, flat) })
+    Ok(ramps::better(fit, flat))
 }
 
 /// The scene of a picture without color ramps, `are_repeated` if it was enlarged by repeating pixels.
