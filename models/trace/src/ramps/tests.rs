@@ -10,6 +10,7 @@ use proptest::strategy::ValueTree as _;
 use proptest::test_runner::{RngSeed, TestRunner};
 
 use super::level;
+use super::smooth::is_rough;
 
 const SIDE: usize = 80;
 const WHITE: [f32; 3] = [1.0; 3];
@@ -114,7 +115,7 @@ fn flat_pictures_have_no_ramps() {
 fn sheet() -> Image<f32> {
     let shape = Rectangle { size: [1.0, 1.0], corner_radius: 0.0 };
     let kind = RampKind::Linear([[-0.5, -0.2], [0.5, 0.2]]);
-    picture(vec![object(shape, [0.5, 0.5], kind, &[[0.1, 0.3, 0.5], [0.8, 0.6, 0.4]])]).0
+    picture(vec![object(shape, [0.5, 0.5], kind, &[[0.1, 0.3, 0.5], [0.3, 0.5, 0.4]])]).0
 }
 
 #[test]
@@ -139,8 +140,20 @@ fn wide_edges_are_no_ramps() {
 fn noise_hides_ramps() {
     let mut image = sheet();
     assert!(level(&image.view()).is_some());
-    crate::noise::tests::add_noise(&mut image, 0.004);
+    crate::noise::tests::add_noise(&mut image, 0.0025);
     assert!(level(&image.view()).is_none());
+}
+
+#[test]
+fn what_leaps_is_rough() {
+    let all = vec![(0..(SIDE * SIDE) as u32).collect()];
+    let is_rough = |leap: f32| {
+        let value = |x: usize, y: usize| (x as f32 + if (7 * x + 3 * y) % 5 == 0 { leap } else { 0.0 }) / 255.0;
+        let pixels: Vec<[f32; 3]> = (0..SIDE * SIDE).map(|i| [value(i % SIDE, i / SIDE); 3]).collect();
+        is_rough(&pixels, SIDE, all.iter())
+    };
+    // Rounding leaves half a step of each of three pixels.
+    assert!(!is_rough(0.0) && !is_rough(0.9) && is_rough(1.6));
 }
 
 /// One color explains nearly all pixels: so does a ramp that hardly changes.
