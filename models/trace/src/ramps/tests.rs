@@ -146,9 +146,10 @@ fn noise_hides_ramps() {
 
 #[test]
 fn what_leaps_is_rough() {
-    let all = vec![(0..(SIDE * SIDE) as u32).collect()];
+    let all = [(0..(SIDE * SIDE) as u32).collect()];
     let is_rough = |leap: f32| {
-        let value = |x: usize, y: usize| (x as f32 + if (7 * x + 3 * y) % 5 == 0 { leap } else { 0.0 }) / 255.0;
+        let value =
+            |x: usize, y: usize| (x as f32 + if (7 * x + 3 * y).is_multiple_of(5) { leap } else { 0.0 }) / 255.0;
         let pixels: Vec<[f32; 3]> = (0..SIDE * SIDE).map(|i| [value(i % SIDE, i / SIDE); 3]).collect();
         is_rough(&pixels, SIDE, all.iter())
     };

@@ -8,7 +8,7 @@ use dvp_core::{Drawing, Image, ImageView, Scene};
 use crate::FitError;
 
 /// How far the leveled picture may be from the picture on the mean where a thing is seen that leveling has not moved, of 1: what it rounds away.
-const MOVED: f32 = 1.5 / 255.0;
+const MOVED: f64 = 1.5 / 255.0;
 
 /// Moves the colors of flat things by what the scene, painted, misses where they are seen: of those things that the leveled picture shows in another
 /// color than the picture, since what shades a ramp moves with the color that stands for it. Whether any has moved.
@@ -32,10 +32,10 @@ pub(super) fn recolor(
             let share = coverage * drawing.confidences[object];
             let sums = &mut sums[object];
             sums.pixels += 1.0;
-            sums.shares += share * share;
+            sums.shares += f64::from(share * share);
             for c in 0..3 {
-                sums.moved[c] += shown[c] - moved[c];
-                sums.missed[c] += share * (shown[c] - missed[c]);
+                sums.moved[c] += f64::from(shown[c] - moved[c]);
+                sums.missed[c] += f64::from(share * (shown[c] - missed[c]));
             }
         }
     })?;
@@ -46,20 +46,22 @@ pub(super) fn recolor(
             continue;
         }
         let color = object.color();
-        object.paint.set_color(core::array::from_fn(|c| (color[c] + sums.missed[c] / sums.shares).clamp(0.0, 1.0)));
+        object
+            .paint
+            .set_color(core::array::from_fn(|c| (color[c] + (sums.missed[c] / sums.shares) as f32).clamp(0.0, 1.0)));
         is_any = true;
     }
     Ok(is_any)
 }
 
-/// Sums over the pixels where a thing is seen.
+/// Sums over the pixels where a thing is seen; in f64, for these may be millions.
 #[derive(Clone, Copy, Default)]
 struct Sums {
-    pixels: f32,
+    pixels: f64,
     /// Squares of the shares of the pixels that it has.
-    shares: f32,
+    shares: f64,
     /// What the picture has more than the leveled one.
-    moved: [f32; 3],
+    moved: [f64; 3],
     /// What the painted scene misses, by share.
-    missed: [f32; 3],
+    missed: [f64; 3],
 }
