@@ -3,7 +3,7 @@
 use alloc::vec;
 
 use dvp_core::render::ContourRenderer;
-use dvp_core::{Drawing, Image, ImageView, Scene};
+use dvp_core::{Drawing, Image, ImageView, Real as _, Scene};
 
 use crate::FitError;
 
@@ -48,7 +48,7 @@ pub(super) fn recolor(
         let color = object.color();
         object
             .paint
-            .set_color(core::array::from_fn(|c| (color[c] + (sums.missed[c] / sums.shares) as f32).clamp(0.0, 1.0)));
+            .set_color(core::array::from_fn(|c| (color[c] + f32::of(sums.missed[c] / sums.shares)).clamp(0.0, 1.0)));
         is_any = true;
     }
     Ok(is_any)
