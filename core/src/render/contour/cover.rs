@@ -7,7 +7,7 @@ use super::edge::{BLOCK, Edge, Near, SHORTEST_SQUARED};
 use crate::dims::ImageSize;
 use crate::real::Real;
 use crate::render::exact::ExactRecord;
-use crate::render::tile::{ChunkState, LANES, Lanes, Tile, grow, reserved_chunks};
+use crate::render::tile::{ChunkState, LANES, Lanes, Tile, grow};
 use crate::scene::PixelProfile;
 use crate::shape::Rings;
 use crate::simd::{Kernel, lanes};
@@ -61,7 +61,7 @@ impl<T: Real, const BACKWARD: bool> Cover<'_, T, BACKWARD> {
     #[inline(always)]
     fn cover<const FUSED: bool>(mut self) {
         let window = self.tile.window();
-        let (chunks, reserved) = (window.chunks * window.rows, reserved_chunks(self.size));
+        let (chunks, reserved) = (window.chunks * window.rows, self.tile.reserved());
         let record = &mut *self.record;
         if BACKWARD {
             grow(&mut record.closest, chunks * LANES, reserved * LANES);
@@ -166,7 +166,7 @@ impl<T: Real, const BACKWARD: bool> Cover<'_, T, BACKWARD> {
         let window = self.tile.window();
         let record = &mut *self.record;
         record.mixed.clear();
-        record.mixed.reserve((window.rows * window.chunks).max(reserved_chunks(self.size)));
+        record.mixed.reserve((window.rows * window.chunks).max(self.tile.reserved()));
         for row in 0..window.rows {
             let mut side = 0;
             for chunk in row * window.chunks..(row + 1) * window.chunks {

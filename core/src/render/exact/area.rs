@@ -4,9 +4,8 @@ use alloc::vec::Vec;
 
 use super::orientation::Orientation;
 use super::pieces::{Piece, Visit, for_each_piece};
-use crate::dims::ImageSize;
 use crate::real::Real;
-use crate::render::tile::{ChunkState, LANES, Lanes, Tile, grow, reserved_chunks};
+use crate::render::tile::{ChunkState, LANES, Lanes, Tile, grow};
 use crate::shape::Rings;
 use crate::simd::Kernel;
 
@@ -28,7 +27,6 @@ pub struct ExactRecord<T> {
 /// Covers one object, whose orientation stands in the record.
 pub(super) struct Cover<'a, T> {
     pub(super) rings_px: Rings<'a, T>,
-    pub(super) size: ImageSize,
     pub(super) tile: &'a mut Tile<T>,
     pub(super) record: &'a mut ExactRecord<T>,
 }
@@ -41,10 +39,10 @@ impl<T: Real> Kernel for Cover<'_, T> {
     /// are wholly inside or outside: the sum is rounded there, so that no rounding error travels on.
     #[inline(always)]
     fn run(self) {
-        let Self { rings_px, size, tile, record } = self;
+        let Self { rings_px, tile, record } = self;
         let window = tile.window();
         let (width, chunks) = (window.width(), window.chunks);
-        record.prepare(rings_px.vertices, [window.left(), window.top], chunks * window.rows, window.rows, size);
+        record.prepare(rings_px.vertices, [window.left(), window.top], chunks * window.rows, window.rows, tile.reserved());
         let ExactRecord { vertices, orientation, winding, carry, entry } = record;
         let mut sums = Accumulate { tile: &mut *tile, winding, carry, entry, chunks };
         for (ring, reversed) in (Rings { vertices, ..rings_px }).iter().zip(orientation.reversed()) {
@@ -110,15 +108,14 @@ impl<T: Real> Visit<T> for Accumulate<'_, T> {
 
 impl<T: Real> ExactRecord<T> {
     #[inline(always)]
-    fn prepare(&mut self, vertices_px: &[[T; 2]], corner: [usize; 2], chunks: usize, rows: usize, size: ImageSize) {
+    fn prepare(&mut self, vertices_px: &[[T; 2]], corner: [usize; 2], chunks: usize, rows: usize, reserved: usize) {
         let shift = corner.map(|corner| T::of(0.5) - T::of_usize(corner));
         self.vertices.clear();
         self.vertices.extend(vertices_px.iter().map(|&[x, y]| [x + shift[0], y + shift[1]]));
-        let reserved = reserved_chunks(size);
         grow(&mut self.winding, chunks, reserved);
         grow(&mut self.carry, chunks, reserved);
         if self.entry.capacity() < rows {
-            self.entry.reserve(size.height());
+            self.entry.reserve(rows.max(reserved));
         }
         self.entry.clear();
         self.entry.resize(rows, T::zero());

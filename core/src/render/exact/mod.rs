@@ -71,13 +71,13 @@ impl<T: Real> CoverageModel<T> for ExactArea {
     fn cover(
         &self,
         rings_px: Rings<'_, T>,
-        size: ImageSize,
+        _size: ImageSize,
         tile: &mut Tile<T>,
         record: &mut ExactRecord<T>,
         _backward: bool,
     ) -> Result<(), RenderError> {
         record.orientation.find(rings_px);
-        dispatch(Cover { rings_px, size, tile, record });
+        dispatch(Cover { rings_px, tile, record });
         Ok(())
     }
 

@@ -20,7 +20,7 @@ fn cover_rings(rings: Rings<'_, f64>, width: usize, height: usize) -> (Vec<f64>,
     let rings_px = Rings { vertices: &vertices_px, ..rings };
     let Some(window) = Window::around(&vertices_px, 0.5, size) else { return (coverage, grad) };
     let (mut tile, mut record) = (Tile::default(), ExactRecord::default());
-    tile.reset(window, size);
+    tile.reset(window, size, 1, true);
     ExactArea.cover(rings_px, size, &mut tile, &mut record, true).unwrap();
     for chunk in 0..window.rows * window.chunks {
         for lane in 0..LANES {

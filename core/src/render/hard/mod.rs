@@ -59,12 +59,12 @@ impl<T: Real> CoverageModel<T> for HardMask {
     fn cover(
         &self,
         rings_px: Rings<'_, T>,
-        size: ImageSize,
+        _size: ImageSize,
         tile: &mut Tile<T>,
         record: &mut HardRecord,
         _backward: bool,
     ) -> Result<(), RenderError> {
-        dispatch(Cover { rings_px, size, tile, record });
+        dispatch(Cover { rings_px, tile, record });
         Ok(())
     }
 

@@ -2,9 +2,8 @@
 
 use alloc::vec::Vec;
 
-use crate::dims::ImageSize;
 use crate::real::Real;
-use crate::render::tile::{ChunkState, LANES, Lanes, Tile, grow, reserved_chunks};
+use crate::render::tile::{ChunkState, LANES, Lanes, Tile, grow};
 use crate::shape::Rings;
 use crate::simd::Kernel;
 
@@ -23,7 +22,6 @@ const _: () = assert!(LANES == u16::BITS as usize, "a chunk is one word of bits"
 /// of marks up to it is odd.
 pub(super) struct Cover<'a, T> {
     pub(super) rings_px: Rings<'a, T>,
-    pub(super) size: ImageSize,
     pub(super) tile: &'a mut Tile<T>,
     pub(super) record: &'a mut HardRecord,
 }
@@ -33,11 +31,11 @@ impl<T: Real> Kernel for Cover<'_, T> {
 
     #[inline(always)]
     fn run(self) {
-        let Self { rings_px, size, tile, record } = self;
+        let Self { rings_px, tile, record } = self;
         let window = tile.window();
         let chunks = window.chunks;
         let count = chunks * window.rows;
-        grow(&mut record.crossings, count, reserved_chunks(size));
+        grow(&mut record.crossings, count, tile.reserved());
         let crossings = &mut record.crossings[..count];
         crossings.fill(0);
         let (left, width) = (T::of_usize(window.left()), window.width());

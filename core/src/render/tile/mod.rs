@@ -43,8 +43,9 @@ pub type Lanes<T> = [T; LANES];
 /// +-2^29 px, where products of two still fit an f32.
 const FARTHEST_PX: f64 = 536_870_912.0;
 
-/// Up to this many pixels a tile reserves the whole image at once, so that a moving object never allocates again.
-const RESERVED_PIXELS: usize = 1 << 16;
+/// Up to this many pixels in all tiles together each of them reserves the whole image at once, so that a moving object never allocates again: 16
+/// objects in 256 x 256 pixels. Many objects are small, and would take more memory than they ever need.
+const RESERVED_PIXELS: usize = 1 << 20;
 
 /// What is known of a chunk without looking at its pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -118,11 +119,13 @@ pub fn pixel_range<T: Real>(low: T, high: T, count: usize) -> Option<(usize, usi
 #[derive(Clone, Debug, Default)]
 pub struct Tile<T> {
     window: Window,
+    /// Chunks to reserve when memory for some must be taken.
+    reserved: usize,
     /// Row by row, `window.chunks` per row (longer than that where the tile was larger before).
     pub states: Vec<ChunkState>,
     /// Chunk by chunk in the same order; only that of `Mixed` chunks means anything.
     pub coverage: Vec<Lanes<T>>,
-    /// Backward: derivative of the scalar with respect to `coverage`, written by compositing for `Mixed` chunks.
+    /// Backward: derivative of the scalar with respect to `coverage`, written by compositing for `Mixed` chunks. May be shorter otherwise.
     pub grad: Vec<Lanes<T>>,
 }
 
@@ -133,21 +136,25 @@ impl<T: Real> Tile<T> {
         self.window
     }
 
-    /// Moves to `window`, all chunks empty, keeping the memory; coverage and gradient keep what they hold.
-    pub(crate) fn reset(&mut self, window: Window, size: ImageSize) {
+    /// Moves to `window`, all chunks empty, keeping the memory; coverage and gradient keep what they hold. One of `tiles`; `backward`: whether it needs
+    /// room for gradients.
+    pub(crate) fn reset(&mut self, window: Window, size: ImageSize, tiles: usize, backward: bool) {
         self.window = window;
+        let are_few = tiles.saturating_mul(size.pixels()) <= RESERVED_PIXELS;
+        self.reserved = if are_few { size.height() * size.width().div_ceil(LANES) } else { 0 };
         let count = window.chunks * window.rows;
-        let reserved = reserved_chunks(size);
-        grow(&mut self.states, count, reserved);
+        grow(&mut self.states, count, self.reserved);
         self.states[..count].fill(ChunkState::Empty);
-        grow(&mut self.coverage, count, reserved);
-        grow(&mut self.grad, count, reserved);
+        grow(&mut self.coverage, count, self.reserved);
+        if backward {
+            grow(&mut self.grad, count, self.reserved);
+        }
     }
-}
 
-/// Chunks to reserve when memory for some must be taken: all of a small image, so that a moving object never allocates.
-pub(crate) fn reserved_chunks(size: ImageSize) -> usize {
-    if size.pixels() <= RESERVED_PIXELS { size.height() * size.width().div_ceil(LANES) } else { 0 }
+    /// Chunks to reserve where memory must be taken for what goes with this tile: all of the image where few objects share it.
+    pub(crate) fn reserved(&self) -> usize {
+        self.reserved
+    }
 }
 
 /// Makes `memory` hold at least `len` elements, and `reserved` if it must grow; what it holds stays.

@@ -15,7 +15,7 @@ use crate::shape::Rings;
 /// Paints with any coverage model: a coverage tile per object, then one pass of compositing over the image, fused with
 /// the loss and its gradient where one is asked for.
 ///
-/// *Memory*: the scratch grows to the largest windows seen (up to 256 x 256 pixels: to the whole image at once); no call
+/// *Memory*: the scratch grows to the largest windows seen (up to 16 objects in 256 x 256 pixels: to the whole image at once); no call
 /// allocates otherwise. Objects outside the view cost nothing and get zero gradient.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TileRenderer<C> {
@@ -74,10 +74,10 @@ impl<C> TileRenderer<C> {
             let vertices = &scratch.vertices_px[drawing.starts[k]..drawing.starts[k + 1]];
             match Window::around(vertices, reach_px, size) {
                 Some(window) => {
-                    tile.reset(window, size);
+                    tile.reset(window, size, objects, backward);
                     self.coverage.cover(Rings { vertices, ..drawing.rings(k) }, size, tile, record, backward)?;
                 }
-                None => tile.reset(Window::default(), size),
+                None => tile.reset(Window::default(), size, objects, backward),
             }
         }
         Ok(())

@@ -58,7 +58,7 @@ impl<C> TileRenderer<C> {
             vertices_px.clear();
             vertices_px.extend(rings.vertices.iter().map(|&v| to_px(v, size)));
             let Some(window) = Window::around(vertices_px, reach_px, size) else { continue };
-            tile.reset(window, size);
+            tile.reset(window, size, 1, false);
             self.coverage.cover(Rings { vertices: vertices_px, ..rings }, size, tile, record, false)?;
             for i in 0..window.rows * window.chunks {
                 let left = (window.left_chunk + i % window.chunks) * LANES;

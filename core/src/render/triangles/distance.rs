@@ -5,10 +5,9 @@ use core::array;
 
 use super::profile::SquaredProfile;
 use super::triangulate::Face;
-use crate::dims::ImageSize;
 use crate::geometry::{LineSegment, Vec2};
 use crate::real::Real;
-use crate::render::tile::{ChunkState, LANES, Lanes, Tile, Window, grow, pixel_range, reserved_chunks};
+use crate::render::tile::{ChunkState, LANES, Lanes, Tile, Window, grow, pixel_range};
 use crate::simd::Kernel;
 
 /// What the forward pass of an object leaves for the backward pass, and memory.
@@ -28,7 +27,6 @@ pub struct TriangleRecord<T> {
 pub(super) struct Cover<'a, T> {
     pub(super) profile: SquaredProfile<T>,
     pub(super) vertices_px: &'a [[T; 2]],
-    pub(super) size: ImageSize,
     pub(super) tile: &'a mut Tile<T>,
     pub(super) record: &'a mut TriangleRecord<T>,
 }
@@ -38,15 +36,15 @@ impl<T: Real> Kernel for Cover<'_, T> {
 
     #[inline(always)]
     fn run(self) {
-        let Self { profile, vertices_px, size, tile, record } = self;
+        let Self { profile, vertices_px, tile, record } = self;
         let window = tile.window();
         let count = window.chunks * window.rows;
         let corner = [window.left(), window.top].map(T::of_usize);
         let TriangleRecord { faces, vertices, distance, winner } = record;
         vertices.clear();
         vertices.extend(vertices_px.iter().map(|&[x, y]| [x - corner[0], y - corner[1]]));
-        grow(distance, count, reserved_chunks(size));
-        grow(winner, count, reserved_chunks(size));
+        grow(distance, count, tile.reserved());
+        grow(winner, count, tile.reserved());
         distance[..count].fill([T::infinity(); LANES]);
         let mut code = 0;
         for face in faces.iter() {

@@ -98,7 +98,7 @@ impl<T: Real, F: Triangulate> CoverageModel<T> for SoftTriangles<T, F> {
             });
         }
         let profile = SquaredProfile::new(&self.edge, T::of_usize(size.unit_px()));
-        dispatch(Cover { profile, vertices_px: rings_px.vertices, size, tile, record });
+        dispatch(Cover { profile, vertices_px: rings_px.vertices, tile, record });
         Ok(())
     }
 

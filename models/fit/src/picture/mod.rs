@@ -185,9 +185,9 @@ fn or_squares<'a>(
     scratch: &mut PictureScratch,
 ) -> Result<(Fit<f32>, ImageView<'a, f32>), FitError> {
     let options = fitter.options();
-    let is_explained = !are_repeated && fit.unexplained <= UNEXPLAINED_SHARE;
+    let is_explained = !are_repeated && fit.unexplained <= UNEXPLAINED_SHARE && fit.noise <= f32::of(noise::ROUNDED);
     let is_known = options.bank.is_some() || options.compositing.is_some();
-    if is_explained || is_known || fit.noise > f32::of(noise::ROUNDED) || !squares::may_be(image.size()) {
+    if is_explained || is_known || !squares::may_be(image.size()) {
         return Ok((fit, image));
     }
     let painted = scratch.canvas.paint(&fit.scene, image.size())?.0.view();
@@ -195,13 +195,14 @@ fn or_squares<'a>(
     let (things, are_shorter) = (fit.scene.objects.len(), squares.bits < fit.bits + squares.wrong_bits);
     // Every color but the background's is one thing at least.
     let may_be_as_few = are_repeated && squares.colors <= things + 1;
+    #[cfg(feature="std")] std::eprintln!("SQ bits {} fit {} + wrong {} colors {} things {} noise {}", squares.bits, fit.bits, squares.wrong_bits, squares.colors, things, fit.noise);
     if !(are_shorter || may_be_as_few) {
         return Ok((fit, image));
     }
     let Some(large) = squares::enlarged(&image) else { return Ok((fit, image)) };
     let large = enlarged.insert(large).view();
     let of_squares = drawing_or_segments(fitter, large, &known.with_squares(true), scratch)?;
-    let is_better = of_squares.unexplained < fit.unexplained;
+    let is_better = of_squares.loss < fit.loss;
     let is_taken = is_better && (are_shorter || of_squares.scene.objects.len() <= things);
     Ok(if is_taken { (of_squares, large) } else { (fit, image) })
 }

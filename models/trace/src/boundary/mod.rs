@@ -1,8 +1,9 @@
 //! Where two faces meet, to a few hundredths of a pixel or better.
 //!
 //! `profile` tells whether edges are clear, `ring` walks around faces along the cracks between pixels, `window` reads at every crack where the
-//! boundary passes, `uneven` how far that is off.
+//! boundary passes, `uneven` how far that is off, and `hard` where no pixel is mixed.
 
+mod hard;
 mod profile;
 mod ring;
 mod uneven;
@@ -67,6 +68,7 @@ pub fn rings(partition: &Partition) -> Vec<Vec<Ring>> {
             (sample.sigma, sample.is_exact) = (sample.sigma.max(uneven), false);
         }
     }
+    rings.iter_mut().flatten().for_each(|ring| hard::read_upright(partition, ring));
     rings
 }
 
@@ -77,6 +79,7 @@ pub fn walk_mask(partition: &Partition, inside: impl Fn([usize; 2]) -> bool, bou
     let mut rings = ring::walk_mask(partition, inside, bounds);
     for ring in &mut rings {
         read(partition, ring);
+        hard::read_upright(partition, ring);
     }
     rings
 }

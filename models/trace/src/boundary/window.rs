@@ -108,6 +108,8 @@ pub(super) fn sample(partition: &Partition, step: &Step) -> Option<Sample> {
         Heading::MinusY => (Vec2::new(x + inward, y), Vec2::new(1.0, 0.0)),
     };
     let mixed = missing.1 + surplus.1;
+    // Of squares nothing is rounded, however alike their colors are.
+    let rounding = if partition.reading.squares { partition.sigma } else { rounding };
     let variance = (mixed + 1) as f64 * rounding * rounding;
     let is_exact = mixed == 0 && rounding <= tuning::RENDERER_SIGMA && partition.has_exact_edges();
     Some(Sample { point, axis, sigma: variance.sqrt(), is_exact })

@@ -80,8 +80,10 @@ pub(super) fn check(
             wrong.push([x, y]);
         }
     }
-    let few = |count: usize, area: usize| {
-        (count as f64) <= (tuning::MOST_WRONG * area as f64).clamp(1.0, tuning::MOST_WRONG_PIXELS)
+    // Nothing of squares is in doubt.
+    let few = |count: usize, area: usize| match partition.reading.squares {
+        true => count == 0,
+        false => (count as f64) <= (tuning::MOST_WRONG * area as f64).clamp(1.0, tuning::MOST_WRONG_PIXELS),
     };
     let area = own().map(|face| face.area).sum::<usize>();
     let agrees =

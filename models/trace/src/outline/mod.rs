@@ -32,6 +32,7 @@ mod moments;
 mod nodes;
 mod path;
 mod programme;
+mod rectilinear;
 mod revise;
 mod skyline;
 pub(crate) use skyline::Skyline;
@@ -147,6 +148,9 @@ pub struct OpenFit {
 #[must_use]
 pub fn fit_closed(ring: &RingSamples, ruler: &Ruler) -> Option<Outline> {
     let mut track = Track::of_ring(ring)?;
+    if let Some(outline) = rectilinear::fit(&track, ruler) {
+        return Some(outline);
+    }
     if let Some(outline) = whole::fit_plain(&track, ruler) {
         return Some(outline);
     }

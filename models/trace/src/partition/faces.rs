@@ -143,7 +143,10 @@ fn falling_joins(shares: &[f32], [nw, ne, sw, se]: [usize; 4]) -> bool {
 /// Numbers the faces: runs of pixels side by side, joined with those of the row above.
 fn label([width, height]: [usize; 2], mixed: &Mixed, are_squares: bool) -> (Vec<u32>, Vec<Face>) {
     let colors = &mixed.colors;
-    let sides = checker::sides(colors, &mixed.is_flat, [width, height]);
+    let sides = match are_squares {
+        true => vec![0; colors.len()],
+        false => checker::sides(colors, &mixed.is_flat, [width, height]),
+    };
     let same = |i: usize, j: usize| colors[i] == colors[j] && (sides[i] == sides[j] || sides[i] == 0 || sides[j] == 0);
     let meet = |upper: usize, lower: usize| {
         same(upper, lower)

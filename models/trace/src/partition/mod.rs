@@ -5,7 +5,7 @@
 //! and, where windows side by side tell better, of `shade`, joined by `chain`, and by `pair` where two lines fill a window; all `found`
 //! together) finds and `erase` takes out lines without a pixel of their own (`sliver` puts some back), `mix` explains every other pixel as
 //! a mixture of colors nearby, `faces` joins pixels to faces, but not across the corners of `checker`. `runs` are what all read instead
-//! of single pixels.
+//! of single pixels. Of `squares` no pixel is mixed.
 
 mod chain;
 mod checker;
@@ -24,6 +24,7 @@ mod runs;
 mod seam;
 mod shade;
 mod sliver;
+mod squares;
 #[cfg(test)]
 mod tests;
 mod thin;
@@ -176,6 +177,10 @@ impl Partition {
         let mut pixels: Vec<[f32; 3]> =
             red.iter().zip(green).zip(blue).map(|((&red, &green), &blue)| [red, green, blue]).collect();
         let noise = Noise::of(reading);
+        if reading.squares {
+            let mixed = squares::mixed(&pixels, &noise)?;
+            return Ok((Self { reading, sigma: noise.sigma, ..faces::cut(size, pixels, mixed, true) }, Vec::new()));
+        }
         let weighted = |pixels: &mut [[f32; 3]]| pixels.iter_mut().for_each(|pixel| *pixel = coded::weighted(*pixel));
         if reading.coded {
             weighted(&mut pixels);
