@@ -113,7 +113,8 @@ pub struct Known {
     pub loose: bool,
     /// Whether it may have noise or soft edges: it is read then as what it was before.
     pub spoiled: bool,
-    /// Whether it is made of squares of one color, as a sprite is whose pixels are enlarged: those that touch in a corner are one thing.
+    /// Whether it is made of squares of one color, [`tuning::SQUARE`] pixels wide, as a sprite is whose pixels are enlarged: nothing is mixed, and those
+    /// that touch in a corner are one thing.
     pub squares: bool,
     /// Whether every thing is of one color. Unless it is, a fit looks for color ramps, takes them out before the picture is read, and puts them back.
     pub flat: bool,

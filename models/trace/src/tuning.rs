@@ -318,3 +318,5 @@ pub const LEAST_RAMP_PIXELS: usize = 64;
 pub const LEAST_RAMP_STEPS: f32 = 4.0;
 /// How far the color that stands for a ramp is from all others, of 1: that of edges that are read to a hundredth of a pixel.
 pub const MARKERS_APART: f64 = 0.12;
+/// Side (pixels) of the squares of a picture that is made of such, as sprites are read: from 5 on windows read all of their sides.
+pub const SQUARE: usize = 6;

@@ -17,6 +17,8 @@ use crate::tuning::PIECE_WIDTH_PX;
 
 /// Difference of a channel from which on a pixel is painted anew: less than a step of 8 bits.
 const CHANGED: f32 = 1e-3;
+/// How far (pixels) beside an outline its pixels are looked for: what goes along pixels' sides has one on either side.
+const BESIDE: f64 = 1e-3;
 
 /// Bits that an object costs by the law of scenes.
 pub(super) fn price(object: &Object<f32>) -> f64 {
@@ -34,7 +36,8 @@ pub(super) fn is_thin(drawing: &Drawing<f32>, k: usize, size: ImageSize) -> bool
     2.0 * area <= PIECE_WIDTH_PX * length
 }
 
-/// Walks along the outline of object `k`: pixels on the way, as indices, and how far the way is through each, about a pixel at a time.
+/// Walks along the outline of object `k`, on both sides of it: pixels on the way, as indices, and how far the way is through each, about half a pixel at
+/// a time.
 #[inline(never)]
 pub(super) fn walk(drawing: &Drawing<f32>, k: usize, size: ImageSize, at: &mut dyn FnMut(usize, f64)) {
     let unit = size.unit_px() as f64;
@@ -51,13 +54,17 @@ pub(super) fn walk(drawing: &Drawing<f32>, k: usize, size: ImageSize, at: &mut d
                     (start, end) = (start.max(low.min(high)), end.min(low.max(high)));
                 }
             }
-            let length = (end - start) * (to[0] - from[0]).hypot(to[1] - from[1]);
+            let side = (to[0] - from[0]).hypot(to[1] - from[1]);
+            let aside = [(from[1] - to[1]) / side * BESIDE, (to[0] - from[0]) / side * BESIDE];
+            let length = (end - start) * side;
             let count = length.ceil().max(1.0);
             for j in 0..if length > 0.0 { count.to_count() } else { 0 } {
                 let share = start + (end - start) * (j as f64 + 0.5) / count;
                 let [x, y] = [0, 1].map(|c| from[c] + share * (to[c] - from[c]));
-                if x >= 0.0 && y >= 0.0 && x < size.width() as f64 && y < size.height() as f64 {
-                    at(y.to_count() * size.width() + x.to_count(), length / count);
+                for [x, y] in [[x - aside[0], y - aside[1]], [x + aside[0], y + aside[1]]] {
+                    if x >= 0.0 && y >= 0.0 && x < size.width() as f64 && y < size.height() as f64 {
+                        at(y.to_count() * size.width() + x.to_count(), 0.5 * length / count);
+                    }
                 }
             }
         }

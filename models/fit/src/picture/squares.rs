@@ -15,6 +15,8 @@ use num_traits::Float as _;
 use dvp_core::shape::gcd;
 use dvp_core::{Image, ImageSize, ImageView, Real as _};
 
+use dvp_trace::tuning::SQUARE;
+
 use crate::tuning::VISIBLE_ERROR;
 
 /// A reduced picture has so many pixels on its shorter side, at least: fewer say less of what was drawn than a scene of a few rectangles needs.
@@ -26,8 +28,6 @@ const MOST_SIDE: usize = 128;
 const MOST_PATCHES: usize = 5000;
 /// Colors of the largest palette of a sprite, as consoles and editors of pixel art have them. Smooth edges and blurs have many more.
 const MOST_COLORS: usize = 64;
-/// How often pixels of sprites are repeated. From 5 on squares keep their corners.
-const REPEATED: usize = 6;
 /// A pixel off by more, as a share of the scale, is wrong: less is a share of an edge, where edges are smooth.
 const WRONG: f32 = 0.25;
 /// Bits of a color of 8 bits per channel.
@@ -45,7 +45,7 @@ pub(super) fn reduced(image: &ImageView<'_, f32>) -> Option<Image<f32>> {
 /// The picture with every pixel repeated; none if there is no such size.
 pub(super) fn enlarged(image: &ImageView<'_, f32>) -> Option<Image<f32>> {
     let size = image.size();
-    resampled(image, [REPEATED * size.width(), REPEATED * size.height()], |at| at / REPEATED)
+    resampled(image, [SQUARE * size.width(), SQUARE * size.height()], |at| at / SQUARE)
 }
 
 /// Whether a picture is small enough for a sprite.

@@ -4,6 +4,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use super::runs::runs;
+use crate::tuning;
 
 /// How far (pixels) from the corner the fields are asked for their color: beyond what is mixed there.
 const NEAR: usize = 2;
@@ -15,22 +16,25 @@ const FAR: usize = 6;
 const REACH: usize = 4;
 
 /// Whether two pixels across a corner, of one color, are of two fields that meet there without a mixed pixel: each reaches away from it to both sides.
+/// Where the picture is made of squares (`are_squares`) it does so by two of them.
 pub(super) fn are_fields(
     colors: &[u16],
     is_flat: &[bool],
     [width, height]: [usize; 2],
     [upper, lower]: [usize; 2],
+    are_squares: bool,
 ) -> bool {
+    let least = if are_squares { 2 * tuning::SQUARE } else { REACH };
     let falls = upper % width < lower % width;
     // The columns, and the rows, of which each ends or begins beside the corner.
     let reaches = |pixel: usize, leftwards: bool, upwards: bool| {
         let along = |at: usize, backwards: bool, size: usize, step: usize| {
-            let is_inside = if backwards { at + 1 >= REACH } else { at + REACH <= size };
+            let is_inside = if backwards { at + 1 >= least } else { at + least <= size };
             let is_own = |k: usize| {
                 let i = if backwards { pixel - k * step } else { pixel + k * step };
                 is_flat[i] && colors[i] == colors[pixel]
             };
-            is_inside && (0..REACH).all(is_own)
+            is_inside && (0..least).all(is_own)
         };
         along(pixel % width, leftwards, width, 1) && along(pixel / width, upwards, height, width)
     };

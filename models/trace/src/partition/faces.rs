@@ -39,8 +39,8 @@ impl Face {
 }
 
 /// Cuts a picture into faces; specks that a mixture of their neighbors explains nearly as well are given to these.
-/// Pixels that touch in nothing but a corner are of one face where the picture is made of squares (`are_squares`), or where what meets there is no
-/// wider than a line.
+/// Pixels that touch in nothing but a corner are of one face where what meets there is no wider than a line, or than a square where the picture is made
+/// of such (`are_squares`).
 pub(super) fn cut(size: [usize; 2], pixels: Vec<[f32; 3]>, mut mixed: Mixed, are_squares: bool) -> Partition {
     let (mut labels, mut faces) = label(size, &mixed, are_squares);
     // What is given away may leave specks behind.
@@ -144,13 +144,14 @@ fn falling_joins(shares: &[f32], [nw, ne, sw, se]: [usize; 4]) -> bool {
 fn label([width, height]: [usize; 2], mixed: &Mixed, are_squares: bool) -> (Vec<u32>, Vec<Face>) {
     let colors = &mixed.colors;
     let sides = match are_squares {
+        // No corner is mixed.
         true => vec![0; colors.len()],
         false => checker::sides(colors, &mixed.is_flat, [width, height]),
     };
     let same = |i: usize, j: usize| colors[i] == colors[j] && (sides[i] == sides[j] || sides[i] == 0 || sides[j] == 0);
     let meet = |upper: usize, lower: usize| {
         same(upper, lower)
-            && (are_squares || !checker::are_fields(colors, &mixed.is_flat, [width, height], [upper, lower]))
+            && !checker::are_fields(colors, &mixed.is_flat, [width, height], [upper, lower], are_squares)
     };
     let mut sets = DisjointSets::default();
     let mut labels = vec![NONE; colors.len()];

@@ -98,7 +98,7 @@ pub struct Reading {
     pub noise: f32,
     /// Whether its edges may be wider than those of area coverage.
     pub soft: bool,
-    /// Whether it is made of squares of one color: those that touch in a corner are one thing.
+    /// Whether it is made of squares of one color: see [`Known`](crate::Known).
     pub squares: bool,
 }
 
