@@ -28,7 +28,6 @@
 #![no_std]
 
 extern crate alloc;
-#[cfg(feature="std")] extern crate std;
 
 /// The example of the README, compiled and run.
 #[cfg(doctest)]

@@ -10,6 +10,7 @@
 //! | `ruler` | misfits, numbers with their covariance | bits: the one price of everything |
 //! | `noise` | an image | its noise level, and the image without noise |
 //! | `ramps` | an image | colors that change from place to place, and the image without them |
+//! | `regions` | an image that is not flat | regions of one color |
 //! | `partition` | an image | faces of one color, and mixed pixels with the shares of two faces |
 //! | `boundary` | a partition | where two faces meet, to a few thousandths of a pixel |
 //! | `outline` | samples of a boundary | the shortest outline through them: circle, rectangle, path, ... |
@@ -47,6 +48,7 @@ pub mod noise;
 pub mod outline;
 pub mod partition;
 pub mod ramps;
+pub mod regions;
 pub mod ruler;
 pub mod sample;
 pub mod scene;
@@ -62,6 +64,7 @@ use dvp_core::{Image, ImageSize, ImageView, Scene};
 
 use crate::boundary::Ring;
 use crate::partition::{Face, NoPartition, Partition, Reading};
+use crate::regions::Regions;
 pub use crate::scene::PoseCovariance;
 
 /// A picture as a drawing.
@@ -180,6 +183,18 @@ pub fn trace(image: &ImageView<'_, f32>, known: &Known) -> Result<Traced, NoDraw
     draw(read_as(image, known).map_err(NoDrawing::Partition)?, image.size(), known)
 }
 
+/// The drawing of the regions that a picture was cut into.
+///
+/// # Errors
+/// [`NoDrawing::Partition`] if there are 2^16 regions or more.
+#[inline(never)]
+pub fn trace_regions(regions: &Regions) -> Result<Traced, NoDrawing> {
+    let partition = Partition::of_regions(regions).map_err(NoDrawing::Partition)?;
+    let rings = boundary::rings(&partition);
+    let known = Known::default().with_spoiled(true).with_loose(true);
+    draw(Read { partition, others: Vec::new(), rings }, regions.image.size(), &known)
+}
+
 /// Reads a picture as what is known of it.
 fn read_as(image: &ImageView<'_, f32>, known: &Known) -> Result<Read, NoPartition> {
     let reading = Reading { coded: known.coded, soft: known.spoiled, squares: known.squares, ..Reading::default() };
@@ -282,7 +297,7 @@ fn draw(read: Read, size: ImageSize, known: &Known) -> Result<Traced, NoDrawing>
         centers::meet(&mut layers, read);
     }
     let bits = layers.bits();
-    let (scene, covariances) = scene::scene(&layers, size, known.matte.is_some(), read.is_hard);
+    let (scene, covariances) = scene::scene(&layers, size, known.matte.is_some(), read.is_hard && !read.reading.regions);
     Ok(Traced {
         scene,
         covariances,

@@ -8,6 +8,7 @@
 //! |---|---|
 //! | `mod` | [`fit_picture`]: the decision between the two fits |
 //! | `bank` | pictures whose shapes are known |
+//! | `cut` | pictures that are not flat, as regions of one color |
 //! | `ground` | [`Ground`]: the color that transparent pictures are put over |
 //! | `likelier` | which of two fits the picture is |
 //! | `mend` | what a drawing paints wrongly, and what it misses |
@@ -23,6 +24,7 @@
 //! those of the command, which calls it.
 
 mod bank;
+mod cut;
 mod ground;
 mod likelier;
 mod mend;
@@ -195,7 +197,6 @@ fn or_squares<'a>(
     let (things, are_shorter) = (fit.scene.objects.len(), squares.bits < fit.bits + squares.wrong_bits);
     // Every color but the background's is one thing at least.
     let may_be_as_few = are_repeated && squares.colors <= things + 1;
-    #[cfg(feature="std")] std::eprintln!("SQ bits {} fit {} + wrong {} colors {} things {} noise {}", squares.bits, fit.bits, squares.wrong_bits, squares.colors, things, fit.noise);
     if !(are_shorter || may_be_as_few) {
         return Ok((fit, image));
     }
@@ -221,10 +222,11 @@ fn drawing_or_segments(
     if let Some(bank) = &options.bank {
         return bank::fit(fitter, bank, image, known, scratch);
     }
-    match dvp_trace::trace(&image, known) {
-        Ok(traced) => drawing(fitter, traced, image, known, scratch),
-        Err(reason) => spoiled_or_segments(fitter, &reason, image, known, scratch),
-    }
+    let fit = match dvp_trace::trace(&image, known) {
+        Ok(traced) => drawing(fitter, traced, image, known, scratch)?,
+        Err(reason) => spoiled_or_segments(fitter, &reason, image, known, scratch)?,
+    };
+    cut::or_regions(fit, image, options.max_objects, scratch)
 }
 
 /// The picture as it was before it was spoiled; none if a coder has spoiled it, which is known then, or if it was no drawing.

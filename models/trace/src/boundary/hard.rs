@@ -18,7 +18,7 @@ const SIDE: usize = 2;
 
 /// Reads the upright sides of a ring in a picture without mixed pixels, exactly.
 pub(super) fn read_upright(partition: &Partition, ring: &mut Ring) {
-    if !partition.is_hard {
+    if !partition.is_hard || partition.reading.regions {
         return;
     }
     let n = ring.steps.len();

@@ -5,7 +5,7 @@
 //! and, where windows side by side tell better, of `shade`, joined by `chain`, and by `pair` where two lines fill a window; all `found`
 //! together) finds and `erase` takes out lines without a pixel of their own (`sliver` puts some back), `mix` explains every other pixel as
 //! a mixture of colors nearby, `faces` joins pixels to faces, but not across the corners of `checker`. `runs` are what all read instead
-//! of single pixels. Of `squares` no pixel is mixed.
+//! of single pixels. Of squares and regions every pixel is `pure`.
 
 mod chain;
 mod checker;
@@ -20,11 +20,11 @@ mod ink;
 mod mix;
 mod pair;
 mod palette;
+mod pure;
 mod runs;
 mod seam;
 mod shade;
 mod sliver;
-mod squares;
 #[cfg(test)]
 mod tests;
 mod thin;
@@ -34,6 +34,7 @@ use alloc::vec::Vec;
 use dvp_core::ImageView;
 use dvp_core::image::distance;
 
+use crate::regions::Regions;
 use crate::tuning;
 
 pub use faces::Face;
@@ -100,6 +101,8 @@ pub struct Reading {
     pub soft: bool,
     /// Whether it is made of squares of one color: see [`Known`](crate::Known).
     pub squares: bool,
+    /// Whether its colors are those of regions that a picture which is not flat was cut into: no pixel is mixed, but boundaries lie about there only.
+    pub regions: bool,
 }
 
 impl Reading {
@@ -178,7 +181,7 @@ impl Partition {
             red.iter().zip(green).zip(blue).map(|((&red, &green), &blue)| [red, green, blue]).collect();
         let noise = Noise::of(reading);
         if reading.squares {
-            let mixed = squares::mixed(&pixels, &noise)?;
+            let mixed = pure::mixed(&pixels, &noise, tuning::MOST_COLORS)?;
             return Ok((Self { reading, sigma: noise.sigma, ..faces::cut(size, pixels, mixed, true) }, Vec::new()));
         }
         let weighted = |pixels: &mut [[f32; 3]]| pixels.iter_mut().for_each(|pixel| *pixel = coded::weighted(*pixel));
@@ -260,6 +263,18 @@ impl Partition {
             }
         }
         Ok((Self { guessed, ..finish(pixels, &flats, colors, lines, seams) }, others))
+    }
+
+    /// The regions that a picture was cut into.
+    ///
+    /// # Errors
+    /// [`NoPartition::TooManyColors`] if there are 2^16 regions or more.
+    pub fn of_regions(regions: &Regions) -> Result<Self, NoPartition> {
+        let (image, reading) = (regions.image.view(), Reading { regions: true, ..Reading::default() });
+        let size = [image.size().width(), image.size().height()];
+        let pixels: Vec<[f32; 3]> = (0..image.size().pixels()).map(|i| image.pixel(i)).collect();
+        let mixed = pure::mixed(&pixels, &Noise::of(reading), usize::from(u16::MAX))?;
+        Ok(Self { reading, is_hard: true, ..faces::cut(size, pixels, mixed, false) })
     }
 
     /// Color of a face.

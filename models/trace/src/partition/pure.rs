@@ -1,4 +1,4 @@
-//! Pictures that are made of squares of one color: no pixel is mixed, so each has a color of the palette.
+//! Pictures of squares of one color, and of regions of one color: no pixel is mixed, so each has a color of the palette.
 
 use alloc::collections::BTreeMap;
 use alloc::vec;
@@ -10,10 +10,9 @@ use dvp_core::sort;
 use super::flat::Noise;
 use super::mix::Mixed;
 use super::{Color, NoPartition};
-use crate::tuning;
 
-/// Every pixel by itself. Colors come by falling area; what differs from one of them by rounding has that.
-pub(super) fn mixed(pixels: &[[f32; 3]], noise: &Noise) -> Result<Mixed, NoPartition> {
+/// Every pixel by itself, of no more than `most` colors. These come by falling area; what differs from one of them by rounding has that.
+pub(super) fn mixed(pixels: &[[f32; 3]], noise: &Noise, most: usize) -> Result<Mixed, NoPartition> {
     let key = |pixel: &[f32; 3]| pixel.map(f32::to_bits);
     let mut counts: BTreeMap<[u32; 3], usize> = BTreeMap::new();
     pixels.iter().for_each(|pixel| *counts.entry(key(pixel)).or_default() += 1);
@@ -24,7 +23,7 @@ pub(super) fn mixed(pixels: &[[f32; 3]], noise: &Noise) -> Result<Mixed, NoParti
         let color = bits.map(|bits| f64::from(f32::from_bits(bits)));
         let known = palette.iter().position(|known| distance(*known, color) <= f64::from(noise.flat));
         let at = known.unwrap_or(palette.len());
-        if at == tuning::MOST_COLORS {
+        if at == most {
             return Err(NoPartition::TooManyColors);
         }
         if known.is_none() {
