@@ -297,7 +297,8 @@ fn draw(read: Read, size: ImageSize, known: &Known) -> Result<Traced, NoDrawing>
         centers::meet(&mut layers, read);
     }
     let bits = layers.bits();
-    let (scene, covariances) = scene::scene(&layers, size, known.matte.is_some(), read.is_hard && !read.reading.regions);
+    let (scene, covariances) =
+        scene::scene(&layers, size, known.matte.is_some(), read.is_hard && !read.reading.regions);
     Ok(Traced {
         scene,
         covariances,

@@ -42,7 +42,13 @@ impl<T: Real> Kernel for Cover<'_, T> {
         let Self { rings_px, tile, record } = self;
         let window = tile.window();
         let (width, chunks) = (window.width(), window.chunks);
-        record.prepare(rings_px.vertices, [window.left(), window.top], chunks * window.rows, window.rows, tile.reserved());
+        record.prepare(
+            rings_px.vertices,
+            [window.left(), window.top],
+            chunks * window.rows,
+            window.rows,
+            tile.reserved(),
+        );
         let ExactRecord { vertices, orientation, winding, carry, entry } = record;
         let mut sums = Accumulate { tile: &mut *tile, winding, carry, entry, chunks };
         for (ring, reversed) in (Rings { vertices, ..rings_px }).iter().zip(orientation.reversed()) {

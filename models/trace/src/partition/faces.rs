@@ -135,9 +135,10 @@ fn is_followed([x, y]: [usize; 2], [columns, rows]: [usize; 2], label: impl Fn(u
 }
 
 /// Whether, of four pixels around a corner whose diagonals are of two colors, the diagonal from upper left to lower right is
-/// joined and the other one cut: that of the larger shares is.
-fn falling_joins(shares: &[f32], [nw, ne, sw, se]: [usize; 4]) -> bool {
-    shares[nw] + shares[se] >= shares[ne] + shares[sw]
+/// joined and the other one cut: that of the larger shares is, and of equal ones of squares that of the color that fewer have, which
+/// is what was drawn (`is_later`: that this one is no earlier in the palette).
+fn falling_joins(shares: &[f32], [nw, ne, sw, se]: [usize; 4], is_later: bool) -> bool {
+    shares[nw] + shares[se] >= shares[ne] + shares[sw] && is_later
 }
 
 /// Numbers the faces: runs of pixels side by side, joined with those of the row above.
@@ -150,8 +151,7 @@ fn label([width, height]: [usize; 2], mixed: &Mixed, are_squares: bool) -> (Vec<
     };
     let same = |i: usize, j: usize| colors[i] == colors[j] && (sides[i] == sides[j] || sides[i] == 0 || sides[j] == 0);
     let meet = |upper: usize, lower: usize| {
-        same(upper, lower)
-            && !checker::are_fields(colors, &mixed.is_flat, [width, height], [upper, lower], are_squares)
+        same(upper, lower) && !checker::are_fields(colors, &mixed.is_flat, [width, height], [upper, lower], are_squares)
     };
     let mut sets = DisjointSets::default();
     let mut labels = vec![NONE; colors.len()];
@@ -188,7 +188,8 @@ fn label([width, height]: [usize; 2], mixed: &Mixed, are_squares: bool) -> (Vec<
             let four = [ne - 1, ne, se - 1, se];
             let [nw, ne, sw, se] = four;
             let (falls, rises) = (meet(nw, se), meet(ne, sw));
-            if falls && (!rises || falling_joins(&mixed.shares, four)) {
+            let is_later = !are_squares || colors[nw] >= colors[ne];
+            if falls && (!rises || falling_joins(&mixed.shares, four, is_later)) {
                 sets.unite(labels[nw], labels[se]);
             } else if rises {
                 sets.unite(labels[ne], labels[sw]);
@@ -292,7 +293,9 @@ impl Partition {
         let four = [se - width - 1, se - width, se - 1, se];
         let [nw, ne, sw, se] = four;
         let (falls, rises) = (self.labels[nw] == self.labels[se], self.labels[ne] == self.labels[sw]);
-        let falling_wins = falls && (!rises || falling_joins(&self.shares, four));
+        let color = |i: usize| self.faces[self.labels[i] as usize].color;
+        let is_later = !self.reading.squares || !rises || !falls || color(nw) >= color(ne);
+        let falling_wins = falls && (!rises || falling_joins(&self.shares, four, is_later));
         if falling { falling_wins } else { rises && !falling_wins }
     }
 }

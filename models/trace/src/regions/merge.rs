@@ -2,6 +2,7 @@
 
 use alloc::vec;
 use alloc::vec::Vec;
+use core::cmp::Ordering;
 
 use dvp_core::ImageView;
 use dvp_core::geometry::DisjointSets;
@@ -18,6 +19,8 @@ const UNSEEN: f64 = 0.03;
 const FIRST: f64 = 1.0 / 64.0;
 /// See [`FIRST`].
 const NEXT: f64 = 2.0;
+/// A round in which a smaller share of the regions goes is the last one of its stage: the next stage merges those that are left, too.
+const FEW: f64 = 0.05;
 
 /// What is known of a region: pixels, and the sum of their colors.
 #[derive(Clone, Copy)]
@@ -43,6 +46,12 @@ struct Border {
     length: u32,
 }
 
+/// An order of numbers that is not that of the picture: where many borders cost the same, as in gradients of 8 bits, neighbors of the lowest one each
+/// would be merged one pair after the other.
+fn shuffled(at: usize) -> u32 {
+    (at as u32).wrapping_mul(0x9e37_79b9)
+}
+
 /// Regions of a picture, and the borders between them.
 pub(super) struct Merging {
     /// By root.
@@ -53,72 +62,100 @@ pub(super) struct Merging {
 }
 
 impl Merging {
-    /// Every pixel by itself.
+    /// Every pixel by itself, but for neighbors of one color.
     pub(super) fn of(image: &ImageView<'_, f32>) -> Self {
         let (width, pixels) = (image.size().width(), image.size().pixels());
         let regions = (0..pixels).map(|i| Region { pixels: 1.0, sum: image.pixel(i).map(f64::from) }).collect();
-        let mut borders = Vec::with_capacity(2 * pixels);
+        let mut sets = DisjointSets::default();
+        sets.reset(pixels as u32);
+        let mut merging = Self { regions, sets, borders: Vec::new(), count: pixels };
         for i in 0..pixels {
             let right = ((i + 1) % width != 0).then_some(i + 1);
             let below = (i + width < pixels).then_some(i + width);
             for next in [right, below].into_iter().flatten() {
-                borders.push(Border { between: [i as u32, next as u32], length: 1 });
+                let between = [i as u32, next as u32];
+                if image.pixel(i).map(f32::to_bits) == image.pixel(next).map(f32::to_bits) {
+                    merging.unite(between);
+                } else {
+                    merging.borders.push(Border { between, length: 1 });
+                }
             }
         }
-        let mut sets = DisjointSets::default();
-        sets.reset(pixels as u32);
-        Self { regions, sets, borders, count: pixels }
+        merging.join_borders();
+        merging
+    }
+
+    /// Makes one region of two, unless they are.
+    fn unite(&mut self, between: [u32; 2]) {
+        let [a, b] = between.map(|region| self.sets.root(region));
+        if a != b {
+            let region = self.regions[a as usize].with(&self.regions[b as usize]);
+            let root = self.sets.unite(a, b);
+            self.regions[root as usize] = region;
+            self.count -= 1;
+        }
     }
 
     /// Merges what is not worth a border, and then what is worth least until there are no more than `most`.
     pub(super) fn run(&mut self, most: usize, noise: f64) {
         let worth = WORTH * (noise * noise + UNSEEN * UNSEEN);
         let mut limit = FIRST * worth;
-        loop {
-            // What pays for itself stays, as long as there are not too many.
-            let least = if limit <= worth { 1 } else { most };
-            while self.round(limit, least) {}
+        while limit < worth {
+            self.stage(limit, 1, FEW);
             limit *= NEXT;
-            if self.count == 1 || self.borders.is_empty() || limit > worth && self.count <= most {
+        }
+        // All that does not pay for itself.
+        self.stage(worth, 1, 0.0);
+        // What does stays, unless there is too much of it.
+        while self.count > most && !self.borders.is_empty() {
+            self.stage(limit, most, 0.0);
+            limit *= NEXT;
+        }
+    }
+
+    /// Rounds of merging at a cost within `limit`, down to `least` regions, until a share of no more than `few` of them goes in one.
+    fn stage(&mut self, limit: f64, least: usize, few: f64) {
+        loop {
+            let before = self.count;
+            self.round(limit, least);
+            if (before - self.count) as f64 <= few * before as f64 {
                 return;
             }
         }
     }
 
-    /// Merges neighbors that are each other's best at a cost within `limit`, while there are more than `least`; whether there were any.
-    fn round(&mut self, limit: f64, least: usize) -> bool {
+    /// Merges neighbors that are each other's best at a cost within `limit`, while there are more than `least`.
+    fn round(&mut self, limit: f64, least: usize) {
         if self.count <= least {
-            return false;
+            return;
         }
         let costs: Vec<f64> = self.borders.iter().map(|border| self.cost(border)).collect();
         let mut best = vec![u32::MAX; self.regions.len()];
         for (at, (border, &cost)) in self.borders.iter().zip(&costs).enumerate() {
             for region in border.between {
                 let known = &mut best[region as usize];
-                if *known == u32::MAX || cost < costs[*known as usize] {
+                let is_better = |known: usize| match cost.total_cmp(&costs[known]) {
+                    Ordering::Equal => shuffled(at) < shuffled(known),
+                    order => order == Ordering::Less,
+                };
+                if *known == u32::MAX || is_better(*known as usize) {
                     *known = at as u32;
                 }
             }
         }
-        let is_mutual = |at: &usize| self.borders[*at].between.iter().all(|&region| best[region as usize] == *at as u32);
+        let is_mutual =
+            |at: &usize| self.borders[*at].between.iter().all(|&region| best[region as usize] == *at as u32);
         let mut merged: Vec<usize> =
             (0..costs.len()).filter(|&at| costs[at] <= limit).filter(|at| is_mutual(at)).collect();
         if merged.is_empty() {
-            return false;
+            return;
         }
         if self.count - merged.len() < least {
             sort::ascending(&mut merged, |&at| costs[at]);
             merged.truncate(self.count - least);
         }
-        for at in &merged {
-            let [a, b] = self.borders[*at].between;
-            let region = self.regions[a as usize].with(&self.regions[b as usize]);
-            let root = self.sets.unite(a, b);
-            self.regions[root as usize] = region;
-        }
-        self.count -= merged.len();
+        merged.into_iter().for_each(|at| self.unite(self.borders[at].between));
         self.join_borders();
-        true
     }
 
     /// By how much the squares that two regions miss grow if they become one, per pixel of the border between them.

@@ -8,7 +8,6 @@ mod merge;
 #[cfg(test)]
 mod tests;
 
-use alloc::vec;
 use alloc::vec::Vec;
 
 use dvp_core::{Image, ImageView};
@@ -26,20 +25,16 @@ pub struct Regions {
     pub count: usize,
 }
 
-/// At most `most` regions (one at least) of a picture whose noise has the standard deviation `noise`; fewer where more would say what is not seen. None if
-/// it is no image, or holds NaN or infinity.
+/// At most `most` regions (one at least) of a picture whose noise has the standard deviation `noise`; fewer where more would say what is not seen.
 #[must_use]
 #[inline(never)]
-pub fn regions(image: &ImageView<'_, f32>, most: usize, noise: f64) -> Option<Regions> {
-    if !image.data().iter().all(|value| value.is_finite()) {
-        return None;
-    }
+pub fn regions(image: &ImageView<'_, f32>, most: usize, noise: f64) -> Regions {
     let mut merging = Merging::of(image);
     merging.run(most.max(1), noise);
     let (labels, colors) = merging.finish();
-    let mut data = vec![0.0; image.data().len()];
-    for (c, channel) in data.chunks_exact_mut(labels.len()).enumerate() {
+    let mut flat = Image::zeros(image.size());
+    for (c, channel) in flat.data_mut().chunks_exact_mut(labels.len()).enumerate() {
         channel.iter_mut().zip(&labels).for_each(|(value, &label)| *value = colors[label as usize][c]);
     }
-    Some(Regions { image: Image::from_planar(image.size(), data).ok()?, labels, count: colors.len() })
+    Regions { image: flat, labels, count: colors.len() }
 }

@@ -1,6 +1,7 @@
 //! Pictures without a mixed pixel: what is at the middle of a pixel is a fact.
 
 use dvp_core::Vec2;
+use dvp_core::render::EdgeProfile;
 
 use super::edges::hard;
 use super::*;
@@ -111,4 +112,19 @@ fn fields_with_a_gap_between_are_not_cut() {
     let partition = Partition::of(&picture.view(), Reading::default()).unwrap();
     let areas: Vec<usize> = partition.faces.iter().map(|face| face.area).collect();
     assert_eq!(areas[1..], [110, 100], "{areas:?}");
+}
+
+#[test]
+fn upright_sides_among_stairs_are_exact() {
+    // Modules of three pixels, as of a code to be read by machines, beside a disk whose edge is stairs.
+    let module = |x: f64, y: f64| ((x * 7.0 + y * 13.0 + x * y * 5.0) * 0.618).fract() < 0.5;
+    let picture = hard(|[x, y]| {
+        let [column, row] = [x - 9.0, y - 9.0].map(|at| (at / 3.0).floor());
+        let is_inside = (0.0..15.0).contains(&column) && (0.0..15.0).contains(&row);
+        let is_disk = (x - 76.0).hypot(y - 76.0) < 14.0;
+        if is_inside && module(column, row) || is_disk { BLUE } else { WHITE }
+    });
+    let found = found(&picture);
+    assert!(found.edge.law != EdgeProfile::<f32>::area().law, "not read as hard: {:?}", found.edge);
+    assert!(wrong(&picture, &found) <= 2, "{} pixels", wrong(&picture, &found));
 }

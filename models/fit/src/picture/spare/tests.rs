@@ -59,3 +59,18 @@ fn what_is_seen_is_needed() {
     let faint = rectangle([20.0, 3.0], [20.0, 50.5], [0.85, 0.9, 0.95]);
     assert_eq!(left(&[square, line, dot, faint], &[]), 4);
 }
+
+#[test]
+fn what_lies_on_the_sides_of_pixels_is_seen() {
+    // Beyond the corner of the picture, but for two by two pixels: its outline goes along their sides, and the pixels on that are those outside.
+    let objects = [rectangle([20.0, 20.0], [30.0, 30.0], BLUE), rectangle([3.0, 3.0], [0.5, 0.5], BLUE)];
+    let mut canvas = Canvas::default();
+    let scene = Scene { objects: objects.to_vec(), ..Scene::empty([1.0; 3]) };
+    let (image, drawing) = canvas.paint(&scene, ImageSize::new(SIDE, SIDE).unwrap()).unwrap();
+    let image = image.clone();
+    let spare = Spare::of(&drawing, &image).expect("the small one is thin");
+    let mut traced = trace(&image.view(), &Known::default()).unwrap();
+    (traced.scene, traced.covariances) = (scene, vec![None; 2]);
+    spare.leave_out(&mut traced, &drawing, &image.view(), &mut canvas).unwrap();
+    assert_eq!(traced.scene.objects.len(), 2);
+}

@@ -235,3 +235,40 @@ proptest! {
         }
     }
 }
+
+/// Samples in the middle of every pixel of the sides of an upright polygon, exact.
+fn exact(points: &[[f64; 2]]) -> Vec<Sample> {
+    let next = points.iter().cycle().skip(1);
+    let side = |(&from, &to): (&[f64; 2], &[f64; 2])| {
+        let (from, to) = (Vec2::from(from), Vec2::from(to));
+        let (along, count) = ((to - from).normalized().unwrap(), (to - from).length().round() as usize);
+        let sample = move |k: usize| {
+            let sample = Sample::new(from + along * (k as f64 + 0.5), along.perp(), 0.002);
+            Sample { is_exact: true, ..sample }
+        };
+        (0..count).map(sample).collect::<Vec<_>>()
+    };
+    points.iter().zip(next).flat_map(side).collect()
+}
+
+#[test]
+fn upright_sides_that_are_exact_are_a_polygon_with_these_sides() {
+    let corners = [[10.0, 10.0], [40.0, 10.0], [40.0, 11.0], [20.0, 11.0], [20.0, 50.0], [10.0, 50.0]];
+    let run = exact(&corners);
+    let found = fit_closed(&RingSamples { runs: vec![run.clone()], closed: true }, &RULER).unwrap();
+    let mut points = path(found.shape).points;
+    let first = points.iter().position(|&point| point == corners[0]).unwrap();
+    points.rotate_left(first);
+    assert_eq!(points, corners);
+    assert_eq!(found.misfit, 0.0);
+    // The lower end is hidden: its sides go on to where they meet.
+    let hidden = |sample: &Sample| sample.point.y > 45.0 && sample.point.x < 15.0;
+    let start = run.iter().rposition(hidden).unwrap() + 1;
+    let seen: Vec<Sample> =
+        run.iter().cycle().skip(start).take(run.len()).filter(|sample| !hidden(sample)).copied().collect();
+    let found = fit_closed(&RingSamples { runs: vec![seen], closed: false }, &RULER).unwrap();
+    let mut points = path(found.shape).points;
+    let first = points.iter().position(|&point| point == corners[0]).unwrap();
+    points.rotate_left(first);
+    assert_eq!(points, corners);
+}
