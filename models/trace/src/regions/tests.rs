@@ -1,4 +1,5 @@
-use std::vec::Vec;
+use alloc::vec;
+use alloc::vec::Vec;
 
 use dvp_core::{Image, ImageSize};
 use proptest::prelude::*;
@@ -48,7 +49,7 @@ proptest! {
         let image = picture(width, height, |x, y| core::array::from_fn(|c| values[3 * (y * width + x) + c]));
         let found = regions(&image.view(), most, noise);
         prop_assert!(found.count <= most && found.count > 0);
-        let mut sums = std::vec![([0.0_f64; 3], 0.0); found.count];
+        let mut sums = vec![([0.0_f64; 3], 0.0); found.count];
         for (i, &label) in found.labels.iter().enumerate() {
             let (sum, pixels) = &mut sums[label as usize];
             (0..3).for_each(|c| sum[c] += f64::from(image.view().pixel(i)[c]));
@@ -59,7 +60,7 @@ proptest! {
             prop_assert!((0..3).all(|c| (sum[c] / pixels - f64::from(found.image.view().pixel(i)[c])).abs() < 1e-5));
         }
         // From the first pixel of each region all others are reached.
-        let mut reached = std::vec![false; width * height];
+        let mut reached = vec![false; width * height];
         for region in 0..found.count as u32 {
             let mut open: Vec<usize> = found.labels.iter().position(|&label| label == region).into_iter().collect();
             while let Some(i) = open.pop() {
