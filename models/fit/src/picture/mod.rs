@@ -226,7 +226,7 @@ fn drawing_or_segments(
         Ok(traced) => drawing(fitter, traced, image, known, scratch)?,
         Err(reason) => spoiled_or_segments(fitter, &reason, image, known, scratch)?,
     };
-    cut::or_regions(fit, image, options.max_objects, scratch)
+    cut::or_regions(fit, image, (options.max_objects, known.coded), scratch)
 }
 
 /// The picture as it was before it was spoiled; none if a coder has spoiled it, which is known then, or if it was no drawing.

@@ -348,45 +348,6 @@ fn pixels_of_a_sprite_are_squares() {
 }
 
 #[test]
-fn codes_that_machines_read_are_no_noise() {
-    // 31 x 31 modules of two colors, in any of which the next one may be of either: as noise, there is nothing left of them.
-    let module = |x: usize, y: usize| (x * x * 7 + y * y * 13 + x * y * 31 + x * 5 + y * 3) % 11 < 5;
-    let is_dark = |x: usize, y: usize| (2..29).contains(&x) && (2..29).contains(&y) && module(x, y);
-    let pixels: Vec<f32> = (0..31 * 31).flat_map(|i| [if is_dark(i % 31, i / 31) { 0.0 } else { 1.0 }; 3]).collect();
-    let code = Image::from_interleaved(ImageSize::new(31, 31).unwrap(), &pixels).unwrap();
-    for times in [1, 3] {
-        let shown = repeated(&code, times);
-        let found = fit(&shown, &Known::default(), FitOptions::default());
-        let painted = Canvas::default().paint(&found.scene, shown.size()).unwrap().0.clone();
-        let missed = painted.data().iter().zip(shown.data()).filter(|(a, b)| (*a - *b).abs() > 0.1).count();
-        assert_eq!(missed, 0, "of {} values, {times} times", shown.data().len());
-    }
-}
-
-#[test]
-fn what_is_not_flat_is_cut_into_as_many_regions_as_may_be() {
-    // Folds of a cloth, and a ball with a highlight on it.
-    let wave = |x: f32, y: f32| 0.5 + 0.3 * (0.11 * x + 0.05 * y).sin() + 0.1 * (0.31 * y - 0.13 * x).sin();
-    let color = |x: usize, y: usize| {
-        let (x, y) = (x as f32, y as f32);
-        let ball = 1.0 - (x - 60.0).hypot(y - 40.0) / 30.0;
-        if ball > 0.0 { [0.3 + 0.7 * ball, 0.1 + 0.5 * ball * ball, 0.2] } else { [wave(x, y), 0.4, 1.0 - wave(y, x)] }
-    };
-    let pixels: Vec<f32> = (0..96 * 96).flat_map(|i| color(i % 96, i / 96)).collect();
-    let image = Image::from_interleaved(ImageSize::new(96, 96).unwrap(), &pixels).unwrap();
-    let mut before = f32::INFINITY;
-    for most in [4, 20, 60] {
-        let known = Known::default().with_flat(true);
-        let found = fit(&image, &known, FitOptions::default().with_max_objects(most));
-        assert_eq!(found.stop, StopReason::NotFlat);
-        assert!(found.scene.objects.len() <= most, "{} of {most}", found.scene.objects.len());
-        assert!(found.loss < 0.8 * before, "{} of {before} with {most}", found.loss);
-        before = found.loss;
-    }
-    assert!(before < 0.04, "{before}");
-}
-
-#[test]
 fn smooth_edges_that_are_off_by_a_share_are_not_wrong_unless_their_pixels_are_repeated() {
     // A square whose left edge covers a half of its pixels, and a scene that has a third there; another one without the square.
     let edge = |share: f32| {

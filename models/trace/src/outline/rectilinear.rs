@@ -3,6 +3,8 @@
 use alloc::vec::Vec;
 
 use dvp_core::shape::PathRing;
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
 
 use super::track::Track;
 use super::{Outline, OutlineShape};

@@ -7,6 +7,8 @@ use core::cmp::Ordering;
 use dvp_core::ImageView;
 use dvp_core::geometry::DisjointSets;
 use dvp_core::sort;
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
 
 /// Boundary of a region that costs as much as that there is one more region, pixels.
 const REGION_LENGTH: f64 = 16.0;

@@ -7,6 +7,9 @@
 //! pixel wide. Its squares are read with each pixel repeated ([`enlarged`]), where their sides are edges like others. Which of the two a picture is, the
 //! length of its description decides ([`Squares`]).
 
+#[cfg(test)]
+mod tests;
+
 use alloc::vec::Vec;
 
 #[cfg(not(feature = "std"))]
@@ -14,7 +17,6 @@ use num_traits::Float as _;
 
 use dvp_core::shape::gcd;
 use dvp_core::{Image, ImageSize, ImageView, Real as _};
-
 use dvp_trace::tuning::SQUARE;
 
 use crate::tuning::VISIBLE_ERROR;

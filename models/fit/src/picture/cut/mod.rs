@@ -1,5 +1,8 @@
 //! Pictures that are not flat, such as photographs: cut into regions of one color, which are drawn.
 
+#[cfg(test)]
+mod tests;
+
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
@@ -10,7 +13,7 @@ use dvp_trace::noise::noise_level;
 use dvp_trace::regions::regions;
 use dvp_trace::trace_regions;
 
-use super::{CLEARLY_WORSE, PictureScratch, of_painted};
+use super::{CLEARLY_WORSE, PictureScratch, of_painted, shorter};
 use crate::tuning::NOT_FLAT_SHARE;
 use crate::{Fit, FitError, StopReason};
 
@@ -18,12 +21,12 @@ use crate::{Fit, FitError, StopReason};
 const MOST_PIXELS: usize = 1 << 18;
 
 /// A fit that leaves no more unexplained than flat pictures do, or that of regions, at most `most`, if these are nearer to the picture: with more things
-/// than the fit has much nearer, unless that explains nothing.
+/// than the fit has much nearer, unless that explains nothing. What a coder leaves (`is_coded`) is no things: there the shorter description is taken.
 #[inline(never)]
 pub(super) fn or_regions(
     fit: Fit<f32>,
     image: ImageView<'_, f32>,
-    most: usize,
+    (most, is_coded): (usize, bool),
     scratch: &mut PictureScratch,
 ) -> Result<Fit<f32>, FitError> {
     if fit.unexplained <= NOT_FLAT_SHARE {
@@ -42,10 +45,13 @@ pub(super) fn or_regions(
     }
     let (painted, drawing) = scratch.canvas.paint(&traced.scene, size)?;
     let cut = of_painted(&traced.scene, &drawing, painted, image)?;
+    let cut = Fit { bits: traced.bits, stop: StopReason::NotFlat, ..cut };
+    if is_coded {
+        return shorter(fit, cut, image, &mut scratch.canvas);
+    }
     let is_more = cut.scene.objects.len() > fit.scene.objects.len();
     let factor = if is_more { CLEARLY_WORSE.powf(1.0 - f32::of(fit.unexplained)) } else { 1.0 };
-    let is_taken = factor * cut.loss < fit.loss;
-    Ok(if is_taken { Fit { bits: traced.bits, stop: StopReason::NotFlat, ..cut } } else { fit })
+    Ok(if factor * cut.loss < fit.loss { cut } else { fit })
 }
 
 /// The means of blocks of `side` x `side` pixels; of fewer at the borders on the right and below.
@@ -64,20 +70,4 @@ fn shrunk(image: &ImageView<'_, f32>, side: usize) -> Option<Image<f32>> {
         }
     }
     Some(small)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn blocks_become_their_means_and_those_at_the_border_are_smaller() {
-        let size = ImageSize::new(5, 3).unwrap();
-        let image = Image::from_planar(size, (0..45).map(|i| i as f32 / 64.0).collect()).unwrap();
-        let small = shrunk(&image.view(), 2).unwrap();
-        assert_eq!([small.size().width(), small.size().height()], [3, 2]);
-        let means: Vec<f32> = small.view().channel(0).iter().map(|value| value * 64.0).collect();
-        assert_eq!(means, [3.0, 5.0, 6.5, 10.5, 12.5, 14.0]);
-        assert_eq!(shrunk(&image.view(), 1).unwrap(), image);
-    }
 }
