@@ -14,8 +14,10 @@ const CLEAR: f32 = 0.4;
 /// Steps within which an edge ends, on each side of its largest: a blur of four pixels has fallen to an eighth there.
 const REACH: usize = 8;
 
-/// Whether more edges along rows and columns are wide than clear. Where nothing but ramps is seen, there are neither.
-pub(super) fn are_wide(image: &ImageView<'_, f32>) -> bool {
+/// Share of the edges of a picture, along rows and columns, that are clear rather than wide: up to .07 in drawings that were blurred by 1.5 pixels and more,
+/// .16 and more in photographs, .74 and more in drawings; 1 where there are no edges.
+#[must_use]
+pub fn clear_share(image: &ImageView<'_, f32>) -> f64 {
     let (width, height) = (image.size().width(), image.size().height());
     let channels = [0, 1, 2].map(|c| image.channel(c));
     let mut counts = Counts::default();
@@ -32,7 +34,13 @@ pub(super) fn are_wide(image: &ImageView<'_, f32>) -> bool {
     };
     (0..height).for_each(|y| add(y * width, 1, width));
     (0..width).for_each(|x| add(x, width, height));
-    counts.wide > counts.clear
+    let all = counts.wide + counts.clear;
+    if all == 0 { 1.0 } else { counts.clear as f64 / all as f64 }
+}
+
+/// Whether more edges are wide than clear.
+pub(super) fn are_wide(image: &ImageView<'_, f32>) -> bool {
+    clear_share(image) < 0.5
 }
 
 /// Numbers of edges.

@@ -29,6 +29,8 @@ use dvp_core::{Image, ImageView};
 use crate::partition::Color;
 use crate::tuning::MARKERS_APART;
 
+use edge::are_wide;
+pub use edge::clear_share;
 use grow::Region;
 
 /// A step of the 256 that a channel of most pictures has.
@@ -57,7 +59,7 @@ pub struct LeveledRamp {
 /// The picture without its ramps; none if it has none, or if its edges are wide.
 #[must_use]
 pub fn level(image: &ImageView<'_, f32>) -> Option<Leveled> {
-    if !smooth::may_change(image) || edge::are_wide(image) {
+    if !smooth::may_change(image) || are_wide(image) {
         return None;
     }
     let (width, count) = (image.size().width(), image.size().pixels());

@@ -10,6 +10,7 @@ use alloc::vec::Vec;
 
 use dvp_core::{Image, ImageSize, ImageView, Real as _};
 use dvp_trace::noise::noise_level;
+use dvp_trace::ramps::clear_share;
 use dvp_trace::regions::regions;
 use dvp_trace::trace_regions;
 
@@ -20,8 +21,12 @@ use crate::{Fit, FitError, StopReason};
 /// Most pixels that are cut, about: what a few hundred regions are is seen in as many, and more take seconds.
 const MOST_PIXELS: usize = 1 << 18;
 
+/// Share of the edges that are clear in any photograph: in pictures that were blurred there are fewer.
+const CLEAR: f64 = 0.1;
+
 /// A fit that leaves no more unexplained than flat pictures do, or that of regions, at most `most`, if these are nearer to the picture: with more things
 /// than the fit has much nearer, unless that explains nothing. What a coder leaves (`is_coded`) is no things: there the shorter description is taken.
+/// Of a picture that was blurred bands are none either.
 #[inline(never)]
 pub(super) fn or_regions(
     fit: Fit<f32>,
@@ -29,7 +34,7 @@ pub(super) fn or_regions(
     (most, is_coded): (usize, bool),
     scratch: &mut PictureScratch,
 ) -> Result<Fit<f32>, FitError> {
-    if fit.unexplained <= NOT_FLAT_SHARE {
+    if fit.unexplained <= NOT_FLAT_SHARE || clear_share(&image) < CLEAR {
         return Ok(fit);
     }
     let size = image.size();
