@@ -1,7 +1,7 @@
 //! A picture to its scene, whatever kind of picture it is: the one entry for programs that embed the fit.
 //!
 //! Two fits share the work. [`dvp_trace`] reads drawings: flat colors with clear edges, and what noise, blur and coders left of such. [`Fitter`]
-//! reads everything else: scenes of the paper's renderer, pictures that are not flat, and those whose shapes are known. [`fit_picture`] decides
+//! reads everything else: scenes of the paper's renderer, and those whose shapes are known. [`fit_picture`] decides
 //! which one a picture takes, and cuts the openings out of transparent ones.
 //!
 //! | file | holds |
@@ -91,7 +91,7 @@ pub struct PictureScratch {
 /// The picture is taken as a drawing if it is one (flat colors with clear edges), or was one before it got noise, a blur, or what coders and
 /// filters leave; else as segments; where edges leave a doubt as what their profile says. If the options of `fitter` know the shapes, these are
 /// laid on it, unless a drawing without them is much nearer, or shorter where a coder has changed the picture; if they say how objects mix, it is
-/// taken as segments.
+/// taken as segments. What is no drawing at all, as a photograph, is cut into regions of one color, as many as objects are allowed.
 ///
 /// A transparent picture comes over its matte ([`Ground`]), and [`Known::matte`] says which color that is; of an opaque one it
 /// is none.

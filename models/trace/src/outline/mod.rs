@@ -16,6 +16,7 @@
 //! | `as_ring` | outlines of any kind as rings of lines, arcs and cubics |
 //! | `behind` | regular polygons and stars that show one side, or one tip |
 //! | `bent` | what windows across circles and ellipses are off by |
+//! | `rectilinear` | upright and level sides that are known exactly |
 //! | `figure`, `conic`, `whole`, `trial` | circles, ellipses, rectangles, regular polygons and stars, fitted to all samples |
 
 mod as_ring;
