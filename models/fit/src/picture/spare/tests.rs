@@ -1,5 +1,6 @@
 //! Which thin things go, and which stay.
 
+use dvp_core::render::EdgeProfile;
 use dvp_core::shape::{AnyShape, Rectangle};
 use dvp_core::{ImageSize, Object, Pose, Scene};
 use dvp_trace::{Known, trace};
@@ -65,7 +66,7 @@ fn what_lies_on_the_sides_of_pixels_is_seen() {
     // Beyond the corner of the picture, but for two by two pixels: its outline goes along their sides, and the pixels on that are those outside.
     let objects = [rectangle([20.0, 20.0], [30.0, 30.0], BLUE), rectangle([3.0, 3.0], [0.5, 0.5], BLUE)];
     let mut canvas = Canvas::default();
-    let scene = Scene { objects: objects.to_vec(), ..Scene::empty([1.0; 3]) };
+    let scene = Scene { objects: objects.to_vec(), edge: EdgeProfile::area(), ..Scene::empty([1.0; 3]) };
     let (image, drawing) = canvas.paint(&scene, ImageSize::new(SIDE, SIDE).unwrap()).unwrap();
     let image = image.clone();
     let spare = Spare::of(&drawing, &image).expect("the small one is thin");
