@@ -2,7 +2,7 @@
 
 use alloc::collections::BTreeMap;
 
-use dvp_core::tensor::{Backend, ParametersError, Tensor};
+use dvp_core::tensor::{Backend, ParametersError, Tensor, TensorError};
 
 use crate::error::NetError;
 
@@ -14,11 +14,15 @@ pub(super) type Gradients<B> = BTreeMap<String, Tensor<B>>;
 /// # Errors
 /// [`NetError::NotFinite`] if it, or the `loss` of this `step`, is no number.
 pub(super) fn length<B: Backend>(gradients: &Gradients<B>, loss: f64, step: u64) -> Result<f64, NetError> {
-    let mut sum = 0.0;
-    for gradient in gradients.values() {
-        sum += gradient.mul(gradient)?.sum_all()?.number()?;
-    }
-    let length = sum.sqrt();
+    let squares = gradients.values().map(|gradient| gradient.mul(gradient)?.sum_all()?.reshape(&[1]));
+    let squares: Vec<Tensor<B>> = squares.collect::<Result<_, TensorError>>()?;
+    // All at once: a graphics card is waited for whenever a number is read.
+    let squares = if squares.is_empty() {
+        Vec::new()
+    } else {
+        Tensor::concat(&squares.iter().collect::<Vec<_>>(), 0)?.to_f64()?
+    };
+    let length = squares.iter().sum::<f64>().sqrt();
     match [loss, length].into_iter().find(|number| !number.is_finite()) {
         Some(loss) => Err(NetError::NotFinite { step, loss }),
         None => Ok(length),

@@ -14,6 +14,7 @@ use dvp_net::train::{Batch, Source};
 use rand::SeedableRng as _;
 use rand::seq::SliceRandom as _;
 use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
 
 use crate::format::{DEFAULT_MAX_PIXELS, DataSet, read_picture};
 use crate::generate::{SceneSettings, sample_scene};
@@ -98,7 +99,7 @@ impl Data {
         match self {
             Self::Generated { settings, bank, size, seed, .. } => {
                 let scene = |number| sample_scene(settings, bank, *size, *seed, number);
-                paint(numbers.into_iter().map(scene).collect(), *size, painter)
+                paint(numbers.into_par_iter().map(scene).collect(), *size, painter)
             }
             Self::Folder { all, .. } => {
                 let mut batch = Batch::new(Vec::with_capacity(len), Vec::new());
@@ -135,7 +136,7 @@ pub(super) fn reread(model: &Model<Host>, images: &[Image<f32>], painter: &Scene
 }
 
 fn paint(scenes: Vec<Scene<f32>>, size: ImageSize, painter: &SceneSteps<f32>) -> Result<Batch<f32>> {
-    let images = scenes.iter().map(|scene| Ok(painter.paint(scene, size)?)).collect::<Result<_>>()?;
+    let images = scenes.par_iter().map(|scene| Ok(painter.paint(scene, size)?)).collect::<Result<_>>()?;
     Ok(Batch::new(images, scenes))
 }
 

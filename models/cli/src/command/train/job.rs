@@ -13,6 +13,9 @@ use super::store::Store;
 use crate::command::options::BankChoice;
 use crate::command::{Console, Outcome};
 
+#[cfg(feature = "burn")]
+type BurnDevice = <dvp_burn::Burn as Backend>::Device;
+
 /// A run, ready to go.
 pub(super) trait Job {
     /// Makes all steps that are left.
@@ -36,9 +39,9 @@ pub(super) fn go_on(
     match backend {
         BackendName::Host => job.go::<Host>(HostDevice, store, resume, console),
         #[cfg(feature = "burn")]
-        BackendName::Burn => {
-            job.go::<dvp_burn::Burn>(<dvp_burn::Burn as Backend>::Device::flex(), store, resume, console)
-        }
+        BackendName::Burn => job.go::<dvp_burn::Burn>(BurnDevice::flex(), store, resume, console),
+        #[cfg(feature = "wgpu")]
+        BackendName::Wgpu => job.go::<dvp_burn::Burn>(BurnDevice::wgpu(Default::default()), store, resume, console),
         #[cfg(feature = "candle")]
         BackendName::Candle => job.go::<dvp_candle::Candle>(dvp_candle::CandleDevice::CPU, store, resume, console),
         #[allow(unreachable_patterns, reason = "no backend is missing if all features are on")]

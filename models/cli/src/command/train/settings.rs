@@ -124,6 +124,8 @@ pub(super) enum BackendName {
     Burn,
     /// candle, if built with --features candle
     Candle,
+    /// burn on a graphics card by Vulkan, Metal or DirectX, if built with --features wgpu
+    Wgpu,
 }
 
 impl Settings {
