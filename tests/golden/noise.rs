@@ -17,10 +17,13 @@ const PICTURES: u64 = 24;
 fn picture(index: u64) -> (RgbImage, usize) {
     let size = ImageSize::new(SIDE as usize, SIDE as usize).unwrap();
     let scene = sample_scene(&SceneSettings::mds_hr(), &mdshr_bank(), size, 11, index);
-    let painted = Painter::default().paint(&scene, size).unwrap();
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "colors are in [0, 1]")]
-    let bytes = painted.to_interleaved().into_iter().map(|v| (v * 255.0).round() as u8).collect();
-    (RgbImage::from_raw(SIDE, SIDE, bytes).unwrap(), visible_object_count(&scene))
+    (to_picture(&Painter::default().paint(&scene, size).unwrap()), visible_object_count(&scene))
+}
+
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "colors are in [0, 1], sides short")]
+fn to_picture(image: &Image<f32>) -> RgbImage {
+    let bytes = image.to_interleaved().into_iter().map(|v| (v * 255.0).round() as u8).collect();
+    RgbImage::from_raw(image.size().width() as u32, image.size().height() as u32, bytes).unwrap()
 }
 
 fn to_image(picture: &RgbImage) -> Image<f32> {
@@ -65,6 +68,34 @@ fn objects_are_counted_through_noise() {
     }
 }
 
+/// Without shapes to know, three of 24 may be missed where noise is as strong as most contrasts. A denoised boundary between colors that
+/// differ by less than the noise is still one.
+#[test]
+fn objects_are_counted_through_strong_noise() {
+    for (sigma, least) in [(0.1, 23), (0.2, 22), (0.3, 21)] {
+        let (exact, _) = exact_counts(FitOptions::default(), |mut picture, index| {
+            add_noise(&mut picture, sigma, index);
+            picture
+        });
+        assert!(exact >= least, "{exact} at {sigma}");
+    }
+}
+
+/// Every sample of the outline is off by more than the width within which samples count in a clean picture.
+#[test]
+fn a_square_in_strong_noise_is_no_ellipse() {
+    let side = 256;
+    let inside = |x: f64, y: f64| (x - 0.5).abs() < 0.25 && (y - 0.45).abs() < 0.25;
+    let clean = paint(side, |x, y| if inside(x, y) { [0.3, 0.35, 0.7] } else { [0.6, 0.55, 0.3] });
+    let mut noisy = to_picture(&clean);
+    add_noise(&mut noisy, 0.2, 5);
+    let fit = fit(&to_image(&noisy), 8);
+    let painted = Painter::default().paint(&fit.scene, clean.size()).unwrap();
+    let off = painted.data().iter().zip(clean.data()).filter(|(a, b)| (*a - *b).abs() > 0.1).count();
+    // An ellipse of the same area misses a twelfth of the square, 1,360 pixels; two rows of pixels around it are 1,024.
+    assert!(off < 3 * 512, "{off} values");
+}
+
 /// JPEG of quality 50, colors at half the resolution; one miss of 24 is above .95.
 #[test]
 fn objects_are_counted_through_compression() {
@@ -93,17 +124,17 @@ fn fit(image: &Image<f32>, max_objects: usize) -> Fit<f32> {
     fit
 }
 
+/// `fit_picture` reads it as a ramp of colors.
 #[test]
-fn a_gradient_becomes_bands() {
+fn a_gradient_is_not_flat() {
     for side in [64, 256] {
         let image = paint(side, |x, _| [x, 0.3, 1.0 - x]);
-        let bands = fit(&image, 12);
-        assert_eq!(bands.stop, StopReason::NotFlat);
-        assert!((3..=12).contains(&bands.scene.objects.len()));
-        assert!(bands.unexplained < 0.1, "{}", bands.unexplained);
-        let few = fit(&image, 3);
-        assert!(few.scene.objects.len() <= 3);
-        assert!(few.unexplained > bands.unexplained && few.unexplained < 0.4, "{}", few.unexplained);
+        for most in [3, 12] {
+            let bands = fit(&image, most);
+            assert!(bands.scene.objects.len() <= most);
+            assert!(matches!(bands.stop, StopReason::NotFlat | StopReason::NoBetterThanFlat), "{:?}", bands.stop);
+            assert!((0.05..=1.0).contains(&bands.unexplained), "{}", bands.unexplained);
+        }
     }
 }
 

@@ -212,21 +212,3 @@ fn errors_hand_on_what_caused_them() {
     assert_eq!(render.source().map(ToString::to_string), Some(RenderError::Starts.to_string()));
     assert!(FitError::NotFinite { index: 0 }.source().is_none());
 }
-
-#[test]
-fn segments_of_a_picture_that_is_not_flat_blend_if_told_to() {
-    // A texture around a ring: read as segments after it was read as objects, whose reading told nothing of these regions.
-    let size = ImageSize::new(48, 40).unwrap();
-    let value = |i: usize| {
-        let [x, y] = [(i % 48) as f32 - 23.5, (i / 48) as f32 - 19.5];
-        let is_ring = (8.0..14.0).contains(&x.hypot(y));
-        let texture = 0.25 + 0.2 * (0.9 * x).sin() * (0.7 * y).cos();
-        if is_ring { [0.9, 0.2, texture] } else { [texture, 0.4, texture] }
-    };
-    let image = Image::from_interleaved(size, &(0..48 * 40).flat_map(value).collect::<Vec<f32>>()).unwrap();
-    for compositing in [Compositing::Blend, Compositing::Over] {
-        let options = FitOptions::default().with_compositing(Some(compositing));
-        let fit = fit_image(image.view(), &options).unwrap();
-        assert_eq!(fit.scene.compositing, compositing);
-    }
-}

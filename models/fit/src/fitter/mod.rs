@@ -41,7 +41,7 @@ use crate::segment::{EdgeKind, EdgeSample, Evidence, Segmentation};
 use crate::split::simple_shapes::SimpleShapes;
 use crate::split::twins::TwinScratch;
 use crate::{Fit, FitError, FitOptions};
-use run::{Care, Run};
+use run::Run;
 use shown::Shown;
 use subsample::Subsampling;
 
@@ -193,25 +193,16 @@ impl<T: Real> Fitter<T> {
         image: ImageView<'_, T>,
         kind: EdgeKind<T>,
         compositing: Compositing,
-        care: Care,
         scratch: &mut FitScratch<T>,
     ) -> Result<Fit<T>, FitError> {
         let edge = kind.profile(T::of_usize(image.size().unit_px()));
-        // An order decided under another edge kind is decided anew, and what regions were just made segments was not read before.
-        if scratch.segmentation.compositing() != compositing
-            || compositing == Compositing::Over
-            || care == Care::Segments
-        {
+        // An order decided under another edge kind is decided anew.
+        if scratch.segmentation.compositing() != compositing || compositing == Compositing::Over {
             scratch.segmentation.interpret(compositing);
         }
-        let mut run = Run { fitter: self, image, kind, edge, compositing, care, scratch };
-        if care == Care::Full {
-            run.join_pieces();
-            run.decide_order();
-        } else {
-            // Every segment shows its whole outline.
-            run.scratch.segmentation.forget_borders();
-        }
+        let mut run = Run { fitter: self, image, kind, edge, compositing, scratch };
+        run.join_pieces();
+        run.decide_order();
         run.scratch.segmentation.gather(image.size(), &kind);
         let found = if self.prototypes.is_empty() { run.unknown_shapes()? } else { run.known_shapes()? };
         run.finish(found)

@@ -1,5 +1,4 @@
-//! Which reading of a picture wins: clean, freed from noise or from what compression left, or as segments of a picture that
-//! is not flat.
+//! Which reading of a picture wins: clean, or freed from noise or from what compression left.
 //!
 //! A clean picture pays for an estimate of its noise and for counting its soft pixels. Others are read as the estimate says;
 //! where both a clean reading and one freed from noise are possible, the shorter description wins, at one noise level.
@@ -11,14 +10,14 @@ use dvp_core::render::{Compositing, EdgeLaw, EdgeProfile};
 use dvp_core::{ImageView, Real};
 use dvp_trace::noise::noise_level;
 
-use super::run::{Care, Run, has_fractions, visible_error};
+use super::run::{Run, has_fractions, visible_error};
 use super::{DIRECT_PIXELS, FitScratch, Fitter};
 use crate::block_code::BlockCode;
 use crate::colors::{is_rounded, round_color};
 use crate::segment::{EdgeKind, NoisyOptions, SegmentOptions};
 use crate::tuning::{
-    CODED_CLEARLY_SHORTER, CODED_NOISE, COMPRESSED_BLUR_PX, COMPRESSED_NOISE, FINE_ZONE, MANY_REGIONS, MISSED_SHARE,
-    MOST_CLEAN_REGIONS, NOT_FLAT_SHARE, QUIET_NOISE, TEXTURE_NOISE,
+    CODED_CLEARLY_SHORTER, CODED_NOISE, COMPRESSED_BLUR_PX, COMPRESSED_NOISE, MANY_REGIONS, MISSED_SHARE,
+    NOT_FLAT_SHARE, QUIET_NOISE,
 };
 use crate::{Fit, FitError, StopReason};
 
@@ -31,17 +30,15 @@ impl<T: Real> Fitter<T> {
     ) -> Result<Fit<T>, FitError> {
         let most_regions = self.options.max_objects.saturating_add(1);
         let noise = noise_level(&image, &mut scratch.differences);
-        let mut clean = false;
-        let fit = if noise >= T::of(QUIET_NOISE) {
+        let mut fit = if noise >= T::of(QUIET_NOISE) {
             let boundary = self.options.prices.boundary;
-            let options = NoisyOptions { noise, compressed: false, zone: None, most_regions, boundary };
+            let options = NoisyOptions { noise, compressed: false, most_regions, boundary };
             let readable = scratch.segmentation.read_noisy(&image, options);
-            self.fit_noisy(image, readable, scratch)?
+            self.fit_reading(image, readable, scratch)?
         } else {
             let readable = scratch.segmentation.read(&image, &SegmentOptions::default());
             let sharpened = readable && scratch.segmentation.is_sharpened();
-            clean = readable && !sharpened && scratch.segmentation.is_clean();
-            if clean {
+            if readable && !sharpened && scratch.segmentation.is_clean() {
                 self.fit_reading(image, true, scratch)?
             } else {
                 self.or_compressed(image, sharpened, most_regions, scratch)?
@@ -53,26 +50,10 @@ impl<T: Real> Fitter<T> {
         {
             return Ok(fit);
         }
-        if fit.unexplained > NOT_FLAT_SHARE && fit.stop != StopReason::NotFlat {
-            return self.or_not_flat(image, fit, clean, most_regions, scratch);
+        if fit.unexplained > NOT_FLAT_SHARE {
+            fit.stop = StopReason::NotFlat;
         }
         Ok(fit)
-    }
-
-    /// Fits the noisy regions last read; many of them as segments first, for a picture that is not flat to cost no more.
-    fn fit_noisy(
-        &self,
-        image: ImageView<'_, T>,
-        readable: bool,
-        scratch: &mut FitScratch<T>,
-    ) -> Result<Fit<T>, FitError> {
-        if readable && scratch.segmentation.region_count() > MANY_REGIONS {
-            let segments = self.fit_segments(image, scratch)?;
-            if segments.unexplained > NOT_FLAT_SHARE {
-                return Ok(segments);
-            }
-        }
-        self.fit_reading(image, readable, scratch)
     }
 
     /// A fit freed from what compression or a filter that sharpens left, or one of the picture as it is. The clean reading
@@ -89,22 +70,24 @@ impl<T: Real> Fitter<T> {
         let options = NoisyOptions {
             noise: T::of(COMPRESSED_NOISE),
             compressed: true,
-            zone: None,
             most_regions,
             boundary: self.options.prices.boundary,
         };
         let readable = scratch.segmentation.read_noisy(&image, options);
-        let mut freed = self.fit_noisy(image, readable, scratch)?;
+        let mut freed = self.fit_reading(image, readable, scratch)?;
+        if is_of_another_kind(&freed, scratch) {
+            return Ok(freed);
+        }
         if scratch.code.is_some() {
             // Faint objects are averaged away with the rest; the coder tells whether they are there.
             let options = NoisyOptions { noise: T::of(CODED_NOISE), ..options };
             let readable = scratch.segmentation.read_noisy(&image, options);
-            let finer = self.fit_noisy(image, readable, scratch)?;
+            let finer = self.fit_reading(image, readable, scratch)?;
             if finer.bits < freed.bits {
                 freed = finer;
             }
         }
-        if scratch.code.is_some() || sharpened || regions > MOST_CLEAN_REGIONS {
+        if scratch.code.is_some() || sharpened || regions > MANY_REGIONS {
             return Ok(freed);
         }
         let readable = scratch.segmentation.read(&image, &SegmentOptions::default());
@@ -114,39 +97,6 @@ impl<T: Real> Fitter<T> {
         Ok(if bits <= freed.bits { clean } else { freed })
     }
 
-    /// The fit, or segments of a picture that is not flat, if those leave less unexplained; of a clean picture, if they
-    /// describe it in fewer bits: where objects are small or thin, their edges are most of the variance.
-    fn or_not_flat(
-        &self,
-        image: ImageView<'_, T>,
-        fit: Fit<T>,
-        clean: bool,
-        most_regions: usize,
-        scratch: &mut FitScratch<T>,
-    ) -> Result<Fit<T>, FitError> {
-        let noise = T::of(TEXTURE_NOISE).max(fit.noise);
-        let boundary = self.options.prices.boundary;
-        let options = NoisyOptions { noise, compressed: false, zone: Some(T::of(FINE_ZONE)), most_regions, boundary };
-        if !scratch.segmentation.read_noisy(&image, options) {
-            return Ok(Fit { stop: StopReason::NotFlat, ..fit });
-        }
-        let segments = self.fit_segments(image, scratch)?;
-        if (clean || scratch.code.is_some()) && self.bits_at(image, &fit, segments.noise, scratch)? <= segments.bits {
-            return Ok(fit);
-        }
-        let best =
-            if clean || scratch.code.is_some() || segments.unexplained < fit.unexplained { segments } else { fit };
-        Ok(Fit { stop: StopReason::NotFlat, ..best })
-    }
-
-    /// Every region an outline, smaller ones in front.
-    fn fit_segments(&self, image: ImageView<'_, T>, scratch: &mut FitScratch<T>) -> Result<Fit<T>, FitError> {
-        let compositing = self.options.compositing.unwrap_or(Compositing::Over);
-        let kind = self.options.edge.map_or(EdgeKind::Area, EdgeKind::of);
-        let segments = self.fit_with(image, kind, compositing, Care::Segments, scratch)?;
-        Ok(Fit { stop: StopReason::NotFlat, ..segments })
-    }
-
     /// Fits the regions last read; the edges and the way objects overlap that describe them best.
     pub(super) fn fit_reading(
         &self,
@@ -154,11 +104,10 @@ impl<T: Real> Fitter<T> {
         readable: bool,
         scratch: &mut FitScratch<T>,
     ) -> Result<Fit<T>, FitError> {
-        let care = Care::Full;
         if !readable {
             let edge = self.options.edge.unwrap_or_else(EdgeProfile::reference);
             let compositing = self.options.compositing.unwrap_or_default();
-            let run = Run { fitter: self, image, kind: EdgeKind::of(edge), edge, compositing, care, scratch };
+            let run = Run { fitter: self, image, kind: EdgeKind::of(edge), edge, compositing, scratch };
             let found = run.nothing();
             return run.finish(found);
         }
@@ -178,13 +127,17 @@ impl<T: Real> Fitter<T> {
             }
             let (compositing, second) = self.compositings(evidence, &kind);
             for compositing in [Some(compositing), second].into_iter().flatten() {
-                let fit = self.fit_with(image, kind, compositing, care, scratch)?;
+                let fit = self.fit_with(image, kind, compositing, scratch)?;
                 // Objects that hide one another cannot pass for ones that mix.
                 let off = scratch.residual.count_off(&direct, visible_error(scratch.segmentation.noise()));
+                let is_of_another_kind = is_of_another_kind(&fit, scratch);
                 best = Some(match best {
                     Some(best) => self.shorter(image, best, fit, scratch)?,
                     None => fit,
                 });
+                if is_of_another_kind {
+                    return best.ok_or(FitError::Setting { what: "edge", must: "known" });
+                }
                 if 2 * off < direct.len() {
                     break;
                 }
@@ -257,8 +210,7 @@ impl<T: Real> Fitter<T> {
         scratch: &mut FitScratch<T>,
     ) -> Result<f64, FitError> {
         let (edge, compositing) = (fit.scene.edge, fit.scene.compositing);
-        let mut run =
-            Run { fitter: self, image, kind: EdgeKind::of(edge), edge, compositing, care: Care::Segments, scratch };
+        let mut run = Run { fitter: self, image, kind: EdgeKind::of(edge), edge, compositing, scratch };
         run.bits_of(&fit.scene, noise)
     }
 }
@@ -268,6 +220,11 @@ struct EdgeReading<T> {
     kind: EdgeKind<T>,
     /// Whether it is tried only where the fit before leaves something unexplained.
     only_if_missed: bool,
+}
+
+/// Whether a picture is none of flat objects, however its edges and overlaps are read: many regions, and what they leave is much.
+fn is_of_another_kind<T: Real>(fit: &Fit<T>, scratch: &FitScratch<T>) -> bool {
+    fit.unexplained > NOT_FLAT_SHARE && scratch.segmentation.region_count() > MANY_REGIONS
 }
 
 /// Whether edges are softer than compression alone makes them.

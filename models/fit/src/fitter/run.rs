@@ -26,17 +26,7 @@ pub(super) struct Run<'a, T: Real> {
     /// The profile that renders this kind.
     pub(super) edge: EdgeProfile<T>,
     pub(super) compositing: Compositing,
-    pub(super) care: Care,
     pub(super) scratch: &'a mut FitScratch<T>,
-}
-
-/// How much time objects are worth.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Care {
-    /// They are objects: which is in front is decided, doubtful ones must pay, folded outlines are done again.
-    Full,
-    /// They are segments of a picture that is not flat: one outline each.
-    Segments,
 }
 
 /// Objects as found, before the last touches.
@@ -247,9 +237,6 @@ impl<T: Real> Run<'_, T> {
     }
 
     fn is_doubtful(&self, scene: &Scene<T>, part: &FoundObject<T>) -> bool {
-        if self.care == Care::Segments {
-            return false;
-        }
         if self.scratch.segmentation.is_noisy() {
             // Its segment may be a piece of another object that noise cut off.
             return true;
@@ -266,7 +253,6 @@ impl<T: Real> Run<'_, T> {
             || scene.objects.iter().enumerate().filter(move |(k, _)| *k != at).map(|(_, object)| object.color());
         let mean = |a: [T; 3], b: [T; 3]| core::array::from_fn(|c| T::of(0.5) * (a[c] + b[c]));
         self.compositing == Compositing::Blend
-            && self.care == Care::Full
             && others()
                 .enumerate()
                 .any(|(k, a)| others().skip(k + 1).any(|b| distance(own, mean(a, b)) < T::of(MEAN_OF_TWO_COLOR)))

@@ -2,15 +2,14 @@
 
 use alloc::vec::Vec;
 
-use dvp_core::contour::perimeter;
 use dvp_core::shape::REFERENCE_VERTICES;
 use dvp_core::{Efd, Object, Real};
 
-use super::run::{Care, Found, FoundObject, Run};
+use super::run::{Found, FoundObject, Run};
 use crate::free::grow::{Freedom, GrowSettings, Grown, grow, hold_outside};
 use crate::free::start::{shrink, trace};
 use crate::pose::search::symmetry_order;
-use crate::tuning::{CLEARLY_LESS_LOSS, CODED_ALIKE, FOLDED_PIXELS, SEGMENT_HARMONIC_PX};
+use crate::tuning::{CLEARLY_LESS_LOSS, CODED_ALIKE, FOLDED_PIXELS};
 use crate::{Completion, FitError, StopReason};
 
 impl<T: Real> Run<'_, T> {
@@ -18,20 +17,17 @@ impl<T: Real> Run<'_, T> {
     pub(super) fn unknown_shapes(&mut self) -> Result<Found<T>, FitError> {
         let background = self.scratch.segmentation.background();
         let mut found = Found { background, objects: Vec::new(), steps: 0, stop: StopReason::Converged };
-        let freedom = if self.care == Care::Full { Freedom::Full } else { Freedom::None };
         for segment in self.painting_order() {
             let segment = segment as usize;
-            if let Some((object, steps, completion)) = self.object_of(segment, freedom) {
+            if let Some((object, steps, completion)) = self.object_of(segment, Freedom::Full) {
                 found.steps += steps;
                 found.objects.push(FoundObject { object, segment, twin: None, completion });
             }
         }
-        if self.care == Care::Full {
-            self.try_with_less_freedom(&mut found)?;
-            // What compression leaves along edges is no evidence of a shared outline.
-            if !self.scratch.segmentation.is_compressed() {
-                self.split_unknown(&mut found)?;
-            }
+        self.try_with_less_freedom(&mut found)?;
+        // What compression leaves along edges is no evidence of a shared outline.
+        if !self.scratch.segmentation.is_compressed() {
+            self.split_unknown(&mut found)?;
         }
         Ok(found)
     }
@@ -105,15 +101,10 @@ impl<T: Real> Run<'_, T> {
         if part.border > 0 {
             hold_outside(&contour, T::of_usize(size.width()), T::of_usize(size.height()), &mut scratch.samples);
         }
-        let mut max_harmonics = self.fitter.options.max_harmonics;
-        if self.care == Care::Segments {
-            // No samples decide how many pay.
-            max_harmonics = (perimeter(&contour) / T::of(SEGMENT_HARMONIC_PX)).to_count().clamp(1, max_harmonics);
-        }
         let basis = &self.fitter.basis;
         let settings = GrowSettings {
             vertex_count: REFERENCE_VERTICES,
-            max_harmonics,
+            max_harmonics: self.fitter.options.max_harmonics,
             freedom,
             noise,
             prices: self.fitter.options.prices,

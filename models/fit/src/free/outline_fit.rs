@@ -204,7 +204,7 @@ pub(super) fn gather<T: Real>(outline: &FreeOutline<T>, target: &Target<'_, T>, 
     }
     pull.clear();
     pull.resize(edges, [T::zero(); 2]);
-    let inverse = T::one() / (settings.width_px * settings.width_px);
+    let width = settings.width_px * settings.width_px;
     let noise = T::one() / (settings.pixel_noise * settings.pixel_noise);
     let mut cost = T::zero();
     for sample in samples {
@@ -212,7 +212,7 @@ pub(super) fn gather<T: Real>(outline: &FreeOutline<T>, target: &Target<'_, T>, 
         let residual = foot.distance - sample.distance;
         let squared = residual * residual;
         let base = sample.weight * sample.weight * noise;
-        let falloff = T::one() / (T::one() + squared * inverse);
+        let falloff = outlying(squared, base, width);
         cost += base * squared * falloff;
         squares.push(base * squared);
         let weight = base * falloff * falloff;
@@ -236,6 +236,14 @@ pub(super) fn gather<T: Real>(outline: &FreeOutline<T>, target: &Target<'_, T>, 
         cost += row.iter().map(|&value| pull * value * value).sum::<T>();
     }
     cost
+}
+
+/// The say that is left to a sample with a `squared` residual (px), which says `base` of it (one over its variance): half of it at a
+/// squared residual of `width`, that of what the outline may be off, and of the sample's own variance together. By the width alone all samples of
+/// much noise were outliers, and none told a square from an ellipse.
+#[inline(always)]
+pub(super) fn outlying<T: Real>(squared: T, base: T, width: T) -> T {
+    T::one() / (T::one() + squared * base / (base * width + T::one()))
 }
 
 /// Pull of row `k` (harmonic k + 1) towards 0.

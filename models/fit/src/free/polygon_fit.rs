@@ -9,7 +9,7 @@ use dvp_core::{Real, simd};
 
 use super::basis::Basis;
 use super::foot::{EdgeLanes, foot};
-use super::outline_fit::FreeOutline;
+use super::outline_fit::{FreeOutline, outlying};
 use crate::cholesky::{factor, packed, solve};
 use crate::segment::EdgeSample;
 use crate::tuning::VERTEX_COUPLING;
@@ -78,7 +78,7 @@ impl<T: Real> Move<'_, T> {
         matrix.resize(packed(n, 0), T::zero());
         gradient.clear();
         gradient.resize(n, T::zero());
-        let inverse = T::one() / (self.width_px * self.width_px);
+        let width = self.width_px * self.width_px;
         let noise = T::one() / (self.pixel_noise * self.pixel_noise);
         let (mut cost, mut total) = (T::zero(), T::zero());
         for sample in self.samples {
@@ -86,7 +86,7 @@ impl<T: Real> Move<'_, T> {
             let residual = foot.distance - sample.distance;
             let squared = residual * residual;
             let base = sample.weight * sample.weight * noise;
-            let falloff = T::one() / (T::one() + squared * inverse);
+            let falloff = outlying(squared, base, width);
             cost += base * squared * falloff;
             let weight = base * falloff * falloff;
             total += weight;

@@ -1,4 +1,4 @@
-//! The reading of pictures that are not clean: with noise, compressed, or not flat at all.
+//! The reading of pictures that are not clean: with noise, or compressed.
 
 use dvp_core::{ImageView, Real};
 
@@ -16,8 +16,6 @@ pub(crate) struct NoisyOptions<T> {
     pub(crate) noise: T,
     /// Whether that noise stands beside edges only, and is to be measured there.
     pub(crate) compressed: bool,
-    /// Largest difference between neighbors that are never cut apart; none: as much as is left of the noise.
-    pub(crate) zone: Option<T>,
     /// Regions are merged until there are no more than this.
     pub(crate) most_regions: usize,
     /// What a boundary must pay, in units of the usual price.
@@ -37,11 +35,7 @@ impl<T: Real> Segmentation<T> {
         } else {
             RobustSettings::of(noise)
         };
-        let settings = RobustSettings {
-            zone: options.zone.unwrap_or(settings.zone),
-            boundary: T::of(options.boundary),
-            ..settings
-        };
+        let settings = RobustSettings { boundary: T::of(options.boundary), ..settings };
         robust::read_flat(image, settings, options.most_regions, &mut self.robust, &mut self.map);
         // Clipping at black and white moves means, and the denoised picture with them: soft pixels lie between its colors.
         let Ok(smooth) = ImageView::new(image.size(), &self.robust.smooth) else { return false };
@@ -80,11 +74,6 @@ impl<T: Real> Segmentation<T> {
     /// Whether compression was averaged away.
     pub(crate) fn is_compressed(&self) -> bool {
         self.compressed
-    }
-
-    /// Forgets which objects touch: none is in front of another.
-    pub(crate) fn forget_borders(&mut self) {
-        self.reading.borders.clear();
     }
 
     /// Number of regions.

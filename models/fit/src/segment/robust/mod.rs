@@ -15,7 +15,7 @@ use dvp_core::{ImageView, Real};
 use dvp_trace::noise::{DenoiseScratch, denoise_twice};
 
 use super::flat::FlatMap;
-use crate::tuning::{BOUNDARY_PRICE, MIN_REGION_PIXELS, SOFT_RINGS, STRIP_WIDTH_PX};
+use crate::tuning::{BOUNDARY_PRICE, MIN_REGION_PIXELS, SOFT_RINGS, STRIP_WIDTH_PX, ZONE_NOISE};
 use merge::{Merger, Stop};
 use strips::{Zone, find_strips, measure_zones};
 
@@ -31,8 +31,6 @@ pub(crate) struct RobustSettings<T> {
     pub(crate) halo: T,
     /// Regions up to this wide (px; twice the area over the boundary) may be strips along an edge.
     pub(crate) strip_width: T,
-    /// Largest difference between denoised neighbors that are never cut apart.
-    pub(crate) zone: T,
     /// What a boundary must pay, in units of the usual price.
     pub(crate) boundary: T,
 }
@@ -40,8 +38,7 @@ pub(crate) struct RobustSettings<T> {
 impl<T: Real> RobustSettings<T> {
     /// For noise that is everywhere alike.
     pub(crate) fn of(noise: T) -> Self {
-        let zone = T::of(0.004) + T::of(0.1) * noise;
-        Self { noise, halo: T::zero(), strip_width: T::of(STRIP_WIDTH_PX), zone, boundary: T::one() }
+        Self { noise, halo: T::zero(), strip_width: T::of(STRIP_WIDTH_PX), boundary: T::one() }
     }
 }
 
@@ -67,12 +64,12 @@ pub(crate) fn read_flat<T: Real>(
     scratch: &mut RobustScratch<T>,
     map: &mut FlatMap,
 ) {
-    let RobustSettings { noise, halo, strip_width, zone, boundary } = settings;
+    let RobustSettings { noise, halo, strip_width, boundary } = settings;
     let variance = noise * noise;
     denoise_twice(image, noise, &mut scratch.denoise, &mut scratch.first, &mut scratch.smooth);
     let Ok(smooth) = ImageView::new(image.size(), &scratch.smooth) else { return };
     let stop = Stop { price: T::of(BOUNDARY_PRICE) * boundary * variance, halo, most_regions };
-    let count = scratch.merger.partition(image, &smooth, zone, stop, &mut scratch.labels);
+    let count = scratch.merger.partition(image, &smooth, T::of(ZONE_NOISE) * noise, stop, &mut scratch.labels);
     measure_zones(&smooth, count, &scratch.labels, &mut scratch.zones, &mut scratch.steps);
     find_strips(&mut scratch.zones, &scratch.steps, strip_width, T::of(0.02) + noise);
     let deviation = T::of(0.008) + T::of(0.5) * noise;
