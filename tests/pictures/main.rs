@@ -64,6 +64,7 @@ cases! { HELD:
     flat_jpeg_50: "flat, JPEG 50",
     occlusion_noise_003: "occlusion, noise 0.03",
     occlusion: "occlusion",
+    occlusion_scaled_down: "occlusion, scaled down",
     gray: "gray",
     sprites: "sprites",
     alpha: "alpha",
@@ -88,8 +89,6 @@ macro_rules! known_failures {
 
 known_failures! { SHORT:
     twins: "twins", ari 0.8753, right 0, "two crossed bars are one outline";
-    occlusion_scaled_down: "occlusion, scaled down", ari 0.9987, right 13,
-        "rims along edges are read as objects, or hide some";
     flat_blur_08: "flat, blur 0.8 px", ari 0.9919, right 12, "two objects of one color side by side are read as one";
     // Until 2026-11-28 it was 8, at an ARI of .9707; of the same drawings through another coder all counts stayed.
     occlusion_jpeg_50: "occlusion, JPEG 50", ari 0.9741, right 7, "ringing is read as objects, or hides them";

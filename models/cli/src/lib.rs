@@ -25,6 +25,7 @@
 //! | feature | brings |
 //! |---|---|
 //! | `burn`, `candle` | training on these frameworks |
+//! | `wgpu` | training on graphics cards, by burn: Vulkan, Metal, DirectX |
 //! | `double` | methods in 64 bits too ([`method::Precision`]) |
 //! | `parquet` | tables as Apache Parquet |
 

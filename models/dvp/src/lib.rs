@@ -14,6 +14,7 @@
 //! | `mimalloc` (default) | the allocator of the command, in C; programs that call this library keep theirs |
 //! | `lab` | the sub-commands `chart`, `gradients`, `parsimony` and `stability` |
 //! | `burn`, `candle` | `dvp train --backend burn` or `candle` |
+//! | `wgpu` | `dvp train --backend wgpu`: graphics cards by Vulkan, Metal, DirectX, through burn |
 //! | `parquet` | tables as Apache Parquet |
 //!
 //! None of the others is on by default: a first build takes half of the time without them. Released programs have `lab` and `parquet`.
