@@ -18,6 +18,9 @@ pub(crate) const MANY_REGIONS: usize = 64;
 /// Denoised neighbors that differ by less than this much of the noise are never cut apart. .08 finds 3 of 40 scenes fewer right at a noise of .1
 /// (MDS-HR), .04 no more, and takes three times as long for pictures of 512 x 512.
 pub(crate) const ZONE_NOISE: f64 = 0.05;
+/// The same of what compression left, whose pixels are not off by chance: finer zones are pieces of ringing. .05 finds 26 of 160 scenes fewer right
+/// in JPEGs of quality 8 to 15.
+pub(crate) const COMPRESSED_ZONE: f64 = 0.17;
 /// Compression blurs edges by up to about this much (scale of a logistic curve, px).
 pub(crate) const COMPRESSED_BLUR_PX: f64 = 1.0;
 /// A picture of which flat objects leave a larger share of the variance is not flat.

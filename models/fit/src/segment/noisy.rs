@@ -5,8 +5,8 @@ use dvp_core::{ImageView, Real};
 use super::robust::RobustSettings;
 use super::{PIXEL_NOISE, Segmentation, region, robust, transition};
 use crate::tuning::{
-    CLEAN_SHARE, COMPRESSED_COLOR, COMPRESSED_STRIP_PX, HALO_SHARE, LEAST_COMPRESSED_NOISE, LINE_NOISES, RIM_BEYOND,
-    RIM_SHARE,
+    CLEAN_SHARE, COMPRESSED_COLOR, COMPRESSED_STRIP_PX, COMPRESSED_ZONE, HALO_SHARE, LEAST_COMPRESSED_NOISE,
+    LINE_NOISES, RIM_BEYOND, RIM_SHARE,
 };
 
 /// Settings of [`Segmentation::read_noisy`].
@@ -30,6 +30,7 @@ impl<T: Real> Segmentation<T> {
             RobustSettings {
                 halo: T::of(HALO_SHARE),
                 strip_width: T::of(COMPRESSED_STRIP_PX),
+                zone: T::of(COMPRESSED_ZONE) * noise,
                 ..RobustSettings::of(noise)
             }
         } else {

@@ -31,6 +31,8 @@ pub(crate) struct RobustSettings<T> {
     pub(crate) halo: T,
     /// Regions up to this wide (px; twice the area over the boundary) may be strips along an edge.
     pub(crate) strip_width: T,
+    /// Largest difference between denoised neighbors that are never cut apart.
+    pub(crate) zone: T,
     /// What a boundary must pay, in units of the usual price.
     pub(crate) boundary: T,
 }
@@ -38,7 +40,8 @@ pub(crate) struct RobustSettings<T> {
 impl<T: Real> RobustSettings<T> {
     /// For noise that is everywhere alike.
     pub(crate) fn of(noise: T) -> Self {
-        Self { noise, halo: T::zero(), strip_width: T::of(STRIP_WIDTH_PX), boundary: T::one() }
+        let zone = T::of(ZONE_NOISE) * noise;
+        Self { noise, halo: T::zero(), strip_width: T::of(STRIP_WIDTH_PX), zone, boundary: T::one() }
     }
 }
 
@@ -64,12 +67,12 @@ pub(crate) fn read_flat<T: Real>(
     scratch: &mut RobustScratch<T>,
     map: &mut FlatMap,
 ) {
-    let RobustSettings { noise, halo, strip_width, boundary } = settings;
+    let RobustSettings { noise, halo, strip_width, zone, boundary } = settings;
     let variance = noise * noise;
     denoise_twice(image, noise, &mut scratch.denoise, &mut scratch.first, &mut scratch.smooth);
     let Ok(smooth) = ImageView::new(image.size(), &scratch.smooth) else { return };
     let stop = Stop { price: T::of(BOUNDARY_PRICE) * boundary * variance, halo, most_regions };
-    let count = scratch.merger.partition(image, &smooth, T::of(ZONE_NOISE) * noise, stop, &mut scratch.labels);
+    let count = scratch.merger.partition(image, &smooth, zone, stop, &mut scratch.labels);
     measure_zones(&smooth, count, &scratch.labels, &mut scratch.zones, &mut scratch.steps);
     find_strips(&mut scratch.zones, &scratch.steps, strip_width, T::of(0.02) + noise);
     let deviation = T::of(0.008) + T::of(0.5) * noise;
