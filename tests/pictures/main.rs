@@ -64,7 +64,6 @@ cases! { HELD:
     flat_jpeg_50: "flat, JPEG 50",
     occlusion_noise_003: "occlusion, noise 0.03",
     occlusion: "occlusion",
-    occlusion_scaled_down: "occlusion, scaled down",
     gray: "gray",
     sprites: "sprites",
     alpha: "alpha",
@@ -90,8 +89,11 @@ macro_rules! known_failures {
 known_failures! { SHORT:
     twins: "twins", ari 0.8753, right 0, "two crossed bars are one outline";
     flat_blur_08: "flat, blur 0.8 px", ari 0.9919, right 12, "two objects of one color side by side are read as one";
-    // Until 2026-11-28 it was 8, at an ARI of .9707; of the same drawings through another coder all counts stayed.
-    occlusion_jpeg_50: "occlusion, JPEG 50", ari 0.9741, right 7, "ringing is read as objects, or hides them";
+    // All pass with zones of .05 of the noise in place of `COMPRESSED_ZONE`, which finds 26 of 160 scenes in JPEGs wrong in exchange.
+    occlusion_scaled_down: "occlusion, scaled down", ari 0.9984, right 13,
+        "rims along edges are read as objects, or hide some";
+    // Of 2026-11-28 it was 7, at an ARI of .9741; before and since 8, at one of .9707.
+    occlusion_jpeg_50: "occlusion, JPEG 50", ari 0.9707, right 8, "ringing is read as objects, or hides them";
     flat_scaled_down: "flat, scaled down", ari 0.9971, right 12,
         "rims of upright scaled edges are read as faces in one picture";
     rings_and_holes: "rings and holes", ari 0.7830, right 0,
