@@ -89,7 +89,7 @@ macro_rules! known_failures {
 known_failures! { SHORT:
     twins: "twins", ari 0.8753, right 0, "two crossed bars are one outline";
     flat_blur_08: "flat, blur 0.8 px", ari 0.9919, right 12, "two objects of one color side by side are read as one";
-    // All pass with zones of .05 of the noise in place of `COMPRESSED_ZONE`, which finds 26 of 160 scenes in JPEGs wrong in exchange.
+    // It passes with zones of .05 of the noise in place of `COMPRESSED_ZONE`, at the price of 26 of 160 scenes in JPEGs.
     occlusion_scaled_down: "occlusion, scaled down", ari 0.9984, right 13,
         "rims along edges are read as objects, or hide some";
     // Of 2026-11-28 it was 7, at an ARI of .9741; before and since 8, at one of .9707.

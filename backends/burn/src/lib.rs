@@ -33,8 +33,8 @@
 //! and builds anywhere; `cuda` needs CUDA's libraries, and the network while it is built. With either the first step takes
 //! long, most of a minute on an NVIDIA H200: of kernels that do the same, each is tried. Graphics cards mostly have no
 //! f64: [`Backend::upload`](dvp_core::tensor::Backend::upload) says so. Steps of the core run on the CPU: their inputs are
-//! copied there and their outputs back, 0.8 MB per image of 256 x 256 pixels and direction. The tests here pass on Vulkan
-//! played by the CPU (llvmpipe, Debian's `mesa-vulkan-drivers`): `cargo test -p dvp-burn --features wgpu --lib`.
+//! copied there and their outputs back, 0.8 MB per image of 256 x 256 pixels and direction. The tests here passed on Vulkan
+//! played by the CPU (llvmpipe, Debian's `mesa-vulkan-drivers`) before kernels were tried, which is slow there: `cargo test -p dvp-burn --features wgpu --lib`.
 //!
 //! # Speed
 //!
