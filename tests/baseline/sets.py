@@ -75,7 +75,7 @@ class Place:
             print(f"{name}: dvp fit failed with code {done.returncode}: {done.stderr[-500:]}", file=sys.stderr)
             images = []
         return out, {i["stem"]: dict(fitted=i.get("objects"), mae=i.get("mae"), bits=i.get("bits"), ms=i.get("cpu_ms"),
-                                     doubted=bool(i.get("doubts")) or any(k.get("doubts") for k in i.get("known") or []))
+                                     doubted=bool(i.get("doubts")))
                      for i in images}
 
     def evaluated(self, name, paths, data, options=(), against=()):

@@ -127,10 +127,11 @@ fn object_known(names: Vec<String>) -> impl Strategy<Value = ObjectKnownJson> {
             (deviations.color, deviations.numbers) = (color, numbers);
             deviations
         });
-    (option::of(deviations), option::of(-0.5..1.0), vec(doubt(), 0..3)).prop_map(
-        |(deviations, marginal_gain, doubts)| {
+    (option::of(deviations), option::of(-0.5..1.0), option::of(0.0..=1.0), vec(doubt(), 0..3)).prop_map(
+        |(deviations, marginal_gain, expected_iou, doubts)| {
             let mut known = ObjectKnownJson::default();
             (known.deviations, known.marginal_gain, known.doubts) = (deviations, marginal_gain, doubts);
+            known.expected_iou = expected_iou;
             known
         },
     )

@@ -179,6 +179,9 @@ pub struct Fit<T> {
     /// Per object, row-major 5 x 5: covariance of (x, y, log scale, rotation, log stretch) from the normal equations. The stretch, the
     /// square root of width over height along the object's own axes, is that of ellipses in drawings; other shapes keep theirs (zeros).
     pub covariance: Vec<[T; 25]>,
+    /// Per object, the intersection over union to expect of what is seen of it and what is there, [0, 1], if it is off by what its pose and
+    /// its outline may be off by. Empty if it is not known.
+    pub expected_iou: Vec<T>,
     /// What remains open.
     pub ambiguity: Vec<Ambiguity>,
     /// Share of the picture's variance that neither the scene nor noise explains, [0, 1]; NaN if it was not counted.
@@ -206,6 +209,7 @@ impl<T: Real> Fit<T> {
             steps: 0,
             stop: StopReason::StepLimit,
             covariance: Vec::new(),
+            expected_iou: Vec::new(),
             ambiguity: Vec::new(),
             unexplained: share,
             marginal_gain: marginal_gain::marginal_gains(drawing, image, scene.compositing, variance),
@@ -227,6 +231,7 @@ impl<T: Real> Fit<T> {
             steps: self.steps,
             stop: self.stop,
             covariance: self.covariance.iter().map(|block| block.map(number)).collect(),
+            expected_iou: self.expected_iou.iter().copied().map(number).collect(),
             ambiguity: self.ambiguity.clone(),
             unexplained: self.unexplained,
             marginal_gain: self.marginal_gain.clone(),

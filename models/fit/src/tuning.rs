@@ -277,19 +277,15 @@ pub(crate) const MIXTURE_OUTLIER: f64 = 0.015;
 pub(crate) const COVARIANCE_ASTRAY_PX: f64 = 1.5;
 /// Standard deviation (px) of what all samples of an outline, or of a part of it, miss alike at best: 64 vertices and rounded colors.
 pub(crate) const SYSTEMATIC_PX: f64 = 0.002;
-/// A standard deviation of the position, in radii of the object, or of the logarithm of its size, that is wide: either makes
-/// the object agree with the true one to an IoU of 0.9 only.
-pub(crate) const WIDE_POSITION: f64 = 0.08;
-/// See [`WIDE_POSITION`].
-pub(crate) const WIDE_SIZE: f64 = 0.05;
+/// An object is sure if the IoU to expect of what is seen of it is at least this: one that agrees to 0.9 only counts as not found, and half of what
+/// may be wrong by then is expected. `tests/report/stability.md` says what other values come to.
+pub(crate) const SURE_IOU: f64 = 0.95;
 /// Of a picture that a scene explains, less is left.
 pub(crate) const UNEXPLAINED_SHARE: f64 = 0.01;
 /// An object whose marginal gain is a smaller share of the picture's variance may as well not be there.
 pub(crate) const IDLE_SHARE: f64 = 1e-3;
 /// Colors closer than this, in every channel, may be one.
 pub(crate) const ONE_COLOR: f64 = 0.02;
-/// Five steps of 8 bits: with less contrast, rounding hides what is wrong with an object from what is left unexplained.
-pub(crate) const FAINT_OBJECT: f64 = 5.0 / 255.0;
 
 // Drawings that are mended.
 

@@ -1,4 +1,4 @@
-//! Whether a fit doubts itself: its covariance, ambiguities, stop reason, objects and unexplained rest as yes or no.
+//! Whether a fit doubts itself: what its objects may be off by, its stop reason, their number and the unexplained rest as yes or no.
 
 use alloc::vec::Vec;
 use core::f64::consts::PI;
@@ -7,17 +7,16 @@ use dvp_core::image::distance;
 use dvp_core::render::Compositing;
 use dvp_core::{Efd, Object, Real, Scene};
 
-use crate::tuning::{FAINT_OBJECT, IDLE_SHARE, ONE_COLOR, UNEXPLAINED_SHARE, WIDE_POSITION, WIDE_SIZE};
-use crate::{Ambiguity, Fit, StopReason};
+use crate::tuning::{IDLE_SHARE, ONE_COLOR, SURE_IOU, UNEXPLAINED_SHARE};
+use crate::{Fit, StopReason};
 
-/// What a fit says against itself.
+/// What a fit says against itself: why the picture may not be what the scene says. What it cannot tell though all is well, such as what
+/// lies out of the picture or behind something, is in [`Fit::ambiguity`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub struct Doubts {
-    /// A position or a size is uncertain: either alone may bring the object below an IoU of 0.9.
+    /// What is seen of an object may well lie elsewhere: its [expected IoU](Fit::expected_iou) is below 0.95.
     pub pose: bool,
-    /// An object is cropped, hidden in part, merged with another one, or may have another shape. Symmetry alone is no doubt.
-    pub ambiguity: bool,
     /// The optimization stopped before it was done, the picture is not flat, or no scene is better than one flat color. Descents by Adam take all their steps, and
     /// say nothing by it.
     pub stop: bool,
@@ -26,22 +25,13 @@ pub struct Doubts {
     /// There may be one object fewer: the marginal gain of one is below a thousandth, or it touches another of its
     /// color, or, where overlaps blend, has the mean color of two that it touches and that touch each other.
     pub redundant: bool,
-    /// The color of an object is less than five steps of 8 bits from that of the background.
-    pub faint: bool,
 }
 
 impl Doubts {
     /// Every doubt with its name.
     #[must_use]
-    pub fn named(self) -> [(&'static str, bool); 6] {
-        [
-            ("pose", self.pose),
-            ("ambiguity", self.ambiguity),
-            ("stop", self.stop),
-            ("unexplained", self.unexplained),
-            ("redundant", self.redundant),
-            ("faint", self.faint),
-        ]
+    pub fn named(self) -> [(&'static str, bool); 4] {
+        [("pose", self.pose), ("stop", self.stop), ("unexplained", self.unexplained), ("redundant", self.redundant)]
     }
 
     /// Whether there is one.
@@ -55,18 +45,9 @@ impl<T: Real> Fit<T> {
     /// What the fit says against itself, as yes or no. `dvp stability` counts how often it is right.
     #[must_use]
     pub fn doubts(&self) -> Doubts {
-        let is_wide = |(block, object): (&[T; 25], &Object<T>)| {
-            let [x, y, size] = [0, 6, 12].map(|k| block[k].as_f64().max(0.0));
-            let radius = squared_radius(object);
-            // Only descriptors tell a radius here.
-            let is_loose = radius > 0.0 && x.max(y) > WIDE_POSITION * WIDE_POSITION * radius;
-            is_loose || size > WIDE_SIZE * WIDE_SIZE
-        };
-        let is_open = |ambiguity: &Ambiguity| !matches!(ambiguity, Ambiguity::Symmetry { .. });
-        let is_faint = |object: &Object<T>| distance(object.color(), self.scene.background) < T::of(FAINT_OBJECT);
+        let is_unsure = |&iou: &T| iou < T::of(SURE_IOU);
         Doubts {
-            pose: self.covariance.iter().zip(&self.scene.objects).any(is_wide),
-            ambiguity: self.ambiguity.iter().any(is_open),
+            pose: self.expected_iou.iter().any(is_unsure),
             stop: match self.stop {
                 StopReason::Converged | StopReason::Empty => false,
                 StopReason::StepLimit => !self.covariance.is_empty(),
@@ -74,7 +55,6 @@ impl<T: Real> Fit<T> {
             },
             unexplained: self.unexplained > UNEXPLAINED_SHARE,
             redundant: self.marginal_gain.iter().any(|&share| share < IDLE_SHARE) || may_be_fewer(&self.scene),
-            faint: self.scene.objects.iter().any(is_faint),
         }
     }
 }

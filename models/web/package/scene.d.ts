@@ -80,7 +80,7 @@ export interface SceneKnown {
   noise?: number;
   bits?: number;
   /** What the fit says against itself. */
-  doubts: ('pose' | 'ambiguity' | 'stop' | 'unexplained' | 'redundant' | 'faint' | 'invisible')[];
+  doubts: ('pose' | 'stop' | 'unexplained' | 'redundant' | 'invisible')[];
 }
 
 /** What a fit knows of an object. */
@@ -89,6 +89,8 @@ export interface ObjectKnown {
   deviations?: { translation?: Point; scale?: number; rotation?: number; color?: Color; numbers?: Record<string, number> };
   /** What would be unexplained in addition without it, as a share of the picture's variance. */
   marginal_gain?: number;
+  /** Intersection over union to expect of what is seen of it and what is there. */
+  expected_iou?: number;
   doubts: Doubt[];
 }
 

@@ -37,7 +37,7 @@ export function verdict(scene) {
   if (doubts.includes('invisible')) return { level: 'warning', title: 'The picture is clear everywhere: there is nothing to see in it.', lines: [] };
   if (stop === 'not_flat') {
     const title = 'This picture is not flat: a photo, a gradient or a texture.';
-    return { level: 'warning', title, lines: [`What you see are the flat segments that come nearest.${rest}`, 'dvp is for icons, diagrams, charts, flags and scans of plain things.'] };
+    return { level: 'warning', title, lines: [`What you see comes nearest.${rest}`, 'dvp is for icons, diagrams, charts, flags and scans of plain things.'] };
   }
   if (stop === 'no_better_than_flat') {
     const title = 'No objects were found that explain the picture better than one flat color.';
@@ -47,9 +47,7 @@ export function verdict(scene) {
   const lines = [];
   if (doubts.includes('unexplained')) lines.push(`More is in the picture than these objects say.${rest}`);
   if (doubts.includes('redundant')) lines.push('One object may be one too many.');
-  if (doubts.includes('faint')) lines.push('An object is hardly different from the background.');
-  if (doubts.includes('pose')) lines.push('A position or a size is uncertain: see ± in the list.');
-  if (doubts.includes('ambiguity')) lines.push('Parts of objects are not seen and were completed: see the list.');
+  if (doubts.includes('pose')) lines.push('An object may lie elsewhere: see ± in the list.');
   if (doubts.includes('stop')) lines.push('The fit stopped before it was done.');
   const objects = count === 1 ? '1 object' : `${count} objects`;
   if (!lines.length) return { level: 'good', title: `${objects}, without a doubt.`, lines };

@@ -5,6 +5,7 @@
 //! one. Neighbors miss alike, and no count of them averages it away. Edges that may be *blurred* lie farther in where outlines bend. And
 //! the *unseen* part of an outline that no shape tells is a guess.
 
+mod seen;
 #[cfg(test)]
 mod tests;
 
@@ -13,6 +14,8 @@ use alloc::vec::Vec;
 
 use dvp_core::contour::signed_area;
 use dvp_core::{Real, simd};
+
+pub(crate) use seen::Displaced;
 
 use crate::free::foot::EdgeLanes;
 use crate::segment::EdgeSample;
@@ -44,10 +47,12 @@ pub(crate) struct Outlined<'a, T> {
     pub(crate) blur_px: T,
     /// Whether only samples tell where the outline runs: its shape is its own, or may be another one of those known.
     pub(crate) is_free: bool,
+    /// What is seen of it (px^2).
+    pub(crate) area: T,
 }
 
-/// Covariance of (x, y in scene units, log scale, rotation, log stretch), row-major.
-pub(crate) fn covariance<T: Real>(object: &Outlined<'_, T>, lanes: &mut EdgeLanes<T>) -> [T; 25] {
+/// Covariance of (x, y in scene units, log scale, rotation, log stretch), row-major, and the IoU to expect of what is seen.
+pub(crate) fn covariance<T: Real>(object: &Outlined<'_, T>, lanes: &mut EdgeLanes<T>) -> ([T; 25], T) {
     lanes.set(object.outline);
     let mut seen = vec![false; object.outline.len().saturating_sub(1)];
     let sums = simd::dispatch(Gather { object, lanes, seen: &mut seen });
@@ -56,26 +61,43 @@ pub(crate) fn covariance<T: Real>(object: &Outlined<'_, T>, lanes: &mut EdgeLane
         information[i][i] += T::of(1.0 / variance);
     }
     let inverse = inverse4(information);
-    let mut block = inverse;
     // What a displacement by a pixel does to the pose, if all samples of a part share it.
     let moved = |weights: &[T; NUMBERS]| -> [T; NUMBERS] {
         core::array::from_fn(|i| (0..NUMBERS).map(|j| inverse[NUMBERS * i + j] * weights[j]).sum())
     };
-    let deviation = sums.systematic().sqrt();
     let whole: [T; NUMBERS] = core::array::from_fn(|i| sums.arcs.iter().map(|arc| arc[i]).sum());
-    for part in sums.arcs.iter().chain([&whole]) {
-        widen(&mut block, moved(part), deviation);
-    }
     let area = signed_area(object.outline).abs().max(T::of(1e-3));
-    widen(&mut block, [T::zero(), T::zero(), T::one(), T::zero()], bend(object, area));
+    // The covariance if parts, and the whole, miss alike by this variance (px^2).
+    let missing = |systematic: T| {
+        let mut block = inverse;
+        for part in sums.arcs.iter().chain([&whole]) {
+            widen(&mut block, moved(part), systematic.sqrt());
+        }
+        widen(&mut block, [T::zero(), T::zero(), T::one(), T::zero()], bend(object, area));
+        block
+    };
+    let systematic = sums.systematic(sums.misfit);
+    let mut block = missing(systematic);
+    let unseen = unseen_runs(object.outline, &seen);
+    let iou = {
+        let &Outlined { outline, center, unit_px, .. } = object;
+        // A shape of its own may be off in each part by what the samples of that part leave open.
+        let own = systematic + if object.is_free { T::of_usize(ARCS) / sums.weight } else { T::zero() };
+        let length: T = outline.windows(2).map(|edge| (edge[1][0] - edge[0][0]).hypot(edge[1][1] - edge[0][1])).sum();
+        let length = length - unseen.iter().map(|run| run.length).sum();
+        let displaced = Displaced { outline, center, unit_px, covariance: &block, stride: NUMBERS, own };
+        displaced.expected_iou(|edge| seen[edge], length, object.area.min(area))
+    };
     if object.is_free {
-        for run in unseen_runs(object.outline, &seen) {
+        // Corners tell where the middle of a shape of its own is, and samples beside one do not say which of its edges they are of.
+        block = missing(sums.systematic(sums.continued));
+        for run in unseen {
             let arm = [0, 1].map(|c| (run.middle[c] - object.center[c]) / object.unit_px);
             // As large again is as little as can be known.
             widen(&mut block, [arm[0], arm[1], T::of(0.5), T::zero()], (run.area() / area).min(T::one()));
         }
     }
-    with_stretch(block)
+    (with_stretch(block), iou)
 }
 
 /// Adds an error that moves the numbers together, of this standard deviation.
@@ -148,15 +170,17 @@ struct Sums<T> {
     arcs: [[T; NUMBERS]; ARCS],
     /// Squared misfits in units of the noise.
     misfit: T,
+    /// The same against the nearest edge as if it went on straight beyond its ends.
+    continued: T,
     /// Inverse variances of the distances (1 / px^2).
     weight: T,
     count: usize,
 }
 
 impl<T: Real> Sums<T> {
-    /// Variance (px^2) of what samples miss beyond the noise.
-    fn systematic(&self) -> T {
-        let excess = (self.misfit - T::of_usize(self.count)).max(T::zero());
+    /// Variance (px^2) of what samples miss beyond the noise; `misfit`: one of those of the sums.
+    fn systematic(&self, misfit: T) -> T {
+        let excess = (misfit - T::of_usize(self.count)).max(T::zero());
         let rest = if self.weight > T::zero() { excess / self.weight } else { T::zero() };
         rest + T::of(SYSTEMATIC_PX * SYSTEMATIC_PX)
     }
@@ -181,6 +205,7 @@ impl<T: Real> simd::Kernel for Gather<'_, T> {
             information: [[T::zero(); NUMBERS]; NUMBERS],
             arcs: [[T::zero(); NUMBERS]; ARCS],
             misfit: T::zero(),
+            continued: T::zero(),
             weight: T::zero(),
             count: 0,
         };
@@ -192,19 +217,29 @@ impl<T: Real> simd::Kernel for Gather<'_, T> {
             if length <= T::of(1e-6) {
                 continue;
             }
-            let n = [y / length, -x / length];
+            let to = [sample.point[0] - a[0], sample.point[1] - a[1]];
+            let along = ((x * to[0] + y * to[1]) / (length * length)).max(T::zero()).min(T::one());
+            let foot = [a[0] + along * x, a[1] + along * y];
+            let off = [sample.point[0] - foot[0], sample.point[1] - foot[1]];
+            let far = off[0].hypot(off[1]);
+            let outward = [y / length, -x / length];
+            let across = outward[0] * to[0] + outward[1] * to[1];
+            // Beyond the ends of an edge, at a corner, the nearest point is a vertex, which is seen from elsewhere.
+            let is_vertex = (along <= T::zero() || along >= T::one()) && far > T::of(1e-3);
+            let n = if is_vertex { off.map(|d| d * across.signum() / far) } else { outward };
+            let missed = far - sample.distance.abs();
             // Where the outline is hidden by another of its color, the samples nearest to it are that one's.
-            let across = (n[0] * (sample.point[0] - a[0]) + n[1] * (sample.point[1] - a[1])).abs();
-            let off = across - sample.distance.abs();
-            if off.abs() > T::of(COVARIANCE_ASTRAY_PX) {
+            if missed.abs() > T::of(COVARIANCE_ASTRAY_PX) {
                 continue;
             }
-            let arm = [sample.point[0] - center[0], sample.point[1] - center[1]];
+            let arm = [foot[0] - center[0], foot[1] - center[1]];
             // The outline moves across itself by n for a shift (in scene units: times the unit), n.arm for a growth, and
             // n x arm for a turn.
             let row = [n[0] * *unit_px, n[1] * *unit_px, n[0] * arm[0] + n[1] * arm[1], n[1] * arm[0] - n[0] * arm[1]];
             let weight = sample.weight * sample.weight * noise;
-            sums.misfit += weight * off * off;
+            let continued = across.abs() - sample.distance.abs();
+            sums.misfit += weight * missed * missed;
+            sums.continued += weight * continued * continued;
             sums.weight += weight;
             sums.count += 1;
             let arc = &mut sums.arcs[at * ARCS / seen.len()];

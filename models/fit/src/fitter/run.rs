@@ -125,7 +125,7 @@ impl<T: Real> Run<'_, T> {
                 }
             }
         }
-        let covariance = self.covariances(&scene, &found)?;
+        let (covariance, expected_iou) = self.covariances(&scene, &found)?;
         let ambiguity = self.ambiguities(&scene, &found);
         if !drawn {
             // The residual of the scratch is that of the scene found.
@@ -143,6 +143,7 @@ impl<T: Real> Run<'_, T> {
             steps: found.steps,
             stop,
             covariance,
+            expected_iou,
             ambiguity,
             unexplained,
             marginal_gain,
@@ -269,25 +270,29 @@ impl<T: Real> Run<'_, T> {
         T::of(0.5) * (outer - inner)
     }
 
-    fn covariances(&mut self, scene: &Scene<T>, found: &Found<T>) -> Result<Vec<[T; 25]>, FitError> {
+    fn covariances(&mut self, scene: &Scene<T>, found: &Found<T>) -> Result<(Vec<[T; 25]>, Vec<T>), FitError> {
         let (unit, blur_px) = (self.unit_px(), self.blur_px());
         scene.draw(&self.fitter.outlines, &mut self.scratch.drawing)?;
-        let mut out = Vec::with_capacity(scene.objects.len());
+        let mut out = (Vec::with_capacity(scene.objects.len()), Vec::with_capacity(scene.objects.len()));
         for (k, (object, part)) in scene.objects.iter().zip(&found.objects).enumerate() {
             let scratch = &mut *self.scratch;
             scratch.outline.clear();
             scratch.outline.extend(scratch.drawing.outline(k).iter().map(|v| v.map(|x| x * unit)));
             let center = object.pose.translation.map(|x| x * unit);
+            let segment = &scratch.segmentation.segments()[part.segment];
             let object = Outlined {
                 outline: &scratch.outline,
                 center,
-                samples: &scratch.segmentation.segments()[part.segment].samples,
+                samples: &segment.samples,
                 unit_px: unit,
                 pixel_noise: scratch.segmentation.noise(),
                 blur_px,
                 is_free: object.prototype().is_none() || part.alternative().is_some(),
+                area: T::of_usize(segment.pixels),
             };
-            out.push(covariance(&object, &mut scratch.lanes));
+            let (block, iou) = covariance(&object, &mut scratch.lanes);
+            out.0.push(block);
+            out.1.push(iou);
         }
         Ok(out)
     }

@@ -29,12 +29,13 @@ pub(super) fn at_most(
     let place = |k: usize| kept(k).then(|| is_kept[..k].iter().filter(|&&is_kept| is_kept).count());
     let ambiguity = fit.ambiguity.iter().filter_map(|ambiguity| moved(ambiguity, place)).collect();
     let covariance = fit.covariance.iter().enumerate().filter(|&(k, _)| kept(k)).map(|(_, block)| *block).collect();
+    let expected_iou = fit.expected_iou.iter().enumerate().filter(|&(k, _)| kept(k)).map(|(_, &iou)| iou).collect();
     let mut scene = fit.scene;
     scene.objects = scene.objects.into_iter().enumerate().filter(|&(k, _)| kept(k)).map(|(_, object)| object).collect();
     let (painted, drawing) = canvas.paint(&scene, image.size())?;
     let loss = PixelLoss::Mae.value(ImagePair::new(painted.view(), image)?, &mut ())?;
     let left = Fit::of_painted(scene, &drawing, &image, painted.data());
-    Ok(Fit { loss, stop: fit.stop, steps: fit.steps, bits: f64::NAN, covariance, ambiguity, ..left })
+    Ok(Fit { loss, stop: fit.stop, steps: fit.steps, bits: f64::NAN, covariance, expected_iou, ambiguity, ..left })
 }
 
 /// An ambiguity of an object that stands elsewhere; none if the object, or the one that it is about, is gone.

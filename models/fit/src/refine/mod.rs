@@ -97,11 +97,24 @@ impl Refine {
         let noise = noise_level(&image, &mut scratch.differences).max(T::of(PIXEL_NOISE));
         let covariance = covariances(&mut scratch.joint, posed.objects.len(), unit, noise);
         let bits = scene_bits(&scene, scratch.shapes.len()) + scratch.residual.bits(T::of(PIXEL_NOISE));
+        let expected_iou = scratch.expected_iou(&posed, &covariance, image.size());
         let ambiguity = scratch.ambiguities(&posed, image, unit);
         let (unexplained, total) = Residual::unexplained(&image, &scratch.pixels, noise);
         let marginal_gain = marginal_gains(&scratch.drawing, &image, scene.compositing, total);
         let (steps, stop) = (result.steps, result.stop);
-        Ok(Fit { scene, loss, steps, stop, covariance, ambiguity, unexplained, marginal_gain, noise, bits })
+        Ok(Fit {
+            scene,
+            loss,
+            steps,
+            stop,
+            covariance,
+            expected_iou,
+            ambiguity,
+            unexplained,
+            marginal_gain,
+            noise,
+            bits,
+        })
     }
 
     fn problem<'a, T: Real>(

@@ -2,12 +2,14 @@
 
 use alloc::vec::Vec;
 
+use dvp_core::contour::signed_area;
 use dvp_core::render::Renderer;
 use dvp_core::render::contour::ContourRenderer;
 use dvp_core::scene::Pose;
 use dvp_core::shape::{OutlineBasis, REFERENCE_VERTICES};
-use dvp_core::{Drawing, Efd, ImageView, Object, Real, Scene};
+use dvp_core::{Drawing, Efd, ImageSize, ImageView, Object, Real, Scene};
 
+use crate::covariance::Displaced;
 use crate::doubt::visible_share;
 use crate::joint::{JointObject, JointScene, JointScratch};
 use crate::pose::gauss_newton::PosePx;
@@ -82,6 +84,29 @@ impl<T: Real> RefineScratch<T> {
         self.shapes.push(shape.ok_or(FitError::FlatObject { index })?);
         self.efds.push(efd.clone());
         Ok(self.efds.len() - 1)
+    }
+
+    /// The IoU to expect of what the image shows of the objects of the scene drawn last, whose poses have these covariances.
+    pub(super) fn expected_iou(&self, posed: &JointScene<T>, covariance: &[[T; 25]], size: ImageSize) -> Vec<T> {
+        let unit_px = T::of_usize(size.unit_px());
+        let limits = [size.width(), size.height()].map(T::of_usize);
+        let objects = posed.objects.iter().zip(covariance).enumerate();
+        let expected = objects.map(|(object, (part, covariance))| {
+            let outline: Vec<[T; 2]> = self.drawing.outline(object).iter().map(|v| v.map(|x| x * unit_px)).collect();
+            let is_seen = |edge: usize| (0..2).all(|c| outline[edge][c] >= T::zero() && outline[edge][c] < limits[c]);
+            let length = |edge: usize| {
+                let [a, b] = [outline[edge], outline[edge + 1]];
+                (b[0] - a[0]).hypot(b[1] - a[1])
+            };
+            let edges = || 0..outline.len().saturating_sub(1);
+            let (all, seen): (T, T) = (edges().map(length).sum(), edges().filter(|&k| is_seen(k)).map(length).sum());
+            // As much of the area as of the outline.
+            let area = signed_area(&outline).abs() * seen / all.max(T::of(1e-3));
+            let center = part.pose.translation;
+            let displaced = Displaced { outline: &outline, center, unit_px, covariance, stride: 5, own: T::zero() };
+            displaced.expected_iou(is_seen, seen, area)
+        });
+        expected.collect()
     }
 
     /// Symmetry and crop of the objects of the scene drawn last.

@@ -33,7 +33,7 @@ pub(super) fn with_ramps(
     let ramp_of = |color: [f32; 3]| {
         leveled.ramps.iter().find(|ramp| ramp.color.iter().zip(color).all(|(a, b)| (a - b).abs() < NEAR))
     };
-    let Fit { mut scene, mut covariance, mut ambiguity, .. } = fit;
+    let Fit { mut scene, mut covariance, mut expected_iou, mut ambiguity, .. } = fit;
     // A background has one color: what has more is a thing as large as the picture.
     if !scene.transparent && ramp_of(scene.background).is_some() {
         let sheet =
@@ -41,6 +41,9 @@ pub(super) fn with_ramps(
         scene.objects.splice(0..0, sheet.cast().objects);
         if !covariance.is_empty() {
             covariance.insert(0, [f32::NAN; 25]);
+        }
+        if !expected_iou.is_empty() {
+            expected_iou.insert(0, f32::NAN);
         }
         ambiguity = ambiguity.iter().filter_map(|ambiguity| moved(ambiguity, |object| Some(object + 1))).collect();
     }
@@ -55,7 +58,8 @@ pub(super) fn with_ramps(
         (painted, drawing) = canvas.paint(&scene, image.size())?;
     }
     let painted = of_painted(&scene, &drawing, painted, image)?;
-    Ok(Fit { bits: fit.bits, stop: fit.stop, steps: fit.steps, noise: fit.noise, covariance, ambiguity, ..painted })
+    let Fit { bits, stop, steps, noise, .. } = fit;
+    Ok(Fit { bits, stop, steps, noise, covariance, expected_iou, ambiguity, ..painted })
 }
 
 /// The nearer of a fit with ramps and one without; where that is not seen, the one with ramps if it has fewer things.

@@ -30,6 +30,7 @@ impl Checker<'_> {
         shape: &AnyShape<T>,
         object_count: usize,
     ) -> Result<(), FormatError> {
+        self.share(&format!("{field}.expected_iou"), known.expected_iou)?;
         if let Some(deviations) = &known.deviations {
             let one = |name: &str, value: f64| self.at_least(&format!("{field}.deviations.{name}"), value, 0.0);
             let translation = deviations.translation.iter().flatten().map(|&value| ("translation", value));

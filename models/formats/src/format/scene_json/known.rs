@@ -13,9 +13,12 @@ use super::write::shortest;
 /// The doubt of the scene of a picture that is transparent everywhere.
 pub const INVISIBLE: &str = "invisible";
 
+/// Doubts that files of earlier programs may name.
+const FORMER: [&str; 2] = ["ambiguity", "faint"];
+
 /// The names that a scene's doubts may have.
 pub(super) fn doubt_names() -> impl Iterator<Item = &'static str> {
-    Doubts::default().named().into_iter().map(|(name, _)| name).chain([INVISIBLE])
+    Doubts::default().named().into_iter().map(|(name, _)| name).chain([INVISIBLE]).chain(FORMER)
 }
 
 /// What a fit knows of a scene as a whole. What the method does not tell is missing.
@@ -79,6 +82,9 @@ pub struct ObjectKnownJson {
     /// Share of the picture's variance that would be unexplained in addition if the object alone were left out.
     #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
     pub marginal_gain: Option<f64>,
+    /// Intersection over union to expect of what is seen of the object and what is there, [0, 1].
+    #[serde(default, deserialize_with = "present", skip_serializing_if = "Option::is_none")]
+    pub expected_iou: Option<f64>,
     /// What remains open.
     #[serde(default)]
     pub doubts: Vec<DoubtJson>,
@@ -218,6 +224,7 @@ impl ObjectKnownJson {
             .map(|(k, object)| Self {
                 deviations: fit.covariance.get(k).map(|covariance| DeviationsJson::of_pose(object, covariance)),
                 marginal_gain: fit.marginal_gain.get(k).copied().and_then(finite),
+                expected_iou: fit.expected_iou.get(k).and_then(|&iou| finite(shortest(iou))),
                 doubts: Vec::new(),
             })
             .collect();

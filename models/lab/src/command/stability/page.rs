@@ -21,8 +21,8 @@ pub(super) fn page(sweeps: &[SweepSummary], machine: Option<&str>, effort: Effor
         p {
             "A run succeeds if the number of objects is right and each agrees with the true one to an IoU of " (FOUND)
             " in what is seen of it. A method breaks at the first level where fewer than " (format!("{:.0}", 100.0 * BROKEN))
-            " % succeed. A failure is silent if the result doubts nothing: no wide covariance, no ambiguity (but symmetry), no \
-            stop before it was done, no unexplained rest, no object that may be one too many or is faint. "
+            " % succeed. A failure is silent if the result doubts nothing: no object that may lie elsewhere, no \
+            stop before it was done, no unexplained rest, no object that may be one too many. "
             (effort.pictures) " pictures per level, from number " (effort.seed) "; the same scenes at all levels."
         }
         @if let Some(machine) = machine { p { "Machine: " (machine) } }
