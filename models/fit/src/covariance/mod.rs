@@ -61,21 +61,8 @@ pub(crate) fn covariance<T: Real>(object: &Outlined<'_, T>, lanes: &mut EdgeLane
         information[i][i] += T::of(1.0 / variance);
     }
     let inverse = inverse4(information);
-    // What a displacement by a pixel does to the pose, if all samples of a part share it.
-    let moved = |weights: &[T; NUMBERS]| -> [T; NUMBERS] {
-        core::array::from_fn(|i| (0..NUMBERS).map(|j| inverse[NUMBERS * i + j] * weights[j]).sum())
-    };
-    let whole: [T; NUMBERS] = core::array::from_fn(|i| sums.arcs.iter().map(|arc| arc[i]).sum());
     let area = signed_area(object.outline).abs().max(T::of(1e-3));
-    // The covariance if parts, and the whole, miss alike by this variance (px^2).
-    let missing = |systematic: T| {
-        let mut block = inverse;
-        for part in sums.arcs.iter().chain([&whole]) {
-            widen(&mut block, moved(part), systematic.sqrt());
-        }
-        widen(&mut block, [T::zero(), T::zero(), T::one(), T::zero()], bend(object, area));
-        block
-    };
+    let missing = |systematic: T| sums.missing(&inverse, systematic, bend(object, area));
     let systematic = sums.systematic(sums.misfit);
     let mut block = missing(systematic);
     let unseen = unseen_runs(object.outline, &seen);
@@ -83,8 +70,8 @@ pub(crate) fn covariance<T: Real>(object: &Outlined<'_, T>, lanes: &mut EdgeLane
         let &Outlined { outline, center, unit_px, .. } = object;
         // A shape of its own may be off in each part by what the samples of that part leave open.
         let own = systematic + if object.is_free { T::of_usize(ARCS) / sums.weight } else { T::zero() };
-        let length: T = outline.windows(2).map(|edge| (edge[1][0] - edge[0][0]).hypot(edge[1][1] - edge[0][1])).sum();
-        let length = length - unseen.iter().map(|run| run.length).sum();
+        let all: T = (0..seen.len()).map(|edge| length_of(outline, edge)).sum();
+        let length = all - unseen.iter().map(|run| run.length).sum();
         let displaced = Displaced { outline, center, unit_px, covariance: &block, stride: NUMBERS, own };
         displaced.expected_iou(|edge| seen[edge], length, object.area.min(area))
     };
@@ -142,16 +129,12 @@ impl<T: Real> Unseen<T> {
 fn unseen_runs<T: Real>(outline: &[[T; 2]], seen: &[bool]) -> Vec<Unseen<T>> {
     let edges = seen.len();
     let Some(first) = seen.iter().position(|&is| is) else { return Vec::new() };
-    let length = |edge: usize| {
-        let [a, b] = [outline[edge], outline[edge + 1]];
-        (b[0] - a[0]).hypot(b[1] - a[1])
-    };
     let mut runs = Vec::new();
     let (mut start, mut sum) = (first, T::zero());
     for step in 1..=edges {
         let edge = (first + step) % edges;
         if !seen[edge] {
-            sum += length(edge);
+            sum += length_of(outline, edge);
             continue;
         }
         if sum > T::of(2.0 * COVARIANCE_ASTRAY_PX) {
@@ -160,6 +143,12 @@ fn unseen_runs<T: Real>(outline: &[[T; 2]], seen: &[bool]) -> Vec<Unseen<T>> {
         (start, sum) = (first + step, T::zero());
     }
     runs
+}
+
+/// Length (px) of an edge.
+fn length_of<T: Real>(outline: &[[T; 2]], edge: usize) -> T {
+    let [a, b] = [outline[edge], outline[edge + 1]];
+    (b[0] - a[0]).hypot(b[1] - a[1])
 }
 
 /// Sums over the samples that lie on the outline.
@@ -183,6 +172,23 @@ impl<T: Real> Sums<T> {
         let excess = (misfit - T::of_usize(self.count)).max(T::zero());
         let rest = if self.weight > T::zero() { excess / self.weight } else { T::zero() };
         rest + T::of(SYSTEMATIC_PX * SYSTEMATIC_PX)
+    }
+
+    /// The covariance of the pose, `inverse` that of noise alone, if parts and the whole miss alike by this variance (px^2), and the size is off
+    /// by what bends.
+    #[inline(never)]
+    fn missing(&self, inverse: &[T; 16], systematic: T, bend: T) -> [T; 16] {
+        // What a displacement by a pixel does to the pose, if all samples of a part share it.
+        let moved = |weights: &[T; NUMBERS]| -> [T; NUMBERS] {
+            core::array::from_fn(|i| (0..NUMBERS).map(|j| inverse[NUMBERS * i + j] * weights[j]).sum())
+        };
+        let whole: [T; NUMBERS] = core::array::from_fn(|i| self.arcs.iter().map(|arc| arc[i]).sum());
+        let mut block = *inverse;
+        for part in self.arcs.iter().chain([&whole]) {
+            widen(&mut block, moved(part), systematic.sqrt());
+        }
+        widen(&mut block, [T::zero(), T::zero(), T::one(), T::zero()], bend);
+        block
     }
 }
 
@@ -221,12 +227,11 @@ impl<T: Real> simd::Kernel for Gather<'_, T> {
             let along = ((x * to[0] + y * to[1]) / (length * length)).max(T::zero()).min(T::one());
             let foot = [a[0] + along * x, a[1] + along * y];
             let off = [sample.point[0] - foot[0], sample.point[1] - foot[1]];
-            let far = off[0].hypot(off[1]);
+            let far = (off[0] * off[0] + off[1] * off[1]).sqrt();
             let outward = [y / length, -x / length];
             let across = outward[0] * to[0] + outward[1] * to[1];
-            // Beyond the ends of an edge, at a corner, the nearest point is a vertex, which is seen from elsewhere.
-            let is_vertex = (along <= T::zero() || along >= T::one()) && far > T::of(1e-3);
-            let n = if is_vertex { off.map(|d| d * across.signum() / far) } else { outward };
+            // Across the edge; beyond its ends, at a corner, the nearest point is a vertex, which is seen from elsewhere.
+            let n = if far > T::of(1e-3) { off.map(|d| d * across.signum() / far) } else { outward };
             let missed = far - sample.distance.abs();
             // Where the outline is hidden by another of its color, the samples nearest to it are that one's.
             if missed.abs() > T::of(COVARIANCE_ASTRAY_PX) {

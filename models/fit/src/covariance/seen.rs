@@ -27,7 +27,7 @@ impl<T: Real> Displaced<'_, T> {
         let seen = self.outline.windows(2).enumerate().filter(|&(k, _)| is_seen(k));
         for edge in seen.map(|(_, edge)| edge) {
             let along = [0, 1].map(|c| edge[1][c] - edge[0][c]);
-            let span = along[0].hypot(along[1]);
+            let span = (along[0] * along[0] + along[1] * along[1]).sqrt();
             if span > T::zero() {
                 moved += self.variance(edge, along, span).sqrt() * span;
                 sum += span;
@@ -50,10 +50,12 @@ impl<T: Real> Displaced<'_, T> {
             normal[0] * arm[0] + normal[1] * arm[1],
             normal[1] * arm[0] - normal[0] * arm[1],
         ];
-        let of_pose = |(i, &a): (usize, &T)| -> T {
-            row.iter().enumerate().map(|(j, &b)| a * b * self.covariance[self.stride * i + j]).sum()
-        };
-        let of_pose: T = row.iter().enumerate().map(of_pose).sum();
+        let mut of_pose = T::zero();
+        for (i, &a) in row.iter().enumerate() {
+            for (j, &b) in row.iter().enumerate() {
+                of_pose += a * b * self.covariance[self.stride * i + j];
+            }
+        }
         of_pose.max(T::zero()) + self.own
     }
 }
