@@ -87,21 +87,17 @@ pub(crate) const LEAST_COMPRESSED_NOISE: f64 = 0.03;
 pub(crate) const HALO_SHARE: f64 = 0.8;
 /// Compression that halves the resolution of color leaves strips of mixed color as wide as this (px).
 pub(crate) const COMPRESSED_STRIP_PX: f64 = 6.0;
-/// Squared error (in units of the noise's variance) that a pixel of boundary must save.
-pub(crate) const BOUNDARY_PRICE: f64 = 3.0;
 /// Strips along the edges of a picture that is not compressed are up to this wide (px).
 pub(crate) const STRIP_WIDTH_PX: f64 = 2.6;
 /// Rings of pixels beside a boundary that may still be soft.
 pub(crate) const SOFT_RINGS: usize = 3;
 /// Fewer flat pixels than this are no region.
 pub(crate) const MIN_REGION_PIXELS: u32 = 4;
-/// Every region pays as if it had this much more boundary (px): what an object costs whatever its size.
-pub(crate) const REGION_LENGTH_PX: f64 = 8.0;
 /// What compression leaves beside an edge stays in the unit of 16 x 16 pixels that its color is coded in: larger regions, if
 /// they are wider than this (px; twice the area over the boundary) and differ by more than steps of means do, are no halo.
-pub(crate) const HALO_PIXELS: u32 = 256;
+pub(crate) const HALO_PIXELS: f64 = 256.0;
 /// See [`HALO_PIXELS`].
-pub(crate) const HALO_WIDTH_PX: u32 = 8;
+pub(crate) const HALO_WIDTH_PX: f64 = 8.0;
 /// See [`HALO_WIDTH_PX`].
 pub(crate) const HALO_COLOR: f64 = 0.03;
 

@@ -34,6 +34,47 @@ fn no_more_regions_than_asked_for_and_those_of_least_contrast_go_first() {
     assert_eq!(regions(&image.view(), 1, 0.0).count, 1);
 }
 
+#[test]
+fn regions_merge_in_the_order_of_what_it_costs() {
+    // Quarters of 32 x 32 pixels at 0, 0.1, 0.5 and 0.6, boundaries of 32 px + 8: merging 0 with 0.1 adds
+    // 3 x 0.1^2 x 512 / 40 = 0.384 per px, merging the pairs (0.05 with 0.55, boundary 64 + 8) adds
+    // 3 x 0.5^2 x 1024 / 72 = 10.7.
+    let image = picture(64, 64, |x, y| [[0.0, 0.1, 0.5, 0.6][x / 32 + 2 * (y / 32)]; 3]);
+    let view = image.view();
+    let regions = |worth: f64, most: usize| {
+        merged_zones([&view, &view], 1e-3, (worth / BOUNDARY_PRICE, most), None, &mut Vec::new())
+    };
+    assert_eq!(regions(0.37, usize::MAX), 4);
+    assert_eq!(regions(0.39, usize::MAX), 2);
+    assert_eq!(regions(10.6, usize::MAX), 2);
+    assert_eq!(regions(10.8, usize::MAX), 1);
+    assert_eq!(regions(1e-9, 3), 3);
+}
+
+#[test]
+fn what_a_coder_leaves_beside_an_edge_is_a_halo_and_a_large_thing_none() {
+    // A strip of a quarter of the contrast beside an edge, and a field of the same difference in a corner.
+    let color = |x: usize, y: usize| {
+        let is_field = x < 24 && y < 24;
+        [if x >= 40 {
+            1.0
+        } else if x >= 38 || is_field {
+            0.25
+        } else {
+            0.0
+        }; 3]
+    };
+    let image = picture(64, 64, color);
+    let view = image.view();
+    let halo = Halo { share: 2.0, pixels: 256.0, width_px: 8.0, color: 0.03 };
+    let mut labels = Vec::new();
+    let count = |halo, labels: &mut Vec<u32>| merged_zones([&view, &view], 1e-3, (1e-9, usize::MAX), halo, labels);
+    assert_eq!(count(None, &mut labels), 4);
+    assert_eq!(count(Some(halo), &mut labels), 3);
+    let at = |x: usize, y: usize| labels[y * 64 + x];
+    assert!(at(39, 50) == at(30, 50) && at(5, 5) != at(30, 50) && at(60, 50) != at(30, 50));
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 

@@ -1,10 +1,9 @@
 //! Flat regions of a picture with noise: denoised, partitioned, and freed from the soft pixels along their boundaries.
 //!
 //! In: a picture. Out: a [`FlatMap`] like that of a picture without noise, and the denoised picture to place soft pixels by.
-//! `merge` partitions, `strips` tells strips of soft pixels that became
+//! `dvp_trace::regions` partitions, `strips` tells strips of soft pixels that became
 //! regions of their own from thin objects; here pixels near boundaries are freed.
 
-mod merge;
 mod strips;
 #[cfg(test)]
 mod tests;
@@ -13,10 +12,12 @@ use alloc::vec::Vec;
 
 use dvp_core::{ImageView, Real};
 use dvp_trace::noise::{DenoiseScratch, denoise_twice};
+use dvp_trace::regions::{Halo, merged_zones};
 
 use super::flat::FlatMap;
-use crate::tuning::{BOUNDARY_PRICE, MIN_REGION_PIXELS, SOFT_RINGS, STRIP_WIDTH_PX, ZONE_NOISE};
-use merge::{Merger, Stop};
+use crate::tuning::{
+    HALO_COLOR, HALO_PIXELS, HALO_WIDTH_PX, MIN_REGION_PIXELS, SOFT_RINGS, STRIP_WIDTH_PX, ZONE_NOISE,
+};
 use strips::{Zone, find_strips, measure_zones};
 
 /// Label of pixels that belong to no region.
@@ -52,7 +53,6 @@ pub(crate) struct RobustScratch<T> {
     first: Vec<T>,
     /// The denoised picture, planar.
     pub(crate) smooth: Vec<T>,
-    merger: Merger<T>,
     labels: Vec<u32>,
     eroded: Vec<u32>,
     zones: Vec<Zone<T>>,
@@ -68,11 +68,16 @@ pub(crate) fn read_flat<T: Real>(
     map: &mut FlatMap,
 ) {
     let RobustSettings { noise, halo, strip_width, zone, boundary } = settings;
-    let variance = noise * noise;
     denoise_twice(image, noise, &mut scratch.denoise, &mut scratch.first, &mut scratch.smooth);
     let Ok(smooth) = ImageView::new(image.size(), &scratch.smooth) else { return };
-    let stop = Stop { price: T::of(BOUNDARY_PRICE) * boundary * variance, halo, most_regions };
-    let count = scratch.merger.partition(image, &smooth, zone, stop, &mut scratch.labels);
+    let variance = (boundary * noise * noise).as_f64();
+    let halo = (halo > T::zero()).then(|| Halo {
+        share: halo.as_f64(),
+        pixels: HALO_PIXELS,
+        width_px: HALO_WIDTH_PX,
+        color: HALO_COLOR,
+    });
+    let count = merged_zones([image, &smooth], zone, (variance, most_regions), halo, &mut scratch.labels);
     measure_zones(&smooth, count, &scratch.labels, &mut scratch.zones, &mut scratch.steps);
     find_strips(&mut scratch.zones, &scratch.steps, strip_width, T::of(0.02) + noise);
     let deviation = T::of(0.008) + T::of(0.5) * noise;

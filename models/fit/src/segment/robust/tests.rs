@@ -2,7 +2,6 @@ use alloc::vec::Vec;
 
 use dvp_core::{Image, ImageSize};
 
-use super::merge::{Merger, Stop};
 use super::{RobustScratch, RobustSettings, read_flat};
 use crate::segment::flat::FlatMap;
 
@@ -20,24 +19,6 @@ fn soft_disk() -> Image<f64> {
         let share = ((22.0 - off[0].hypot(off[1])) / 4.0).clamp(0.0, 1.0);
         [0.2 + 0.6 * share, 0.7 - 0.4 * share, 0.5]
     })
-}
-
-#[test]
-fn regions_merge_in_the_order_of_what_it_costs() {
-    // Quarters of 32 x 32 pixels at 0, 0.1, 0.5 and 0.6, boundaries of 32 px + 8: merging 0 with 0.1 adds
-    // 3 x 0.1^2 x 512 / 40 = 0.384 per px, merging the pairs (0.05 with 0.55, boundary 64 + 8) adds
-    // 3 x 0.5^2 x 1024 / 72 = 10.7.
-    let image = paint(|x, y| [[0.0, 0.1, 0.5, 0.6][x / 32 + 2 * (y / 32)]; 3]);
-    let regions = |price: f64, most_regions: usize| {
-        let mut labels = Vec::new();
-        let stop = Stop { price, halo: 0.0, most_regions };
-        Merger::default().partition(&image.view(), &image.view(), 1e-3, stop, &mut labels)
-    };
-    assert_eq!(regions(0.37, usize::MAX), 4);
-    assert_eq!(regions(0.39, usize::MAX), 2);
-    assert_eq!(regions(10.6, usize::MAX), 2);
-    assert_eq!(regions(10.8, usize::MAX), 1);
-    assert_eq!(regions(0.0, 3), 3);
 }
 
 #[test]
