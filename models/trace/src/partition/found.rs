@@ -40,8 +40,8 @@ impl Found {
             (noise.contrast, if noise.reading.coded { coded::weighted([1.0; 3]) } else { [1.0; 3] });
         let mut open = mix::open(pixels, size, &flat, &colors.colors, noise);
         let noise = f64::from(noise.mixed);
-        let mended = seam::mend(pixels, size, &flat, &mut open, &colors.colors, noise);
         let white = white.map(f64::from);
+        let mended = seam::mend(pixels, size, &flat, &mut open, [&colors.colors, &[white]], noise);
         let canvas = cross::Canvas { pixels, size, flat: &flat, open: &open, noise, contrast, white, widest };
         let mut lines = thin::find(&canvas, &colors.colors);
         let ground = colors.colors[0];

@@ -43,6 +43,32 @@ fn seams_are_painted_as_they_were() {
 }
 
 #[test]
+fn a_page_that_is_seen_nowhere_else_shows_through_seams() {
+    // A flag of three fields, over white: where two meet up to a quarter of a pixel is white.
+    let colors = [[0.0, 0.6, 0.0], [1.0, 0.85, 0.05], RED];
+    let field = |k: usize| {
+        let [left, right] = [k, k + 1].map(|k| [0.0, 32.2, 63.6, 96.0][k]);
+        object(rectangle(right - left, 96.0), [0.5 * (left + right), 48.0], 0.0, colors[k])
+    };
+    let picture = paint(&scene(WHITE, (0..3).map(field).collect()));
+    let found = found(&picture);
+    // One of them is the background.
+    assert_eq!(found.objects.len(), 2, "{:?}", found.objects);
+    // What is white of two columns of 96, where nothing shows through any more: a quarter at most, in each channel by less than one.
+    let error = error(&picture, &found);
+    assert!(error < 2.0 * 0.25 / 96.0, "{error}");
+}
+
+#[test]
+fn what_is_seen_nowhere_else_and_is_no_page_shows_through_no_seam() {
+    // Blue under yellow, as large: its edge shows at every edge of yellow, and white explains some of these pixels.
+    let field = |color| object(rectangle(40.0, 30.0), [47.3, 46.1], 0.5, color);
+    let picture = paint(&scene([0.43, 0.65, 0.27], vec![field([0.0, 0.32, 0.7]), field([1.0, 0.85, 0.27])]));
+    let found = found(&picture);
+    assert_eq!(found.objects.len(), 1, "{:?}", found.objects);
+}
+
+#[test]
 fn a_line_along_an_edge_is_no_seam() {
     // The frame of a chart ends where its fields do. Of what shows in two pixels one alone may look like white and blue with a little orange between.
     let field = |[top, bottom]: [f64; 2], color| {
