@@ -11,7 +11,7 @@ use num_traits::Float as _;
 
 use super::Halo;
 
-/// Every region pays as if it had this much more boundary (px): what a thing costs whatever its size. Photographs come out as near, in 2 to 3 % more bits, at
+/// Every region pays as if it had this much more boundary (px): what a thing costs whatever its size. Photographs come out as near, in 6 % more bits, at
 /// twice as much.
 const REGION_LENGTH_PX: f64 = 8.0;
 /// What merges costs first is this share of what regions are worth, and then so many times as much, stage by stage.
@@ -108,9 +108,15 @@ impl Merging {
         }
         // All that does not pay for itself.
         self.stage(worth, 1, 0.0);
-        // What does stays, unless there is too much of it.
-        while self.count > most && !self.borders.is_empty() {
+        // What does stays, unless there is too much of it: then what saves least is next, however much that is.
+        while self.count > most {
+            let next = self.borders.iter().map(|border| self.cost(border)).fold(f64::INFINITY, f64::min);
+            limit = limit.max(next);
+            let before = self.count;
             self.stage(limit, most, 0.0);
+            if self.count == before {
+                return;
+            }
             limit *= NEXT;
         }
     }
