@@ -269,11 +269,23 @@ fn all_that_the_schema_names_is_written() {
         let json = any_ramped_json().new_tree(&mut runner).unwrap().current();
         words_used(&serde_json::to_value(&json).unwrap(), &mut used);
     }
-    // Defaults, which are left out.
-    used.extend(["\"squared_distance\"", "\"even_odd\""].map(str::to_owned));
+    // Defaults, which are left out, and doubts of earlier programs.
+    used.extend(["squared_distance", "even_odd", "ambiguity", "faint"].map(|word| format!("\"{word}\"")));
     let missing: Vec<&String> = named.difference(&used).collect();
     assert!(missing.is_empty(), "{missing:?}");
     assert!(Doubts::default().named().iter().all(|(name, _)| named.contains(&format!("\"{name}\""))));
+}
+
+#[test]
+fn doubts_of_earlier_programs_are_read() {
+    let of = |doubt: &str| {
+        let known = format!("{{\"stop\": \"converged\", \"doubts\": [\"{doubt}\"]}}");
+        format!("{{\"version\": 3, \"background\": [0, 0, 0], \"objects\": [], \"known\": {known}}}")
+    };
+    for doubt in ["ambiguity", "faint", "pose"] {
+        assert!(SCHEMA.is_valid(&serde_json::from_str(&of(doubt)).unwrap()) && read(&of(doubt)).is_ok(), "{doubt}");
+    }
+    assert!(read(&of("color")).is_err());
 }
 
 #[test]
