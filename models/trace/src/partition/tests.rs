@@ -153,3 +153,26 @@ proptest! {
         prop_assert!((mean - width).abs() < 0.15, "{mean}");
     }
 }
+
+#[test]
+fn the_page_shows_all_along_a_seam_or_not_at_all() {
+    const GREEN: Color = [0.4, 0.65, 0.25];
+    const YELLOW: Color = [1.0, 0.85, 0.25];
+    // A column of green, one of mixtures, one of yellow, painted over a third color in so many rows, and over white in the others.
+    let rows = 40;
+    let mended = |over_blue: usize| {
+        let mixture = |row: usize| -> [f32; 3] {
+            let share = 0.3 + 0.01 * row as f64;
+            let behind = if row < over_blue { [0.0, 0.3, 0.7] } else { WHITE };
+            core::array::from_fn(|c| {
+                (share * YELLOW[c] + (1.0 - share) * ((1.0 - share) * GREEN[c] + share * behind[c])) as f32
+            })
+        };
+        let row = |row: usize| [GREEN.map(|value| value as f32), mixture(row), YELLOW.map(|value| value as f32)];
+        let mut pixels: Vec<[f32; 3]> = (0..rows).flat_map(row).collect();
+        let flat: Vec<u16> = (0..rows).flat_map(|_| [0, u16::MAX, 1]).collect();
+        let mut open: Vec<usize> = (0..rows).map(|row| 3 * row + 1).collect();
+        super::seam::mend(&mut pixels, [3, rows], &flat, &mut open, [&[GREEN, YELLOW], &[WHITE]], 0.01).len()
+    };
+    assert_eq!((mended(0), mended(rows / 2)), (rows, 0));
+}
