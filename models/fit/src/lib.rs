@@ -180,7 +180,7 @@ pub struct Fit<T> {
     /// square root of width over height along the object's own axes, is that of ellipses in drawings; other shapes keep theirs (zeros).
     pub covariance: Vec<[T; 25]>,
     /// Per object, the intersection over union to expect of what is seen of it and what is there, [0, 1], if it is off by what its pose and
-    /// its outline may be off by. Empty if it is not known.
+    /// its outline may be off by. Empty if it is not known, NaN of an object about which nothing is.
     pub expected_iou: Vec<T>,
     /// What remains open.
     pub ambiguity: Vec<Ambiguity>,

@@ -112,7 +112,7 @@ fn samples_at_corners_of_a_known_square_miss_nothing() {
     let own = (0.003_f64 / 0.5).powi(2);
     assert!(found[12].sqrt() < 2.0 * (own + SYSTEMATIC_PX * SYSTEMATIC_PX).sqrt() / 10.0, "{}", found[12].sqrt());
     assert!(iou > 0.9985, "{iou}");
-    // A shape of its own may have other corners: its place is open, what is seen of it is not.
+    // A shape of its own may have other corners: its place is open, what is seen of it is not, but for what bends within a pixel: .25 pi / 400 of its size.
     let (free, own_iou) = of(&samples, true);
     assert!(free[0] > 4.0 * found[0] && own_iou > 0.9985 - 2e-3, "{} and {}, {own_iou}", free[0], found[0]);
     assert!(of(&[], false).1.abs() < 1e-12);
