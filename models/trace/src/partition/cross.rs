@@ -161,7 +161,7 @@ impl Canvas<'_> {
             let centroid =
                 (0..count).map(|k| shares[k][0] * (k as f64 + 0.5)).sum::<f64>() / width.max(1e-9) + from as f64;
             let covered = shares[..count].iter().filter(|share| share[0] > 0.03).count();
-            if covered == 2 && (before > 0.03 || after > 0.03) && width > 0.7 {
+            if covered == 2 && (before > 0.03 || after > 0.03) {
                 // Both pixels beside a crack: what is covered begins and ends in them.
                 let (crack, low, high) =
                     if before > after { (place, before, middle[0]) } else { (place + 1.0, middle[0], after) };

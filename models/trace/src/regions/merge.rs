@@ -20,6 +20,8 @@ const FIRST: f64 = 1.0 / 64.0;
 const NEXT: f64 = 2.0;
 /// A round in which a smaller share of the regions goes is the last one of its stage: the next stage merges those that are left, too.
 const FEW: f64 = 0.05;
+/// So many times as large.
+const DWARFS: f64 = 1024.0;
 
 /// What is known of a region: pixels, and the sum of their colors.
 #[derive(Clone, Copy)]
@@ -181,9 +183,12 @@ impl Merging {
                 }
             }
         }
-        let is_mutual =
-            |at: &usize| self.borders[*at].between.iter().all(|&region| best[region as usize] == *at as u32);
-        let mut merged: Vec<usize> = (0..costs.len()).filter(is_mutual).collect();
+        // What is so much larger changes too little by it for the order to matter.
+        let is_taken = |at: &usize| {
+            let [a, b] = self.borders[*at].between.map(|region| (best[region as usize] == *at as u32, self.regions[region as usize].pixels));
+            (a.0 && b.0) || (a.0 && b.1 >= DWARFS * a.1) || (b.0 && a.1 >= DWARFS * b.1)
+        };
+        let mut merged: Vec<usize> = (0..costs.len()).filter(is_taken).collect();
         if merged.is_empty() {
             return;
         }
