@@ -1,16 +1,22 @@
 //! Outlines that were fitted before, and how things lie on one another: orders and groups of faces are tried again and again, and most boundaries stay the same.
 
-use alloc::collections::BTreeMap;
+use alloc::collections::{BTreeMap, BTreeSet};
 use alloc::rc::Rc;
 use alloc::vec::Vec;
 use core::cell::{Cell, RefCell};
+use core::slice;
 
+use dvp_core::Vec2;
 use dvp_core::geometry::{LineSegment, Similarity};
+use dvp_core::shape::Stroke;
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
 
 use super::template::Seen;
-use crate::outline::{Outline, fit_closed};
+use crate::outline::{Outline, fit_closed, moved};
 use crate::ruler::Ruler;
 use crate::sample::{RingSamples, Sample};
+use crate::stroke::{StrokeFit, fit_strokes};
 
 /// How many templates are held against samples in the time that an outline through these takes, about.
 const QUICKER: usize = 64;
@@ -21,8 +27,10 @@ type Placed = Option<(Similarity<f64>, f64)>;
 /// What was found of the boundaries of one picture, by their samples. Where other readings of the picture have the same boundary, it is the same.
 #[derive(Default)]
 pub(crate) struct Memo {
-    /// The outlines through them.
-    known: RefCell<BTreeMap<Vec<u64>, Option<Outline>>>,
+    /// The outlines through them, from the corner of their pixels on: things that are drawn alike, pixel by pixel, as letters are, are fitted once.
+    outlines: RefCell<BTreeMap<Vec<u64>, Fitted>>,
+    /// The strokes that drew them, likewise.
+    strokes: RefCell<BTreeMap<Vec<u64>, Option<StrokeFit>>>,
     /// What is seen of things, by samples and sides.
     seen: RefCell<BTreeMap<Vec<u64>, Rc<Templates>>>,
     /// Samples that outlines were fitted to, of all that is bounded as one: the searches for an order of all readings, or what else is asked for.
@@ -47,12 +55,35 @@ impl Memo {
 
     /// What [`fit_closed`] gives; the ruler is always the same.
     pub(super) fn fit_closed(&self, ring: &RingSamples, ruler: &Ruler) -> Option<Outline> {
-        let mut known = self.known.borrow_mut();
-        let outline = known.entry(key(ring)).or_insert_with(|| {
+        let rings = slice::from_ref(ring);
+        let corner = corner(rings);
+        let mut known = self.outlines.borrow_mut();
+        let fitted = known
+            .entry(key(rings, corner))
+            .or_insert_with(|| Fitted { outline: fit_closed(&from(ring, corner), ruler), corners: BTreeSet::new() });
+        // How long a search goes on does not depend on what else is drawn like that.
+        if fitted.corners.insert(corner.to_array().map(f64::to_bits)) {
             self.spent.set(self.spent.get() + ring.runs.iter().map(Vec::len).sum::<usize>());
-            fit_closed(ring, ruler)
+        }
+        let Outline { shape, bits, misfit, covariance } = fitted.outline.as_ref()?;
+        let (shape, covariance) = (shape.moved(&shift(corner)), covariance.clone());
+        Some(Outline { shape, bits: *bits, misfit: *misfit, covariance })
+    }
+
+    /// What [`fit_strokes`] gives; the ruler is always the same.
+    pub(super) fn fit_strokes(&self, rings: &[RingSamples], ruler: &Ruler) -> Option<StrokeFit> {
+        let corner = corner(rings);
+        let mut known = self.strokes.borrow_mut();
+        let fit = known.entry(key(rings, corner)).or_insert_with(|| {
+            let rings: Vec<RingSamples> = rings.iter().map(|ring| from(ring, corner)).collect();
+            fit_strokes(&rings, ruler)
         });
-        outline.clone()
+        let StrokeFit { strokes, bits, misfit } = fit.as_ref()?;
+        let place = |stroke: &Stroke<f64>| {
+            let rings = stroke.rings.iter().map(|ring| moved(ring, &shift(corner))).collect();
+            Stroke { rings, ..*stroke }
+        };
+        Some(StrokeFit { strokes: strokes.iter().map(place).collect(), bits: *bits, misfit: *misfit })
     }
 
     /// What samples show of a thing; `sides`: of the outlines that were drawn through them.
@@ -81,6 +112,12 @@ impl Memo {
     }
 }
 
+/// The outline through samples, and where such samples were asked for.
+struct Fitted {
+    outline: Option<Outline>,
+    corners: BTreeSet<[u64; 2]>,
+}
+
 /// What is seen of a thing, with the templates that were held against it.
 pub(super) struct Templates {
     seen: Seen,
@@ -88,19 +125,65 @@ pub(super) struct Templates {
     known: RefCell<BTreeMap<Vec<u64>, Placed>>,
 }
 
-/// The bits of all numbers of a ring, and how many samples each of its runs has.
-fn key(ring: &RingSamples) -> Vec<u64> {
-    let mut key = Vec::new();
-    key.push(u64::from(ring.closed));
-    ring.runs.iter().for_each(|run| add_samples(&mut key, run));
+/// The corner of the pixels in which a boundary begins.
+fn corner(rings: &[RingSamples]) -> Vec2<f64> {
+    let points = rings.iter().flat_map(|ring| ring.runs.iter().flatten()).map(|sample| sample.point);
+    let least = points.reduce(|least, point| Vec2::new(least.x.min(point.x), least.y.min(point.y)));
+    least.map_or(Vec2::new(0.0, 0.0), |least| Vec2::new(least.x.floor(), least.y.floor()))
+}
+
+/// Steps in a pixel that places are told apart by, from a corner on: what is drawn alike, some pixels further, is off by rounding.
+const STEPS: f64 = 4_294_967_296.0;
+
+/// How many steps a point lies beyond a corner.
+fn steps(point: Vec2<f64>, corner: Vec2<f64>) -> [u64; 2] {
+    (point - corner).to_array().map(|at| (at * STEPS + 0.5) as u64)
+}
+
+/// A boundary from a corner on.
+fn from(ring: &RingSamples, corner: Vec2<f64>) -> RingSamples {
+    let place = |sample: &Sample| {
+        let point = Vec2::from(steps(sample.point, corner).map(|steps| steps as f64 / STEPS));
+        Sample { point, ..*sample }
+    };
+    RingSamples { runs: ring.runs.iter().map(|run| run.iter().map(place).collect()).collect(), closed: ring.closed }
+}
+
+/// Puts what was fitted from a corner on where it lies.
+fn shift(corner: Vec2<f64>) -> Similarity<f64> {
+    Similarity { translation: corner, ..Similarity::identity() }
+}
+
+/// A boundary from a corner on as numbers that tell it from others.
+fn key(rings: &[RingSamples], corner: Vec2<f64>) -> Vec<u64> {
+    let count: usize = rings.iter().flat_map(|ring| &ring.runs).map(|run| 5 * run.len() + 3).sum();
+    let mut key = Vec::with_capacity(count + rings.len());
+    for ring in rings {
+        key.push(2 * ring.runs.len() as u64 + u64::from(ring.closed));
+        for run in &ring.runs {
+            key.push(run.len() as u64);
+            for sample in run {
+                key.extend(steps(sample.point, corner));
+                add_doubt(&mut key, sample);
+            }
+        }
+    }
     key
+}
+
+fn add_doubt(key: &mut Vec<u64>, sample: &Sample) {
+    key.extend([sample.axis.x, sample.axis.y, sample.sigma].map(f64::to_bits));
+    // No deviation is negative.
+    if let Some(sigma) = key.last_mut().filter(|_| sample.is_exact) {
+        *sigma |= 1 << 63;
+    }
 }
 
 fn add_samples(key: &mut Vec<u64>, samples: &[Sample]) {
     key.push(samples.len() as u64);
     for sample in samples {
-        let numbers = [sample.point.x, sample.point.y, sample.axis.x, sample.axis.y, sample.sigma];
-        key.extend(numbers.map(f64::to_bits));
+        key.extend([sample.point.x, sample.point.y].map(f64::to_bits));
+        add_doubt(key, sample);
     }
 }
 

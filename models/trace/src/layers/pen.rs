@@ -9,7 +9,7 @@ use crate::boundary::Ring;
 use crate::partition::{OUTSIDE, Partition};
 use crate::ruler::Ruler;
 use crate::sample::RingSamples;
-use crate::stroke::{StrokeFit, fit_strokes};
+use crate::stroke::StrokeFit;
 
 /// The strokes of every face that is drawn with fewer bits by a pen.
 pub(super) fn find(
@@ -30,7 +30,7 @@ pub(super) fn find(
             visible::samples(ring, &hidden, &[])
         };
         let seen: Vec<RingSamples> = rings.iter().map(|ring| samples(ring, Some(Hidden::Free))).collect();
-        pens[face] = fit_strokes(&seen, ruler).filter(|pen| {
+        pens[face] = memo.fit_strokes(&seen, ruler).filter(|pen| {
             // As soon as some of the outlines cost more there is no need for the others.
             let mut bits = 0.0;
             rings.iter().map(|ring| samples(ring, None)).any(|samples| {

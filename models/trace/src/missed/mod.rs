@@ -15,6 +15,7 @@ mod pixels;
 #[cfg(test)]
 mod tests;
 
+use alloc::collections::BTreeMap;
 use alloc::vec;
 use alloc::vec::Vec;
 use core::ops::Range;
@@ -23,7 +24,7 @@ use core::ops::Range;
 use num_traits::Float as _;
 
 use dvp_core::image::{distance, mixture};
-use dvp_core::{ImageSize, ImageView, Object, Paint, Real as _, Scene, Vec2};
+use dvp_core::{ImageSize, ImageView, Object, Paint, Real as _, Scene};
 
 use crate::layers::{Form, Layer};
 use crate::partition::Color;
@@ -92,11 +93,12 @@ impl Painted<'_> {
         off.iter().zip(parts).for_each(|(&i, part)| pixels[part as usize].push(i));
         let colors = self.colors();
         let mut found = Vec::new();
+        let mut known = Known::new();
         for pixels in pixels {
             let mut marked: Vec<(usize, Mark)> = pixels.into_iter().map(|i| (i, self.mark(i))).collect();
             while let Some(seen) = self.seen(&marked, &colors) {
                 marked.retain(|(i, _)| seen.pixels.binary_search(i).is_err());
-                found.extend(self.traced(seen));
+                found.extend(self.traced(seen, &mut known));
             }
         }
         found
@@ -223,7 +225,7 @@ impl Painted<'_> {
 
     /// A thing, as strokes of a pen or in outlines, if it costs less than its pixels; else nothing.
     #[inline(never)]
-    fn traced(&self, Seen { color, pixels, count, missed }: Seen) -> Option<Missed> {
+    fn traced(&self, Seen { color, pixels, count, missed }: Seen, known: &mut Known) -> Option<Missed> {
         // What its pixels cost now, or if each new one of them were told as it is.
         let worth = missed.max(count as f64 * tuning::PIXEL_BITS);
         let [width, height] = [self.image.size().width(), self.image.size().height()];
@@ -234,7 +236,7 @@ impl Painted<'_> {
         };
         let [columns, rows] = [reach(&|i| i % width), reach(&|i| i / width)];
         let window = ImageSize::new(columns.len(), rows.len()).ok().filter(|window| window.pixels() <= MOST_PIXELS)?;
-        let corner = Vec2::new(columns.start as f64 - 2.0, rows.start as f64 - 2.0);
+        let corner = [columns.start as f64 - 2.0, rows.start as f64 - 2.0];
         // What lies beside shows a little of it, too.
         let is_own = |x: usize, y: usize| x < width && y < height && pixels.binary_search(&(y * width + x)).is_ok();
         let touches =
@@ -245,21 +247,37 @@ impl Painted<'_> {
         };
         let field: Vec<f64> = rows.flat_map(|y| columns.clone().map(move |x| share((x, y)))).collect();
         let ruler = Ruler { extent: width.max(height) as f64 };
-        let level = Level::of(&field, window, corner)?;
-        let outlines = level.outlines(&ruler);
-        let bits = outlines.iter().map(|outline| outline.bits + outline.misfit).sum();
-        // Lines with ends of two kinds would be two things.
-        let pen = level.pen(&ruler).filter(|pen| pen.strokes.len() == 1 && pen.bits + pen.misfit < bits);
-        let (form, bits) = match pen.and_then(|pen| Some((pen.bits + pen.misfit, pen.strokes.into_iter().next()?))) {
-            Some((bits, stroke)) => (Form::Stroked(stroke), bits),
-            None => (Form::Filled(outlines), bits),
-        };
+        let key = (columns.len(), field.iter().map(|share| share.to_bits()).collect());
+        let (form, bits) = known.entry(key).or_insert_with(|| covering(&field, window, &ruler)).clone()?;
         if bits + tuning::THING_BITS > worth {
             return None;
         }
         let layer = Layer { color, form, faces: Vec::new(), bits };
-        Some(Missed { object: scene::object(&layer, self.image.size().unit_px() as f64)?, bits })
+        let unit = self.image.size().unit_px() as f64;
+        let mut object = scene::object(&layer, unit)?;
+        for (at, corner) in object.pose.translation.iter_mut().zip(corner) {
+            *at += f32::of(corner / unit);
+        }
+        Some(Missed { object, bits })
     }
+}
+
+/// What covers pixels in part, by the columns of its window and the shares of its pixels: of things that are drawn alike, as letters are, each is
+/// traced once. With its description length, bits; none of a window that is empty.
+type Known = BTreeMap<(usize, Vec<u64>), Option<(Form, f64)>>;
+
+/// What covers as much of every pixel of a window as `field` says, from the corner of the window on, and its description length, bits.
+fn covering(field: &[f64], window: ImageSize, ruler: &Ruler) -> Option<(Form, f64)> {
+    let level = Level::of(field, window)?;
+    let outlines = level.outlines(ruler);
+    let bits = outlines.iter().map(|outline| outline.bits + outline.misfit).sum();
+    // Lines with ends of two kinds would be two things.
+    let pen = level.pen(ruler).filter(|pen| pen.strokes.len() == 1 && pen.bits + pen.misfit < bits);
+    let stroke = pen.and_then(|pen| Some((pen.bits + pen.misfit, pen.strokes.into_iter().next()?)));
+    Some(match stroke {
+        Some((bits, stroke)) => (Form::Stroked(stroke), bits),
+        None => (Form::Filled(outlines), bits),
+    })
 }
 
 /// Bits that a pixel costs a channel of which is `off` by so much: off by `step` it is off by one sigma, and it is told as it is if that is less.

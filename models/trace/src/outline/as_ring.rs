@@ -48,19 +48,7 @@ impl OutlineShape {
         let (scale, turn) = (map.scale(), map.angle());
         let turned = |angle: f64| if map.reflected { turn - angle } else { turn + angle };
         match *self {
-            Self::Path(ref ring) => {
-                let place = |point: [f64; 2]| map.point(Vec2::from(point)).to_array();
-                let segment = |segment: &Segment<f64>| match *segment {
-                    Segment::Cubic { controls } => Segment::Cubic { controls: controls.map(place) },
-                    Segment::SmoothCubic { handle, control } => {
-                        Segment::SmoothCubic { handle: handle * scale, control: place(control) }
-                    }
-                    Segment::Arc { bulge } if map.reflected => Segment::Arc { bulge: -bulge },
-                    other => other,
-                };
-                let points = ring.points.iter().map(|&point| place(point)).collect();
-                Self::Path(PathRing { points, segments: ring.segments.iter().map(segment).collect() })
-            }
+            Self::Path(ref ring) => Self::Path(moved(ring, map)),
             Self::Circle { center, radius } => Self::Circle { center: map.point(center), radius: radius * scale },
             Self::Ellipse { center, radii, angle } => Self::Ellipse {
                 center: map.point(center),
@@ -149,4 +137,22 @@ fn rectangle(center: Vec2<f64>, size: [f64; 2], corner_radius: f64, turn: Vec2<f
         ring.segments.extend([Segment::Arc { bulge: quarter }, Segment::Line]);
     }
     ring
+}
+
+/// A ring elsewhere, turned or reflected, and in another size.
+#[must_use]
+pub(crate) fn moved(ring: &PathRing<f64>, map: &Similarity<f64>) -> PathRing<f64> {
+    let place = |point: [f64; 2]| map.point(Vec2::from(point)).to_array();
+    let segment = |segment: &Segment<f64>| match *segment {
+        Segment::Cubic { controls } => Segment::Cubic { controls: controls.map(place) },
+        Segment::SmoothCubic { handle, control } => {
+            Segment::SmoothCubic { handle: handle * map.scale(), control: place(control) }
+        }
+        Segment::Arc { bulge } if map.reflected => Segment::Arc { bulge: -bulge },
+        other => other,
+    };
+    PathRing {
+        points: ring.points.iter().map(|&point| place(point)).collect(),
+        segments: ring.segments.iter().map(segment).collect(),
+    }
 }

@@ -20,6 +20,7 @@
 //! | `figure`, `conic`, `whole`, `trial` | circles, ellipses, rectangles, regular polygons and stars, fitted to all samples |
 
 mod as_ring;
+pub(crate) use as_ring::moved;
 mod behind;
 mod bent;
 mod chain;

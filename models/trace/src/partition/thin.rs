@@ -1,6 +1,7 @@
 //! Lines thinner than two pixels: found across, chained along, and taken out of the picture, so that what they lie on meets in
 //! their middle as if they were not there.
 
+use alloc::collections::BTreeSet;
 use alloc::vec::Vec;
 
 #[cfg(not(feature = "std"))]
@@ -53,7 +54,9 @@ pub(super) fn find(canvas: &Canvas<'_>, palette: &[Color]) -> Vec<(ThinLine, Cha
 
 /// Lines from back to front: where two cross the one in front shows its color.
 fn in_order(canvas: &Canvas<'_>, mut lines: Vec<(ThinLine, Chain)>) -> Vec<(ThinLine, Chain)> {
-    let mut is_behind = alloc::vec![alloc::vec![false; lines.len()]; lines.len()];
+    // Of every line those in front of it, and how many are behind it.
+    let mut in_front = alloc::vec![Vec::new(); lines.len()];
+    let mut behind = alloc::vec![0_usize; lines.len()];
     for a in 0..lines.len() {
         for b in 0..a {
             for at in crossings(&lines[a].1, &lines[b].1) {
@@ -61,15 +64,25 @@ fn in_order(canvas: &Canvas<'_>, mut lines: Vec<(ThinLine, Chain)>) -> Vec<(Thin
                 let i = y.min(canvas.size[1] - 1) * canvas.size[0] + x.min(canvas.size[0] - 1);
                 let away = [a, b].map(|k| distance(lines[k].0.color, canvas.pixels[i].map(f64::from)));
                 let (front, back) = if away[0] <= away[1] { (a, b) } else { (b, a) };
-                is_behind[back][front] = true;
+                in_front[back].push(front);
+                behind[front] += 1;
             }
         }
     }
-    let mut rest: Vec<usize> = (0..lines.len()).collect();
+    let mut rest: BTreeSet<usize> = (0..lines.len()).collect();
+    let mut free: BTreeSet<usize> = rest.iter().copied().filter(|&k| behind[k] == 0).collect();
     let mut order = Vec::new();
-    while !rest.is_empty() {
-        let hindmost = rest.iter().position(|&k| rest.iter().all(|&other| !is_behind[other][k])).unwrap_or(0);
-        order.push(rest.remove(hindmost));
+    // Of lines that lie around one another the first is taken for the hindmost.
+    while let Some(hindmost) = free.first().or(rest.first()).copied() {
+        order.push(hindmost);
+        rest.remove(&hindmost);
+        free.remove(&hindmost);
+        for &front in in_front[hindmost].iter().filter(|front| rest.contains(front)) {
+            behind[front] -= 1;
+            if behind[front] == 0 {
+                free.insert(front);
+            }
+        }
     }
     let mut place = alloc::vec![0; order.len()];
     order.into_iter().enumerate().for_each(|(k, line)| place[line] = k);

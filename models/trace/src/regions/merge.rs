@@ -185,7 +185,9 @@ impl Merging {
         }
         // What is so much larger changes too little by it for the order to matter.
         let is_taken = |at: &usize| {
-            let [a, b] = self.borders[*at].between.map(|region| (best[region as usize] == *at as u32, self.regions[region as usize].pixels));
+            let [a, b] = self.borders[*at]
+                .between
+                .map(|region| (best[region as usize] == *at as u32, self.regions[region as usize].pixels));
             (a.0 && b.0) || (a.0 && b.1 >= DWARFS * a.1) || (b.0 && a.1 >= DWARFS * b.1)
         };
         let mut merged: Vec<usize> = (0..costs.len()).filter(is_taken).collect();
