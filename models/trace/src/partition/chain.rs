@@ -98,7 +98,7 @@ impl Chain {
     }
 
     /// Least and greatest coordinates of its windows' middles.
-    fn bounds(&self) -> [Vec2<f64>; 2] {
+    pub(super) fn bounds(&self) -> [Vec2<f64>; 2] {
         let points = || self.marks.iter().map(|mark| mark.point);
         let least =
             points().fold(Vec2::new(f64::INFINITY, f64::INFINITY), |a, b| Vec2::new(a.x.min(b.x), a.y.min(b.y)));
@@ -137,30 +137,26 @@ pub(super) fn join(canvas: &Canvas<'_>, chains: Vec<Chain>) -> Vec<Chain> {
     let mut joints = Vec::new();
     // Wider lines hide more of one another.
     let longest = tuning::THIN_GAP * (canvas.widest / tuning::THIN_WIDTH);
-    for a in 0..tips.len() {
-        for b in 0..a {
-            let [[from, out], [to, other_out]] = [tips[a], tips[b]];
-            let gap = to - from;
-            let distance = gap.length();
-            if distance > longest
-                || chains[a / 2].colors & chains[b / 2].colors == 0
-                || a / 2 == b / 2 && (chains[a / 2].marks.len() as f64) < 8.0 + 4.0 * distance
-            {
-                continue;
-            }
-            let turn = (-out.dot(other_out)).clamp(-1.0, 1.0).acos();
-            let aside = out.cross(gap).abs().max(other_out.cross(gap).abs());
-            // Where columns give way to rows both have read the same stretch.
-            let overlap = if chains[a / 2].marks[0].along == chains[b / 2].marks[0].along { 0.5 } else { longest };
-            let is_straight =
-                turn < tuning::STROKE_STRAIGHT_TURN && out.dot(gap) > -overlap && aside < 1.0 + 0.25 * distance;
-            let is_corner = distance < 3.5 && turn < 2.4 && out.dot(gap) > -1.5 && other_out.dot(gap) < 1.5;
-            let [leave, arrive] =
-                [out.cross(gap).atan2(out.dot(gap)), gap.cross(-other_out).atan2(-gap.dot(other_out))];
-            let is_bend = distance > 3.5 && (leave - arrive).abs() < 0.35 && (leave + arrive).abs() < 1.3;
-            if (is_straight || is_corner || is_bend) && is_covered(canvas, from, to) {
-                joints.push(Joint { cost: distance + 4.0 * turn + aside, ends: [a, b] });
-            }
+    for [a, b] in near_pairs(&tips, longest) {
+        let [[from, out], [to, other_out]] = [tips[a], tips[b]];
+        let gap = to - from;
+        let distance = gap.length();
+        if chains[a / 2].colors & chains[b / 2].colors == 0
+            || a / 2 == b / 2 && (chains[a / 2].marks.len() as f64) < 8.0 + 4.0 * distance
+        {
+            continue;
+        }
+        let turn = (-out.dot(other_out)).clamp(-1.0, 1.0).acos();
+        let aside = out.cross(gap).abs().max(other_out.cross(gap).abs());
+        // Where columns give way to rows both have read the same stretch.
+        let overlap = if chains[a / 2].marks[0].along == chains[b / 2].marks[0].along { 0.5 } else { longest };
+        let is_straight =
+            turn < tuning::STROKE_STRAIGHT_TURN && out.dot(gap) > -overlap && aside < 1.0 + 0.25 * distance;
+        let is_corner = distance < 3.5 && turn < 2.4 && out.dot(gap) > -1.5 && other_out.dot(gap) < 1.5;
+        let [leave, arrive] = [out.cross(gap).atan2(out.dot(gap)), gap.cross(-other_out).atan2(-gap.dot(other_out))];
+        let is_bend = distance > 3.5 && (leave - arrive).abs() < 0.35 && (leave + arrive).abs() < 1.3;
+        if (is_straight || is_corner || is_bend) && is_covered(canvas, from, to) {
+            joints.push(Joint { cost: distance + 4.0 * turn + aside, ends: [a, b] });
         }
     }
     sort::ascending(&mut joints, |joint| joint.cost);
@@ -214,6 +210,21 @@ pub(super) fn join(canvas: &Canvas<'_>, chains: Vec<Chain>) -> Vec<Chain> {
     joined
 }
 
+/// Pairs of tips (by their number, the higher one first, in the order of these) that are no further apart than `longest`, pixels.
+fn near_pairs(tips: &[[Vec2<f64>; 2]], longest: f64) -> Vec<[usize; 2]> {
+    let at = |k: usize| tips[k][0];
+    let mut from_left: Vec<usize> = (0..tips.len()).collect();
+    sort::ascending(&mut from_left, |&k| at(k).x);
+    let mut pairs = Vec::new();
+    for (place, &k) in from_left.iter().enumerate() {
+        let near = from_left[place + 1..].iter().take_while(|&&other| at(other).x - at(k).x <= longest);
+        let near = near.filter(|&&other| (at(other) - at(k)).length() <= longest);
+        pairs.extend(near.map(|&other| [k.max(other), k.min(other)]));
+    }
+    pairs.sort_unstable();
+    pairs
+}
+
 /// Whether marks in order go around anything: what they enclose is a pixel wide, at least. A line at 45 degrees, which windows along both axes read,
 /// leads to its end and back on itself.
 fn goes_around(marks: &[Mark]) -> bool {
@@ -227,7 +238,7 @@ fn goes_around(marks: &[Mark]) -> bool {
 }
 
 /// Whether two boxes are within `margin` of one another.
-fn are_near([low, high]: [Vec2<f64>; 2], [other_low, other_high]: [Vec2<f64>; 2], margin: f64) -> bool {
+pub(super) fn are_near([low, high]: [Vec2<f64>; 2], [other_low, other_high]: [Vec2<f64>; 2], margin: f64) -> bool {
     let is_near =
         |low: f64, high: f64, other_low: f64, other_high: f64| low <= other_high + margin && other_low <= high + margin;
     is_near(low.x, high.x, other_low.x, other_high.x) && is_near(low.y, high.y, other_low.y, other_high.y)

@@ -112,19 +112,30 @@ pub(super) fn settle(canvas: &Canvas<'_>, chains: &mut [Vec<Chain>; 2], colors: 
         line.is_told = band.is_told;
     }
     for k in 0..lines.len() {
-        if let Some(color) = likelier(&lines, k, canvas, palette) {
+        if let Some(color) = likelier(&lines, k, canvas, [palette, colors]) {
             lines[k].give(canvas, color, palette);
         }
     }
 }
 
 /// A color that is likelier for line `k` than its own, with the index of it, for what other lines have that show as much.
-fn likelier(lines: &[Line<'_>], k: usize, canvas: &Canvas<'_>, palette: &[Color]) -> Option<(usize, Color)> {
+fn likelier(
+    lines: &[Line<'_>],
+    k: usize,
+    canvas: &Canvas<'_>,
+    [palette, colors]: [&[Color]; 2],
+) -> Option<(usize, Color)> {
     let line = &lines[k];
     if line.is_told {
         return None;
     }
-    let alike: Vec<&Line<'_>> = lines.iter().filter(|other| line.shows_as_much(other)).collect();
+    // How wide it would be in each color; another line shows as much if it is as wide in its own.
+    let width = |&color: &Color| share_on_way(color, [line.side, line.color]).map(|share| line.width / share);
+    let widths: Vec<Option<f64>> = colors.iter().map(width).collect();
+    let shows_as_much = |other: &&Line<'_>| {
+        widths[other.index].is_some_and(|width| (width - other.width).abs() <= tuning::THIN_TOLERANCE * other.width)
+    };
+    let alike: Vec<&Line<'_>> = lines.iter().filter(shows_as_much).collect();
     let mut told = alike.iter().filter(|other| other.is_told).map(|other| (other.index, other.color));
     if let Some(color) = told.find(|&color| line.may_have(canvas, color, palette)) {
         return Some(color);
@@ -152,12 +163,6 @@ impl Line<'_> {
         }
         self.chain.colors = 1 << index;
         (self.index, self.color, self.width) = (index, color, median(&self.chain.widths()));
-    }
-
-    /// Whether it would be as wide as another line in the color of that.
-    fn shows_as_much(&self, other: &Line<'_>) -> bool {
-        share_on_way(other.color, [self.side, self.color])
-            .is_some_and(|share| (self.width / share - other.width).abs() <= tuning::THIN_TOLERANCE * other.width)
     }
 
     /// Whether its windows leave open that it has a color that is farther from what it lies on.

@@ -10,7 +10,7 @@ use num_traits::Float as _;
 use dvp_core::image::{coverage, distance};
 use dvp_core::sort;
 
-use super::chain::{Chain, Mark, crossings, hidden_crossings, join, median, read_once};
+use super::chain::{Chain, Mark, are_near, crossings, hidden_crossings, join, median, read_once};
 use super::cross::{Along, Canvas, Cross};
 use super::{Color, ink, pair, shade};
 use crate::stroke::{ThinChain, ThinSample};
@@ -55,10 +55,11 @@ pub(super) fn find(canvas: &Canvas<'_>, palette: &[Color]) -> Vec<(ThinLine, Cha
 /// Lines from back to front: where two cross the one in front shows its color.
 fn in_order(canvas: &Canvas<'_>, mut lines: Vec<(ThinLine, Chain)>) -> Vec<(ThinLine, Chain)> {
     // Of every line those in front of it, and how many are behind it.
+    let bounds: Vec<_> = lines.iter().map(|(_, chain)| chain.bounds()).collect();
     let mut in_front = alloc::vec![Vec::new(); lines.len()];
     let mut behind = alloc::vec![0_usize; lines.len()];
     for a in 0..lines.len() {
-        for b in 0..a {
+        for b in (0..a).filter(|&b| are_near(bounds[a], bounds[b], 0.0)) {
             for at in crossings(&lines[a].1, &lines[b].1) {
                 let [x, y] = [at.x, at.y].map(|value| value.max(0.0) as usize);
                 let i = y.min(canvas.size[1] - 1) * canvas.size[0] + x.min(canvas.size[0] - 1);
