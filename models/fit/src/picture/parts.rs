@@ -7,7 +7,7 @@ use core::ops::Range;
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
-use dvp_core::contour::{perimeter, signed_area};
+use dvp_core::contour::{contains, perimeter, signed_area};
 use dvp_core::geometry::DisjointSets;
 use dvp_core::{Drawing, ImageSize, Object, Real as _, Scene};
 use dvp_trace::missed::{differing, touching};
@@ -30,10 +30,16 @@ pub(super) fn price(object: &Object<f32>) -> f64 {
 /// Whether object `k` is thin.
 pub(super) fn is_thin(drawing: &Drawing<f32>, k: usize, size: ImageSize) -> bool {
     let unit = size.unit_px() as f64;
-    let rings = drawing.rings(k);
-    let area = rings.iter().map(|ring| f64::from(signed_area(ring))).sum::<f64>().abs() * unit * unit;
+    let rings: Vec<&[[f32; 2]]> = drawing.rings(k).iter().collect();
+    // A ring within another is the edge of an opening, whichever way it goes around.
+    let area = |(j, ring): (usize, &&[[f32; 2]])| {
+        let others = rings.iter().enumerate().filter(|&(other, _)| other != j);
+        let around = others.filter(|(_, other)| ring.first().is_some_and(|&point| contains(other, point)));
+        let area = f64::from(signed_area(ring).abs()) * unit * unit;
+        if around.count() % 2 == 0 { area } else { -area }
+    };
     let length = rings.iter().map(|ring| f64::from(perimeter(ring))).sum::<f64>() * unit;
-    2.0 * area <= PIECE_WIDTH_PX * length
+    2.0 * rings.iter().enumerate().map(area).sum::<f64>() <= PIECE_WIDTH_PX * length
 }
 
 /// Walks along the outline of object `k`, on both sides of it: pixels on the way, as indices, and how far the way is through each, about half a pixel at
@@ -131,4 +137,42 @@ impl Parts {
 /// By how much the farthest channel of pixel `i` is off.
 pub(super) fn off(image: [&[f32]; 3], painted: [&[f32]; 3], i: usize) -> f64 {
     f64::from((0..3).map(|c| (image[c][i] - painted[c][i]).abs()).fold(0.0, f32::max))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::paint::Canvas;
+    use dvp_core::Pose;
+    use dvp_core::render::EdgeProfile;
+    use dvp_core::shape::{AnyShape, FillRule, Path, PathRing};
+
+    /// Whether squares of some sizes around one another are thin, as one thing, some of them gone around the other way.
+    fn is_thin_of(sides: &[(f32, bool)]) -> bool {
+        let ring = |&(side, is_reversed): &(f32, bool)| {
+            let half = 0.5 * side;
+            let mut points = vec![[-half, -half], [half, -half], [half, half], [-half, half]];
+            if is_reversed {
+                points.reverse();
+            }
+            PathRing::polygon(points)
+        };
+        let shape = AnyShape::Path(Path { rings: sides.iter().map(ring).collect(), fill: FillRule::EvenOdd });
+        let pose = Pose { translation: [0.5, 0.5], scale: 1.0 / 32.0, rotation: 0.0 };
+        let object = Object { shape, pose, paint: [0.0; 3].into(), confidence: 1.0 };
+        let scene = Scene { edge: EdgeProfile::area(), objects: vec![object], ..Scene::empty([1.0; 3]) };
+        let size = ImageSize::new(32, 32).unwrap();
+        let mut canvas = Canvas::default();
+        is_thin(&canvas.paint(&scene, size).unwrap().1, 0, size)
+    }
+
+    #[test]
+    fn a_frame_is_thin_whichever_way_its_opening_goes_around() {
+        assert!(!is_thin_of(&[(20.0, false)]));
+        for is_reversed in [false, true] {
+            assert!(is_thin_of(&[(20.0, false), (17.0, is_reversed)]), "{is_reversed}");
+            // With a square of its own in the opening.
+            assert!(!is_thin_of(&[(20.0, false), (17.0, is_reversed), (15.0, false)]), "{is_reversed}");
+        }
+    }
 }

@@ -132,8 +132,9 @@ fn corner(rings: &[RingSamples]) -> Vec2<f64> {
     least.map_or(Vec2::new(0.0, 0.0), |least| Vec2::new(least.x.floor(), least.y.floor()))
 }
 
-/// Steps in a pixel that places are told apart by, from a corner on: what is drawn alike, some pixels further, is off by rounding.
-const STEPS: f64 = 4_294_967_296.0;
+/// Steps in a pixel that places are told apart by, from a corner on: what is drawn alike, some pixels further, is off by rounding, which is a ten
+/// millionth of that.
+const STEPS: f64 = 1_048_576.0;
 
 /// How many steps a point lies beyond a corner.
 fn steps(point: Vec2<f64>, corner: Vec2<f64>) -> [u64; 2] {
@@ -190,4 +191,50 @@ fn add_samples(key: &mut Vec<u64>, samples: &[Sample]) {
 fn add_sides(key: &mut Vec<u64>, sides: &[LineSegment<f64>]) {
     let numbers = sides.iter().flat_map(|side| [side.from.x, side.from.y, side.along.x, side.along.y]);
     key.extend(numbers.map(f64::to_bits));
+}
+
+#[cfg(test)]
+mod tests {
+    use alloc::vec;
+
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::outline::OutlineShape;
+
+    /// A circle of radius 5 around a point, as 48 samples.
+    fn ring(middle: Vec2<f64>, sigma: f64, is_exact: bool) -> RingSamples {
+        let sample = |k: u32| {
+            let out = Vec2::from_angle(core::f64::consts::TAU * f64::from(k) / 48.0);
+            Sample { is_exact, ..Sample::new(middle + out * 5.0, out, sigma) }
+        };
+        RingSamples { runs: vec![(0..48).map(sample).collect()], closed: true }
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_alike_is_fitted_once_wherever_it_is(middle in [6.0_f64..90.0, 6.0..90.0], steps in [0_u32..900, 0_u32..900]) {
+            let (memo, ruler) = (Memo::default(), Ruler { extent: 1024.0 });
+            let middle = Vec2::from(middle);
+            let step = Vec2::from(steps.map(f64::from));
+            let [first, second] = [middle, middle + step].map(|at| memo.fit_closed(&ring(at, 0.05, false), &ruler).unwrap());
+            prop_assert_eq!(memo.outlines.borrow().len(), 1);
+            let (OutlineShape::Circle { center, radius }, OutlineShape::Circle { center: other, radius: other_radius }) = (&first.shape, &second.shape) else {
+                panic!("{first:?} {second:?}")
+            };
+            prop_assert_eq!(radius.to_bits(), other_radius.to_bits());
+            prop_assert!((*other - *center - step).length() < 1e-9 && (*center - middle).length() < 1e-3);
+            // A search that comes to either has tried as much as if both were new.
+            prop_assert_eq!(memo.spent.get(), if steps == [0, 0] { 48 } else { 96 });
+        }
+    }
+
+    #[test]
+    fn what_is_known_better_is_something_else() {
+        let (memo, ruler) = (Memo::default(), Ruler { extent: 64.0 });
+        for (sigma, is_exact) in [(0.05, false), (0.1, false), (0.05, true)] {
+            memo.fit_closed(&ring(Vec2::new(20.3, 20.7), sigma, is_exact), &ruler);
+        }
+        assert_eq!(memo.outlines.borrow().len(), 3);
+    }
 }

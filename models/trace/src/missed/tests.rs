@@ -148,3 +148,21 @@ fn what_lies_along_the_border_is_as_wide_as_what_leads_there() {
     let away = drawn(Vec2::new(0.0, 11.2), Vec2::new(20.0, 13.6), 1.2);
     assert_eq!(missed_grays(&[(along, 0.0), (away, 0.0)]), [Paint::Flat([0.0; 3])]);
 }
+
+/// Letters are drawn again and again: the second one is the first, elsewhere, to the last digit.
+#[test]
+fn what_is_drawn_alike_is_told_alike() {
+    let size = ImageSize::new(2 * SIDE, SIDE).unwrap();
+    let line = drawn(Vec2::new(7.3, 8.1), Vec2::new(15.6, 14.2), 1.7);
+    let over = |i: usize| 1.0 - line[i / (2 * SIDE) * SIDE + i % SIDE] as f32;
+    let pixels: Vec<f32> = (0..size.pixels()).flat_map(|i| [over(i); 3]).collect();
+    let image = Image::from_interleaved(size, &pixels).unwrap();
+    let white = Image::from_interleaved(size, &vec![1.0; 3 * size.pixels()]).unwrap();
+    let pair = Painted { scene: &Scene::empty([1.0; 3]), image: image.view(), painted: white.view(), step: 0.01 };
+    let found = pair.missed(&pair.off(&(0..size.pixels())));
+    let [first, second] = &found[..] else { panic!("{found:?}") };
+    assert_eq!((&first.object.shape, first.bits.to_bits()), (&second.object.shape, second.bits.to_bits()));
+    let [from, to] = [first, second].map(|missed| missed.object.pose.translation);
+    let apart = (to[0] - from[0]) * size.unit_px() as f32;
+    assert!((apart - SIDE as f32).abs() < 1e-4 && (to[1] - from[1]).abs() < 1e-6, "{from:?} {to:?}");
+}

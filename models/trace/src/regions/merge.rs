@@ -20,8 +20,9 @@ const FIRST: f64 = 1.0 / 64.0;
 const NEXT: f64 = 2.0;
 /// A round in which a smaller share of the regions goes is the last one of its stage: the next stage merges those that are left, too.
 const FEW: f64 = 0.05;
-/// So many times as large.
-const DWARFS: f64 = 1024.0;
+/// A region so many times as large as another one takes it at once, though it has better neighbors: its color does not change by that. Otherwise a page
+/// takes its letters one by one. At 64 photographs come out as near, in 7 % more bits.
+const GIANT: f64 = 1024.0;
 
 /// What is known of a region: pixels, and the sum of their colors.
 #[derive(Clone, Copy)]
@@ -183,12 +184,14 @@ impl Merging {
                 }
             }
         }
-        // What is so much larger changes too little by it for the order to matter.
-        let is_taken = |at: &usize| {
-            let [a, b] = self.borders[*at]
-                .between
-                .map(|region| (best[region as usize] == *at as u32, self.regions[region as usize].pixels));
-            (a.0 && b.0) || (a.0 && b.1 >= DWARFS * a.1) || (b.0 && a.1 >= DWARFS * b.1)
+        let takes = |at: usize, [from, to]: [u32; 2]| {
+            let is_best = |region: u32| best[region as usize] == at as u32;
+            let pixels = |region: u32| self.regions[region as usize].pixels;
+            is_best(from) && (is_best(to) || pixels(to) >= GIANT * pixels(from))
+        };
+        let is_taken = |&at: &usize| {
+            let [a, b] = self.borders[at].between;
+            takes(at, [a, b]) || takes(at, [b, a])
         };
         let mut merged: Vec<usize> = (0..costs.len()).filter(is_taken).collect();
         if merged.is_empty() {
@@ -241,5 +244,32 @@ impl Merging {
             *label = number[root];
         }
         colors
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use dvp_core::{Image, ImageSize};
+
+    use super::*;
+
+    /// As letters of a page do, which took a round each.
+    #[test]
+    fn what_lies_beside_one_large_region_goes_in_one_round() {
+        let size = ImageSize::new(128, 128).unwrap();
+        // Dots three pixels apart, no two of one gray.
+        let dot = |i: usize| (i % 3 == 1 && i / 128 % 3 == 1).then(|| 0.9 - i as f32 / 32_768.0);
+        let pixels: Vec<f32> = (0..size.pixels()).flat_map(|i| [dot(i).unwrap_or(1.0); 3]).collect();
+        let image = Image::from_interleaved(size, &pixels).unwrap();
+        let mut count = 0;
+        let number = |i: usize| {
+            count += u32::from(dot(i).is_some());
+            if dot(i).is_some() { count } else { 0 }
+        };
+        let labels: Vec<u32> = (0..size.pixels()).map(number).collect();
+        let mut merging = Merging::of(&image.view(), &labels, 1 + count as usize);
+        assert!(merging.count > 1_000);
+        merging.round(|_| f64::INFINITY, 1);
+        assert_eq!(merging.count, 1);
     }
 }
