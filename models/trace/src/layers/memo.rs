@@ -132,21 +132,9 @@ fn corner(rings: &[RingSamples]) -> Vec2<f64> {
     least.map_or(Vec2::new(0.0, 0.0), |least| Vec2::new(least.x.floor(), least.y.floor()))
 }
 
-/// Steps in a pixel that places are told apart by, from a corner on: what is drawn alike, some pixels further, is off by rounding, which is a ten
-/// millionth of that.
-const STEPS: f64 = 1_048_576.0;
-
-/// How many steps a point lies beyond a corner.
-fn steps(point: Vec2<f64>, corner: Vec2<f64>) -> [u64; 2] {
-    (point - corner).to_array().map(|at| (at * STEPS + 0.5) as u64)
-}
-
-/// A boundary from a corner on.
+/// A boundary from a corner on: to whole pixels nothing is rounded.
 fn from(ring: &RingSamples, corner: Vec2<f64>) -> RingSamples {
-    let place = |sample: &Sample| {
-        let point = Vec2::from(steps(sample.point, corner).map(|steps| steps as f64 / STEPS));
-        Sample { point, ..*sample }
-    };
+    let place = |sample: &Sample| Sample { point: sample.point - corner, ..*sample };
     RingSamples { runs: ring.runs.iter().map(|run| run.iter().map(place).collect()).collect(), closed: ring.closed }
 }
 
@@ -154,6 +142,9 @@ fn from(ring: &RingSamples, corner: Vec2<f64>) -> RingSamples {
 fn shift(corner: Vec2<f64>) -> Similarity<f64> {
     Similarity { translation: corner, ..Similarity::identity() }
 }
+
+/// Steps in a pixel that places are told apart by: what is drawn alike, some pixels further, is off by rounding, which is a ten millionth of that.
+const STEPS: f64 = 1_048_576.0;
 
 /// A boundary from a corner on as numbers that tell it from others.
 fn key(rings: &[RingSamples], corner: Vec2<f64>) -> Vec<u64> {
@@ -164,7 +155,7 @@ fn key(rings: &[RingSamples], corner: Vec2<f64>) -> Vec<u64> {
         for run in &ring.runs {
             key.push(run.len() as u64);
             for sample in run {
-                key.extend(steps(sample.point, corner));
+                key.extend((sample.point - corner).to_array().map(|at| (at * STEPS + 0.5) as u64));
                 add_doubt(&mut key, sample);
             }
         }
