@@ -1,5 +1,5 @@
 //! Inside crates. Core: `real, dims, simd, optim -> sort -> geometry, diff_op -> tensor, image -> contour -> shape -> scene -> render, matching -> loss
-//! -> metric`. Trace: `tuning -> noise, regions, ruler, sample -> outline -> stroke -> partition -> boundary -> layers -> ties -> scene`.
+//! -> metric`. Trace: `tuning -> noise, regions, ruler, sample, table -> outline -> stroke -> partition -> boundary -> layers -> ties -> scene`.
 
 use crate::source::{code_lines, rust_sources};
 
@@ -22,7 +22,7 @@ const CORE: Order = &[
 
 const TRACE: Order = &[
     &["tuning"],
-    &["elimination", "noise", "regions", "ruler", "sample"],
+    &["elimination", "noise", "regions", "ruler", "sample", "table"],
     &["outline"],
     &["stroke"],
     &["partition"],

@@ -8,6 +8,7 @@
 //! |---|---|---|
 //! | `tuning` | | every number that was chosen, with unit and reason |
 //! | `ruler` | misfits, numbers with their covariance | bits: the one price of everything |
+//! | `table` | what was asked for before | what was found |
 //! | `noise` | an image | its noise level, and the image without noise |
 //! | `ramps` | an image | colors that change from place to place, and the image without them |
 //! | `regions` | an image that is not flat | regions of one color |
@@ -53,6 +54,7 @@ pub mod ruler;
 pub mod sample;
 pub mod scene;
 pub mod stroke;
+mod table;
 #[cfg(test)]
 mod tests;
 pub mod ties;

@@ -1,6 +1,5 @@
 //! Outlines that were fitted before, and how things lie on one another: orders and groups of faces are tried again and again, and most boundaries stay the same.
 
-use alloc::collections::{BTreeMap, BTreeSet};
 use alloc::rc::Rc;
 use alloc::vec::Vec;
 use core::cell::{Cell, RefCell};
@@ -17,6 +16,7 @@ use crate::outline::{Outline, fit_closed, moved};
 use crate::ruler::Ruler;
 use crate::sample::{RingSamples, Sample};
 use crate::stroke::{StrokeFit, fit_strokes};
+use crate::table::Table;
 
 /// How many templates are held against samples in the time that an outline through these takes, about.
 const QUICKER: usize = 64;
@@ -28,11 +28,11 @@ type Placed = Option<(Similarity<f64>, f64)>;
 #[derive(Default)]
 pub(crate) struct Memo {
     /// The outlines through them, from the corner of their pixels on: things that are drawn alike, pixel by pixel, as letters are, are fitted once.
-    outlines: RefCell<BTreeMap<Vec<u64>, Fitted>>,
+    outlines: RefCell<Table<Fitted>>,
     /// The strokes that drew them, likewise.
-    strokes: RefCell<BTreeMap<Vec<u64>, Option<StrokeFit>>>,
+    strokes: RefCell<Table<Option<StrokeFit>>>,
     /// What is seen of things, by samples and sides.
-    seen: RefCell<BTreeMap<Vec<u64>, Rc<Templates>>>,
+    seen: RefCell<Table<Rc<Templates>>>,
     /// Samples that outlines were fitted to, of all that is bounded as one: the searches for an order of all readings, or what else is asked for.
     pub(super) spent: Cell<usize>,
     /// Those of the searches so far, while something else is asked for.
@@ -58,11 +58,11 @@ impl Memo {
         let rings = slice::from_ref(ring);
         let corner = corner(rings);
         let mut known = self.outlines.borrow_mut();
-        let fitted = known
-            .entry(key(rings, corner))
-            .or_insert_with(|| Fitted { outline: fit_closed(&from(ring, corner), ruler), corners: BTreeSet::new() });
+        let fit = || Fitted { outline: fit_closed(&from(ring, corner), ruler), corners: Vec::new() };
+        let fitted = known.get(key(rings, corner), fit);
         // How long a search goes on does not depend on what else is drawn like that.
-        if fitted.corners.insert(corner.to_array().map(f64::to_bits)) {
+        if !fitted.corners.contains(&corner) {
+            fitted.corners.push(corner);
             self.spent.set(self.spent.get() + ring.runs.iter().map(Vec::len).sum::<usize>());
         }
         let Outline { shape, bits, misfit, covariance } = fitted.outline.as_ref()?;
@@ -74,7 +74,7 @@ impl Memo {
     pub(super) fn fit_strokes(&self, rings: &[RingSamples], ruler: &Ruler) -> Option<StrokeFit> {
         let corner = corner(rings);
         let mut known = self.strokes.borrow_mut();
-        let fit = known.entry(key(rings, corner)).or_insert_with(|| {
+        let fit = known.get(key(rings, corner), || {
             let rings: Vec<RingSamples> = rings.iter().map(|ring| from(ring, corner)).collect();
             fit_strokes(&rings, ruler)
         });
@@ -93,7 +93,7 @@ impl Memo {
         add_sides(&mut key, sides);
         let mut seen = self.seen.borrow_mut();
         let templates = || Rc::new(Templates { seen: Seen::new(samples, sides), known: RefCell::default() });
-        Rc::clone(seen.entry(key).or_insert_with(templates))
+        Rc::clone(seen.get(key, templates))
     }
 
     /// Templates are looked up, whether they were held against these samples before or not: many things, each held against each, take long by that alone.
@@ -105,7 +105,7 @@ impl Memo {
     pub(super) fn placed(&self, templates: &Templates, edges: &[LineSegment<f64>]) -> Placed {
         let mut key = Vec::new();
         add_sides(&mut key, edges);
-        *templates.known.borrow_mut().entry(key).or_insert_with(|| {
+        *templates.known.borrow_mut().get(key, || {
             self.spent.set(self.spent.get() + templates.seen.samples.len().div_ceil(QUICKER));
             templates.seen.placed(edges)
         })
@@ -115,14 +115,14 @@ impl Memo {
 /// The outline through samples, and where such samples were asked for.
 struct Fitted {
     outline: Option<Outline>,
-    corners: BTreeSet<[u64; 2]>,
+    corners: Vec<Vec2<f64>>,
 }
 
 /// What is seen of a thing, with the templates that were held against it.
 pub(super) struct Templates {
     seen: Seen,
     /// How each of them lies on it, by its edges.
-    known: RefCell<BTreeMap<Vec<u64>, Placed>>,
+    known: RefCell<Table<Placed>>,
 }
 
 /// The corner of the pixels in which a boundary begins.

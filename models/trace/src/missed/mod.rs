@@ -15,7 +15,6 @@ mod pixels;
 #[cfg(test)]
 mod tests;
 
-use alloc::collections::BTreeMap;
 use alloc::vec;
 use alloc::vec::Vec;
 use core::ops::Range;
@@ -30,6 +29,7 @@ use crate::layers::{Form, Layer};
 use crate::partition::Color;
 use crate::ruler::Ruler;
 use crate::scene;
+use crate::table::Table;
 use crate::tuning;
 use level::Level;
 pub use pixels::{channels, differing, touching};
@@ -93,7 +93,7 @@ impl Painted<'_> {
         off.iter().zip(parts).for_each(|(&i, part)| pixels[part as usize].push(i));
         let colors = self.colors();
         let mut found = Vec::new();
-        let mut known = Known::new();
+        let mut known = Known::default();
         for pixels in pixels {
             let mut marked: Vec<(usize, Mark)> = pixels.into_iter().map(|i| (i, self.mark(i))).collect();
             while let Some(seen) = self.seen(&marked, &colors) {
@@ -247,8 +247,8 @@ impl Painted<'_> {
         };
         let field: Vec<f64> = rows.flat_map(|y| columns.clone().map(move |x| share((x, y)))).collect();
         let ruler = Ruler { extent: width.max(height) as f64 };
-        let key = (columns.len(), field.iter().map(|share| share.to_bits()).collect());
-        let (form, bits) = known.entry(key).or_insert_with(|| covering(&field, window, &ruler)).clone()?;
+        let key = core::iter::once(columns.len() as u64).chain(field.iter().map(|share| share.to_bits())).collect();
+        let (form, bits) = known.get(key, || covering(&field, window, &ruler)).clone()?;
         if bits + tuning::THING_BITS > worth {
             return None;
         }
@@ -264,7 +264,7 @@ impl Painted<'_> {
 
 /// What covers pixels in part, by the columns of its window and the shares of its pixels: of things that are drawn alike, as letters are, each is
 /// traced once. With its description length, bits; none of a window that is empty.
-type Known = BTreeMap<(usize, Vec<u64>), Option<(Form, f64)>>;
+type Known = Table<Option<(Form, f64)>>;
 
 /// What covers as much of every pixel of a window as `field` says, from the corner of the window on, and its description length, bits.
 fn covering(field: &[f64], window: ImageSize, ruler: &Ruler) -> Option<(Form, f64)> {

@@ -221,7 +221,7 @@ fn near_pairs(tips: &[[Vec2<f64>; 2]], longest: f64) -> Vec<[usize; 2]> {
         let near = near.filter(|&&other| (at(other) - at(k)).length() <= longest);
         pairs.extend(near.map(|&other| [k.max(other), k.min(other)]));
     }
-    pairs.sort_unstable();
+    sort::ascending(&mut pairs, |&[a, b]| (a * tips.len() + b) as f64);
     pairs
 }
 
