@@ -27,10 +27,10 @@ type Placed = Option<(Similarity<f64>, f64)>;
 /// What was found of the boundaries of one picture, by their samples. Where other readings of the picture have the same boundary, it is the same.
 #[derive(Default)]
 pub(crate) struct Memo {
-    /// The outlines through them, from the corner of their pixels on: things that are drawn alike, pixel by pixel, as letters are, are fitted once.
+    /// The outlines through them: things that are drawn alike, pixel by pixel, as letters are, are fitted once, the first of them where it lies.
     outlines: RefCell<Table<Fitted>>,
     /// The strokes that drew them, likewise.
-    strokes: RefCell<Table<Option<StrokeFit>>>,
+    strokes: RefCell<Table<(Vec2<f64>, Option<StrokeFit>)>>,
     /// What is seen of things, by samples and sides.
     seen: RefCell<Table<Rc<Templates>>>,
     /// Samples that outlines were fitted to, of all that is bounded as one: the searches for an order of all readings, or what else is asked for.
@@ -58,7 +58,7 @@ impl Memo {
         let rings = slice::from_ref(ring);
         let corner = corner(rings);
         let mut known = self.outlines.borrow_mut();
-        let fit = || Fitted { outline: fit_closed(&from(ring, corner), ruler), corners: Vec::new() };
+        let fit = || Fitted { outline: fit_closed(ring, ruler), corners: Vec::new() };
         let fitted = known.get(key(rings, corner), fit);
         // How long a search goes on does not depend on what else is drawn like that.
         if !fitted.corners.contains(&corner) {
@@ -66,7 +66,7 @@ impl Memo {
             self.spent.set(self.spent.get() + ring.runs.iter().map(Vec::len).sum::<usize>());
         }
         let Outline { shape, bits, misfit, covariance } = fitted.outline.as_ref()?;
-        let (shape, covariance) = (shape.moved(&shift(corner)), covariance.clone());
+        let (shape, covariance) = (shape.moved(&shift(corner - fitted.corners[0])), covariance.clone());
         Some(Outline { shape, bits: *bits, misfit: *misfit, covariance })
     }
 
@@ -74,13 +74,10 @@ impl Memo {
     pub(super) fn fit_strokes(&self, rings: &[RingSamples], ruler: &Ruler) -> Option<StrokeFit> {
         let corner = corner(rings);
         let mut known = self.strokes.borrow_mut();
-        let fit = known.get(key(rings, corner), || {
-            let rings: Vec<RingSamples> = rings.iter().map(|ring| from(ring, corner)).collect();
-            fit_strokes(&rings, ruler)
-        });
+        let (first, fit) = known.get(key(rings, corner), || (corner, fit_strokes(rings, ruler)));
         let StrokeFit { strokes, bits, misfit } = fit.as_ref()?;
         let place = |stroke: &Stroke<f64>| {
-            let rings = stroke.rings.iter().map(|ring| moved(ring, &shift(corner))).collect();
+            let rings = stroke.rings.iter().map(|ring| moved(ring, &shift(corner - *first))).collect();
             Stroke { rings, ..*stroke }
         };
         Some(StrokeFit { strokes: strokes.iter().map(place).collect(), bits: *bits, misfit: *misfit })
@@ -112,7 +109,7 @@ impl Memo {
     }
 }
 
-/// The outline through samples, and where such samples were asked for.
+/// The outline through samples, and the corners from which on such samples were asked for; it was fitted at the first of these.
 struct Fitted {
     outline: Option<Outline>,
     corners: Vec<Vec2<f64>>,
@@ -132,15 +129,9 @@ fn corner(rings: &[RingSamples]) -> Vec2<f64> {
     least.map_or(Vec2::new(0.0, 0.0), |least| Vec2::new(least.x.floor(), least.y.floor()))
 }
 
-/// A boundary from a corner on: to whole pixels nothing is rounded.
-fn from(ring: &RingSamples, corner: Vec2<f64>) -> RingSamples {
-    let place = |sample: &Sample| Sample { point: sample.point - corner, ..*sample };
-    RingSamples { runs: ring.runs.iter().map(|run| run.iter().map(place).collect()).collect(), closed: ring.closed }
-}
-
-/// Puts what was fitted from a corner on where it lies.
-fn shift(corner: Vec2<f64>) -> Similarity<f64> {
-    Similarity { translation: corner, ..Similarity::identity() }
+/// By so many pixels.
+fn shift(by: Vec2<f64>) -> Similarity<f64> {
+    Similarity { translation: by, ..Similarity::identity() }
 }
 
 /// Steps in a pixel that places are told apart by: what is drawn alike, some pixels further, is off by rounding, which is a ten millionth of that.

@@ -38,12 +38,13 @@ pub(super) struct Level {
 }
 
 impl Level {
-    /// Around what covers as much of every pixel of a window as `coverage` says, [0, 1], row by row. None if the window is empty.
+    /// Around what covers as much of every pixel of a window as `coverage` says, [0, 1], row by row; `corner` is where the window begins. None if the
+    /// window is empty.
     #[inline(never)]
-    pub(super) fn of(coverage: &[f64], window: ImageSize) -> Option<Self> {
+    pub(super) fn of(coverage: &[f64], window: ImageSize, corner: Vec2<f64>) -> Option<Self> {
         let (field, fine) = sharpened(coverage, window)?;
         let loops = trace_level(&field, fine, 0.5, Connectivity::Four).ok()?;
-        Some(Self { lines: loops.iter().map(|points| samples(points)).collect() })
+        Some(Self { lines: loops.iter().map(|points| samples(points, corner)).collect() })
     }
 
     /// The outlines along them.
@@ -58,11 +59,11 @@ impl Level {
 }
 
 /// Samples along a closed line of the finer grid.
-fn samples(points: &[[f32; 2]]) -> RingSamples {
+fn samples(points: &[[f32; 2]], corner: Vec2<f64>) -> RingSamples {
     let fine = FINE as f64;
     let points = resample(points, (f64::from(perimeter(points)) / (fine * SPACING)).ceil().max(4.0) as usize);
     let n = points.len();
-    let at = |k: usize| Vec2::from(points[k % n].map(f64::from)) * fine.recip();
+    let at = |k: usize| Vec2::from(points[k % n].map(f64::from)) * fine.recip() + corner;
     let sample = |k: usize| {
         let axis = (at(k + 1) - at(k + n - 1)).perp().normalized().unwrap_or(Vec2::new(1.0, 0.0));
         Sample::new(at(k), axis, tuning::LEVEL_SIGMA)

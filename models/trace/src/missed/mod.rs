@@ -23,7 +23,7 @@ use core::ops::Range;
 use num_traits::Float as _;
 
 use dvp_core::image::{distance, mixture};
-use dvp_core::{ImageSize, ImageView, Object, Paint, Real as _, Scene};
+use dvp_core::{ImageSize, ImageView, Object, Paint, Real as _, Scene, Vec2};
 
 use crate::layers::{Form, Layer};
 use crate::partition::Color;
@@ -236,7 +236,7 @@ impl Painted<'_> {
         };
         let [columns, rows] = [reach(&|i| i % width), reach(&|i| i / width)];
         let window = ImageSize::new(columns.len(), rows.len()).ok().filter(|window| window.pixels() <= MOST_PIXELS)?;
-        let corner = [columns.start as f64 - 2.0, rows.start as f64 - 2.0];
+        let corner = Vec2::new(columns.start as f64 - 2.0, rows.start as f64 - 2.0);
         // What lies beside shows a little of it, too.
         let is_own = |x: usize, y: usize| x < width && y < height && pixels.binary_search(&(y * width + x)).is_ok();
         let touches =
@@ -248,27 +248,28 @@ impl Painted<'_> {
         let field: Vec<f64> = rows.flat_map(|y| columns.clone().map(move |x| share((x, y)))).collect();
         let ruler = Ruler { extent: width.max(height) as f64 };
         let key = core::iter::once(columns.len() as u64).chain(field.iter().map(|share| share.to_bits())).collect();
-        let (form, bits) = known.get(key, || covering(&field, window, &ruler)).clone()?;
+        let (first, covering) = known.get(key, || (corner, covering(&field, window, corner, &ruler)));
+        let (form, bits) = covering.clone()?;
         if bits + tuning::THING_BITS > worth {
             return None;
         }
         let layer = Layer { color, form, faces: Vec::new(), bits };
         let unit = self.image.size().unit_px() as f64;
         let mut object = scene::object(&layer, unit)?;
-        for (at, corner) in object.pose.translation.iter_mut().zip(corner) {
-            *at += f32::of(corner / unit);
+        for (at, by) in object.pose.translation.iter_mut().zip((corner - *first).to_array()) {
+            *at += f32::of(by / unit);
         }
         Some(Missed { object, bits })
     }
 }
 
-/// What covers pixels in part, by the columns of its window and the shares of its pixels: of things that are drawn alike, as letters are, each is
-/// traced once. With its description length, bits; none of a window that is empty.
-type Known = Table<Option<(Form, f64)>>;
+/// What covers pixels in part, by the columns of its window and the shares of its pixels: of things that are drawn alike, as letters are, the first is
+/// traced. The corner of its window, and what covers it, with its description length, bits; none of a window that is empty.
+type Known = Table<(Vec2<f64>, Option<(Form, f64)>)>;
 
-/// What covers as much of every pixel of a window as `field` says, from the corner of the window on, and its description length, bits.
-fn covering(field: &[f64], window: ImageSize, ruler: &Ruler) -> Option<(Form, f64)> {
-    let level = Level::of(field, window)?;
+/// What covers as much of every pixel of a window as `field` says, and its description length, bits.
+fn covering(field: &[f64], window: ImageSize, corner: Vec2<f64>, ruler: &Ruler) -> Option<(Form, f64)> {
+    let level = Level::of(field, window, corner)?;
     let outlines = level.outlines(ruler);
     let bits = outlines.iter().map(|outline| outline.bits + outline.misfit).sum();
     // Lines with ends of two kinds would be two things.

@@ -86,7 +86,7 @@ fn outlines_cover_what_is_covered() {
         let (middle, turn) = (Vec2::new(between(9.0, 15.0), between(9.0, 15.0)), between(0.0, core::f64::consts::PI));
         let half = Vec2::from_angle(turn) * (0.5 * between(4.0, 10.0));
         let wanted = drawn(middle - half, middle + half, between(0.8, 2.5));
-        let level = Level::of(&wanted, ImageSize::new(SIDE, SIDE).unwrap()).unwrap();
+        let level = Level::of(&wanted, ImageSize::new(SIDE, SIDE).unwrap(), Vec2::new(0.0, 0.0)).unwrap();
         let found = level.outlines(&ruler);
         let polygons: Vec<Vec<[f64; 2]>> = found.iter().filter_map(polygon).collect();
         let shown = covered(&polygons);
@@ -106,7 +106,7 @@ fn a_pen_is_told_by_what_it_covers() {
         let middle = Vec2::new(11.0 + 0.13 * f64::from(k), 12.3);
         let half = Vec2::from_angle(turn) * 7.0;
         let wanted = drawn(middle - half, middle + half, width);
-        let level = Level::of(&wanted, ImageSize::new(SIDE, SIDE).unwrap()).unwrap();
+        let level = Level::of(&wanted, ImageSize::new(SIDE, SIDE).unwrap(), Vec2::new(0.0, 0.0)).unwrap();
         let outlines: f64 = level.outlines(&ruler).iter().map(|outline| outline.bits + outline.misfit).sum();
         let Some(pen) = level.pen(&ruler).filter(|pen| pen.bits + pen.misfit < outlines) else { continue };
         found += 1;
