@@ -254,3 +254,17 @@ fn counted(fine: ImageView<'_, f32>, colors: [[f32; 3]; 4]) -> Image<f32> {
     let pixels: Vec<[f32; 3]> = (0..width * height / 16).map(|i| [0, 1, 2].map(|c| mean(i, c))).collect();
     Image::from_interleaved(ImageSize::new(width / 4, height / 4).unwrap(), pixels.as_flattened()).unwrap()
 }
+
+#[test]
+fn a_hairline_that_two_pixels_share_lies_where_they_say() {
+    // .13 of the pixels before x = 20 are covered, and .34 behind.
+    let sides = [20.105, 76.105];
+    let frame = vec![[sides[0], sides[0]], [sides[1], sides[0]], [sides[1], sides[1]], [sides[0], sides[1]]];
+    let stroke =
+        Stroke { rings: vec![PathRing::polygon(frame)], width: 0.47, cap: Cap::Butt, join: Join::Miter { limit: 4.0 } };
+    let picture = paint(&scene(WHITE, vec![object(AnyShape::Stroke(stroke), [0.0; 2], 0.0, [0.0; 3])]));
+    let found = found(&picture);
+    assert_eq!(found.objects.len(), 1, "{:?}", found.objects);
+    // Else it would lie in the middle of what is covered, .13 pixels beside.
+    assert!(error(&picture, &found) < 2e-4, "{}", error(&picture, &found));
+}
