@@ -212,6 +212,36 @@ mod tests {
     }
 
     #[test]
+    fn strokes_are_fitted_once_and_lie_where_they_are_asked_for() {
+        // A pen of 4 pixels along a half circle of radius 12: its outer and its inner side, and the ends, straight.
+        let (memo, ruler) = (Memo::default(), Ruler { extent: 1024.0 });
+        let strip = |middle: Vec2<f64>| {
+            let side = |radius: f64, k: u32| {
+                let out = Vec2::from_angle(core::f64::consts::PI * f64::from(k) / 60.0);
+                Sample::new(middle + out * radius, out, 0.02)
+            };
+            let end = |x: f64| Sample::new(middle + Vec2::new(x, 0.0), Vec2::new(0.0, 1.0), 0.02);
+            let run = (0..=60).map(|k| side(14.0, k)).chain([-13.0, -12.0, -11.0].map(end));
+            let run = run.chain((0..=60).rev().map(|k| side(10.0, k))).chain([11.0, 12.0, 13.0].map(end));
+            [RingSamples { runs: vec![run.collect()], closed: true }]
+        };
+        let [middle, step] = [Vec2::new(40.25, 40.5), Vec2::new(301.0, 17.0)];
+        let [first, second] = [middle, middle + step].map(|at| memo.fit_strokes(&strip(at), &ruler).unwrap());
+        assert_eq!(memo.strokes.borrow().len(), 1);
+        assert!((first.strokes[0].width - 4.0).abs() < 0.05, "{first:?}");
+        let points = |fit: &StrokeFit| -> Vec<[f64; 2]> {
+            fit.strokes.iter().flat_map(|stroke| &stroke.rings).flat_map(|ring| ring.points.clone()).collect()
+        };
+        let (first, second) = (points(&first), points(&second));
+        assert_eq!(first.len(), second.len());
+        for (from, to) in first.into_iter().zip(second) {
+            let from = Vec2::from(from);
+            assert!(((from - middle).length() - 12.0).abs() < 0.1, "{from:?}");
+            assert!((Vec2::from(to) - from - step).length() < 1e-9, "{from:?} {to:?}");
+        }
+    }
+
+    #[test]
     fn what_is_known_better_is_something_else() {
         let (memo, ruler) = (Memo::default(), Ruler { extent: 64.0 });
         for (sigma, is_exact) in [(0.05, false), (0.1, false), (0.05, true)] {

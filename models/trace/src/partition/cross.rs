@@ -155,7 +155,7 @@ impl Canvas<'_> {
         if width > COVERS && middle[0] < FULL {
             return None;
         }
-        // The edges: full pixels between them, or, if the line is nowhere full, the middle of what is covered.
+        // The edges: beside the crack between two pixels that share the line, or full pixels between them; else the middle of what is covered.
         let place = from as f64 + peak as f64;
         let center = if is_even {
             let centroid =
