@@ -45,6 +45,14 @@ pub const DENOISE_REACH: usize = 5;
 /// Noise that the first of two averages leaves, in units of the picture's.
 pub const DENOISE_LEFT: f64 = 0.25;
 
+/// How many times as much noise the brightest of a picture must have as the darkest for it to be noise of a camera that counts photons.
+pub const SHOT_RATIO: f64 = 1.5;
+
+/// Least standard deviation of uneven light over a picture, of 1: two steps of 256 are not seen.
+pub const LEAST_LIGHT: f64 = 2.0 / 255.0;
+/// The same, in units of the noise, which hides less.
+pub const LEAST_LIGHT_NOISES: f64 = 0.4;
+
 /// What is averaged away, in units of the noise from pixel to pixel, one after the other as long as what is left has too many faces: noise alone, then
 /// texture. Of 642 drawings with noise, blur or a coder's marks none came to the second. Of scikit-image's photographs `coins` is 116 things without the
 /// last two and 27 with them, `text` none and 57.

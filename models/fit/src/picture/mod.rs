@@ -8,6 +8,7 @@
 //! |---|---|
 //! | `mod` | [`fit_picture`]: the decision between the two fits |
 //! | `bank` | pictures whose shapes are known |
+//! | `camera` | noise that grows with the light, and light that is uneven |
 //! | `cut` | pictures that are not flat, as regions of one color |
 //! | `ground` | [`Ground`]: the color that transparent pictures are put over |
 //! | `likelier` | which of two fits the picture is |
@@ -24,6 +25,7 @@
 //! those of the command, which calls it.
 
 mod bank;
+mod camera;
 mod cut;
 mod ground;
 mod likelier;
@@ -130,23 +132,49 @@ pub fn fit_picture(
     // Who says how objects mix asks for a scene of the renderer, and no square has its edges.
     let small = if fitter.options().compositing.is_some() { None } else { squares::reduced(&image) };
     let image = small.as_ref().map_or(image, Image::view);
-    let may_have_ramps =
-        !known.flat && fitter.options().bank.is_none() && fitter.options().compositing.is_none() && !known.coded;
-    let Some(leveled) = may_have_ramps.then(|| dvp_trace::ramps::level(&image)).flatten() else {
-        return fit_flat(fitter, image, small.is_some(), known, scratch);
+    let mut read = |image: ImageView<'_, f32>| {
+        let fit = with_ramps(fitter, image, small.is_some(), known, scratch)?;
+        if !may_have_ramps(fitter, known) || known.matte.is_some() {
+            return Ok(fit);
+        }
+        camera::or_in_light(fit, image, scratch, |even, scratch| fit_flat(fitter, even, false, known, scratch))
     };
-    let fit = fit_flat(fitter, leveled.image.view(), small.is_some(), known, scratch)?;
+    // A coder has taken away what noise would tell of the light.
+    match noise::evened(&image).filter(|_| !known.coded) {
+        Some(evened) => camera::with_noise(read(evened.image.view())?, &evened, image, &mut scratch.canvas),
+        None => read(image),
+    }
+}
+
+/// The scene of a picture, with color ramps if it has such.
+fn with_ramps(
+    fitter: &Fitter<f32>,
+    image: ImageView<'_, f32>,
+    are_repeated: bool,
+    known: &Known,
+    scratch: &mut PictureScratch,
+) -> Result<Fit<f32>, FitError> {
+    let Some(leveled) = may_have_ramps(fitter, known).then(|| dvp_trace::ramps::level(&image)).flatten() else {
+        return fit_flat(fitter, image, are_repeated, known, scratch);
+    };
+    let fit = fit_flat(fitter, leveled.image.view(), are_repeated, known, scratch)?;
     // A blur makes edges look like ramps.
     if fit.scene.edge.law != EdgeLaw::Area {
-        return fit_flat(fitter, image, small.is_some(), known, scratch);
+        return fit_flat(fitter, image, are_repeated, known, scratch);
     }
     let fit = ramps::with_ramps(fit, &leveled, image, &mut scratch.canvas)?;
     if fit.loss <= AS_NEAR && leveled.ramps.iter().any(|ramp| ramp.is_exact) {
         return Ok(fit);
     }
     // What ramps leave unexplained, a coder may have left, or several that lie on one another.
-    let flat = fit_flat(fitter, image, small.is_some(), known, scratch)?;
+    let flat = fit_flat(fitter, image, are_repeated, known, scratch)?;
     Ok(ramps::better(fit, flat))
+}
+
+/// Whether a picture may have colors that change from place to place: not where shapes are known, or how objects mix.
+fn may_have_ramps(fitter: &Fitter<f32>, known: &Known) -> bool {
+    let options = fitter.options();
+    !known.flat && options.bank.is_none() && options.compositing.is_none() && !known.coded
 }
 
 /// The scene of a picture without color ramps, `are_repeated` if it was enlarged by repeating pixels.

@@ -16,7 +16,7 @@ const FEW_WHOLE: f64 = 0.125;
 /// Noise over what is left of it where it is cut off at its mean: 1 / sqrt(1/2 - 1/(2 pi)).
 const MOST_CUT_OFF: f64 = 1.713;
 /// Median of the absolute value of a normal variable of standard deviation 1.
-const NORMAL_MEDIAN: f64 = 0.6745;
+pub(super) const NORMAL_MEDIAN: f64 = 0.6745;
 /// Differences up to this far apart are equal: a small part of a step of 16 bits.
 const TIE: f64 = 1e-5;
 
@@ -57,12 +57,13 @@ pub fn noise_level<T: Real>(image: &ImageView<'_, T>, differences: &mut Vec<T>) 
     of_all.max(of_whole.min(T::of(MOST_CUT_OFF) * of_all)) / T::of(NORMAL_MEDIAN)
 }
 
-fn middle<T: Real>(differences: &mut [T]) -> T {
+/// The median of differences.
+pub(super) fn middle<T: Real>(differences: &mut [T]) -> T {
     median_by(differences, |&value| value).map_or(T::zero(), |median| spread_ties(differences, median))
 }
 
 #[inline(always)]
-fn second_difference<T: Real>(a: &[T], b: &[T]) -> T {
+pub(super) fn second_difference<T: Real>(a: &[T], b: &[T]) -> T {
     (T::of(0.5) * ((a[0] - a[1]) - (b[0] - b[1]))).abs()
 }
 

@@ -1,9 +1,11 @@
 //! Noise that is independent from pixel to pixel: how much of it a picture has, and the picture without.
 //!
-//! In: a picture. Out: its noise level (`level`), and the picture with as much noise averaged away (`means`).
+//! In: a picture. Out: its noise level (`level`), the picture with as much noise averaged away (`means`), and with noise of one level where it
+//! grows with the light (`shot`).
 
 mod level;
 mod means;
+mod shot;
 #[cfg(test)]
 pub(crate) mod tests;
 
@@ -15,6 +17,7 @@ use crate::tuning;
 
 pub use level::noise_level;
 pub use means::DenoiseScratch;
+pub use shot::{Evened, NoiseLaw, evened};
 
 /// Noise of rounding to 8 bits, and as much again: below it there is nothing to average away.
 pub const ROUNDED: f64 = 0.003;

@@ -10,11 +10,13 @@
 //! | `fit` | the course and profile that explain pixels |
 //! | `grow` | parts that are of one ramp, and pixels beside them |
 //! | `mix` | pixels between leveled parts |
+//! | `light` | [`Light`]: what changes under everything |
 
 mod course;
 mod edge;
 mod fit;
 mod grow;
+mod light;
 mod mix;
 mod profile;
 mod smooth;
@@ -31,7 +33,8 @@ use crate::tuning::MARKERS_APART;
 
 use edge::are_wide;
 pub use edge::clear_share;
-use grow::Region;
+use fit::Fitted;
+pub use light::Light;
 
 /// A step of the 256 that a channel of most pictures has.
 const STEP: f32 = 1.0 / 255.0;
@@ -73,7 +76,7 @@ pub fn level(image: &ImageView<'_, f32>) -> Option<Leveled> {
     let unit = image.size().unit_px() as f64;
     let ramps = regions.ramps.iter().zip(&markers).map(|(region, color)| LeveledRamp {
         color: color.map(|value| value as f32),
-        ramp: in_scene_units(region, unit),
+        ramp: in_scene_units(&region.fitted, region.near, unit),
         is_exact: region.is_exact,
     });
     let ramps = ramps.collect();
@@ -98,11 +101,12 @@ fn markers(regions: &grow::Regions) -> Vec<Color> {
     markers
 }
 
-fn in_scene_units(region: &Region, unit: f64) -> ColorRamp<f32> {
-    let places = &region.fitted.profile.places;
-    let is_centered = matches!(region.fitted.course, course::Course::Center { .. });
+/// A ramp as a scene has it, `near` a point that it paints.
+fn in_scene_units(fitted: &Fitted, near: [f64; 2], unit: f64) -> ColorRamp<f32> {
+    let places = &fitted.profile.places;
+    let is_centered = matches!(fitted.course, course::Course::Center { .. });
     let ends = [if is_centered { 0.0 } else { places[0].0 }, places[places.len() - 1].0];
-    let mut kind = region.fitted.course.kind(ends, region.near);
+    let mut kind = fitted.course.kind(ends, near);
     kind.points_mut().as_flattened_mut().iter_mut().for_each(|value| *value /= unit);
-    ColorRamp { kind: kind.cast(), stops: region.fitted.profile.stops(ends) }
+    ColorRamp { kind: kind.cast(), stops: fitted.profile.stops(ends) }
 }

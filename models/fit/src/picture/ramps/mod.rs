@@ -7,7 +7,7 @@ mod tests;
 use alloc::vec;
 
 use dvp_core::scene::ColorRamp;
-use dvp_core::{ImageView, Paint, Scene};
+use dvp_core::{ImageSize, ImageView, Paint, Scene};
 use dvp_trace::ramps::{Leveled, LeveledRamp};
 
 use super::most::moved;
@@ -33,20 +33,11 @@ pub(super) fn with_ramps(
     let ramp_of = |color: [f32; 3]| {
         leveled.ramps.iter().find(|ramp| ramp.color.iter().zip(color).all(|(a, b)| (a - b).abs() < NEAR))
     };
-    let Fit { mut scene, mut covariance, mut expected_iou, mut ambiguity, .. } = fit;
-    // A background has one color: what has more is a thing as large as the picture.
-    if !scene.transparent && ramp_of(scene.background).is_some() {
-        let sheet =
-            Scene { objects: vec![sheet(scene.background.map(f64::from), image.size())], ..Scene::empty([0.0; 3]) };
-        scene.objects.splice(0..0, sheet.cast().objects);
-        if !covariance.is_empty() {
-            covariance.insert(0, [f32::NAN; 25]);
-        }
-        if !expected_iou.is_empty() {
-            expected_iou.insert(0, f32::NAN);
-        }
-        ambiguity = ambiguity.iter().filter_map(|ambiguity| moved(ambiguity, |object| Some(object + 1))).collect();
+    let mut fit = fit;
+    if !fit.scene.transparent && ramp_of(fit.scene.background).is_some() {
+        put_under(&mut fit, image.size());
     }
+    let mut scene = fit.scene;
     for object in &mut scene.objects {
         let Some(LeveledRamp { ramp, .. }) = ramp_of(object.color()) else { continue };
         if let Some(inverse) = object.pose.inverse() {
@@ -58,8 +49,21 @@ pub(super) fn with_ramps(
         (painted, drawing) = canvas.paint(&scene, image.size())?;
     }
     let painted = of_painted(&scene, &drawing, painted, image)?;
-    let Fit { bits, stop, steps, noise, .. } = fit;
+    let Fit { bits, stop, steps, noise, covariance, expected_iou, ambiguity, .. } = fit;
     Ok(Fit { bits, stop, steps, noise, covariance, expected_iou, ambiguity, ..painted })
+}
+
+/// Makes the background a thing as large as the picture, the first one: a background has one color, and what has more is a thing.
+pub(super) fn put_under(fit: &mut Fit<f32>, size: ImageSize) {
+    let sheet = Scene { objects: vec![sheet(fit.scene.background.map(f64::from), size)], ..Scene::empty([0.0; 3]) };
+    fit.scene.objects.splice(0..0, sheet.cast().objects);
+    if !fit.covariance.is_empty() {
+        fit.covariance.insert(0, [f32::NAN; 25]);
+    }
+    if !fit.expected_iou.is_empty() {
+        fit.expected_iou.insert(0, f32::NAN);
+    }
+    fit.ambiguity = fit.ambiguity.iter().filter_map(|ambiguity| moved(ambiguity, |object| Some(object + 1))).collect();
 }
 
 /// The nearer of a fit with ramps and one without; where that is not seen, the one with ramps if it has fewer things.
