@@ -48,8 +48,8 @@ pub const DENOISE_LEFT: f64 = 0.25;
 /// How many times as much noise the brightest of a picture must have as the darkest for it to be noise of a camera that counts photons.
 pub const SHOT_RATIO: f64 = 1.5;
 
-/// Least standard deviation of uneven light over a picture, of 1: two steps of 256 are not seen.
-pub const LEAST_LIGHT: f64 = 2.0 / 255.0;
+/// Least standard deviation of uneven light over a picture, of 1: clean flat colors are of one step of 256.
+pub const LEAST_LIGHT: f64 = 1.0 / 255.0;
 /// The same, in units of the noise, which hides less.
 pub const LEAST_LIGHT_NOISES: f64 = 0.4;
 

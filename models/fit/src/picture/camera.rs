@@ -1,6 +1,6 @@
 //! Pictures of cameras: noise that grows with the light, and light that is uneven, taken out before and put back.
 
-use dvp_core::render::EdgeLaw;
+use dvp_core::render::{Compositing, EdgeLaw};
 use dvp_core::scene::{ColorRamp, ColorStop, RampKind};
 use dvp_core::{Drawing, ImageView, Paint, Real as _};
 use dvp_trace::noise::{self, Evened};
@@ -69,13 +69,14 @@ fn with_light(
             Paint::Flat(core::array::from_fn(|c| 0.5 * (low[c] + high[c])))
         };
     }
-    if let Some(ramp) = &light.ramp
-        && !fit.scene.transparent
-    {
+    if !fit.scene.transparent {
+        // What is blended would be with the background too.
+        fit.scene.compositing = Compositing::Over;
         put_under(&mut fit, size);
         let sheet = &mut fit.scene.objects[0];
         if let Some(inverse) = sheet.pose.inverse() {
-            sheet.paint = Paint::Ramp(ColorRamp { kind: ramp.kind.posed(&inverse), stops: ramp.stops.clone() });
+            sheet.paint =
+                Paint::Ramp(ColorRamp { kind: light.ramp.kind.posed(&inverse), stops: light.ramp.stops.clone() });
         }
     }
     let (painted, drawing) = canvas.paint(&fit.scene, size)?;

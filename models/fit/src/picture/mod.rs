@@ -49,6 +49,7 @@ use num_traits::Float as _;
 use dvp_core::loss::{ImagePair, Loss as _};
 use dvp_core::render::{EdgeLaw, EdgeProfile, PixelLoss};
 use dvp_core::{Drawing, Image, ImageView, Real as _, Scene};
+use dvp_trace::ramps::are_wide;
 use dvp_trace::tuning::{DOUBTFUL_STAINED, WIDE_BLUR};
 use dvp_trace::{NoDrawing, PoseCovariance, Traced, noise};
 
@@ -271,7 +272,7 @@ fn drawing(
     known: &Known,
     scratch: &mut PictureScratch,
 ) -> Result<Fit<f32>, FitError> {
-    let is_doubtful = leaves_doubt(&traced);
+    let is_doubtful = leaves_doubt(&traced) || are_wide(&image);
     let is_coded = traced.coded;
     let is_few = traced.scene.objects.len() <= FEW;
     let mut drawn = self::drawn(traced, image, scratch)?;

@@ -129,14 +129,23 @@ pub(super) fn center(samples: impl Iterator<Item = ([f64; 2], f64)>, is_circle: 
     } else {
         solve(matrix, right)?
     };
+    if xx <= 0.0 {
+        return None;
+    }
+    centered([p, q, xx, xy, yy])
+}
+
+/// The center of a polynomial p x + q y + xx x^2 + xy x y + yy y^2, and the stretch of the ellipses around it on which it is the same; none if these are no
+/// ellipses.
+pub(super) fn centered([p, q, xx, xy, yy]: [f64; 5]) -> Option<([f64; 2], [f64; 2])> {
     let determinant = xx * yy - 0.25 * xy * xy;
-    if !(xx > 0.0 && determinant > 0.0) {
+    if determinant.is_nan() || determinant <= 0.0 {
         return None;
     }
     // Where both slopes of the polynomial are 0.
     let center = [(0.25 * xy * q - 0.5 * yy * p) / determinant, (0.25 * xy * p - 0.5 * xx * q) / determinant];
     // The form is exp(2 S) times a factor, of determinant 1 without it.
-    let factor = determinant.sqrt();
+    let factor = determinant.sqrt().copysign(xx);
     let [a, b, d] = [xx / factor, 0.5 * xy / factor, yy / factor];
     let cosh = 0.5 * (a + d);
     let twice = cosh.max(1.0).acosh();

@@ -39,7 +39,8 @@ pub fn clear_share(image: &ImageView<'_, f32>) -> f64 {
 }
 
 /// Whether more edges are wide than clear.
-pub(super) fn are_wide(image: &ImageView<'_, f32>) -> bool {
+#[must_use]
+pub fn are_wide(image: &ImageView<'_, f32>) -> bool {
     clear_share(image) < 0.5
 }
 

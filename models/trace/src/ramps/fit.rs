@@ -46,7 +46,7 @@ pub(super) struct Fitted {
 
 impl Fitted {
     /// The ramp along a course, with as many stops as explain the mean colors within `tolerance`.
-    fn of(course: Course, samples: &[Sample], tolerance: f64) -> Self {
+    pub(super) fn of(course: Course, samples: &[Sample], tolerance: f64) -> Self {
         Self { course, way: course.way(), profile: measured(&course.way(), samples).simplified(tolerance) }
     }
 
@@ -70,7 +70,7 @@ impl Fitted {
     }
 
     /// Sum of the squares that it misses.
-    fn squares(&self, samples: &[Sample]) -> f64 {
+    pub(super) fn squares(&self, samples: &[Sample]) -> f64 {
         samples.iter().map(|&(point, color)| square(self.color(point), color)).sum()
     }
 

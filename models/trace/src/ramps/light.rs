@@ -10,10 +10,12 @@ use num_traits::Float as _;
 use dvp_core::scene::ColorRamp;
 use dvp_core::{Image, ImageView, sort};
 
-use super::fit::{Sample, fit};
-use super::in_scene_units;
+use super::course::{Course, centered};
+use super::fit::{Fitted, Sample};
 use super::profile::difference;
+use super::{STEP, in_scene_units};
 use crate::elimination::solve;
+use crate::noise::ROUNDED;
 use crate::partition::Color;
 use crate::tuning::{LEAST_LIGHT, LEAST_LIGHT_NOISES};
 
@@ -27,11 +29,13 @@ const ROUNDS: usize = 20;
 /// Deviations of the noise within which a place shows the surface, and its least share of the places.
 const NEAR: f64 = 3.0;
 const LEAST_SHARE: f64 = 0.5;
+/// What rounding leaves of the difference of two means, of 1.
+const ROUNDING: f64 = 0.25 / 255.0;
 /// Least deviation of what a surface explains, of 1: rounding, twice, and what bends a little more than a surface of second degree.
 const LEAST_NOISE: f64 = 1.0 / 255.0;
 /// Distance of pixels of one thing at which they are compared, pixels: the further, the more the light changes.
 const APART: usize = 8;
-/// How much more than noise pixels of one thing may differ, of 1.
+/// How much more than noise differs from the background what is a thing, of 1.
 const ALIKE: f64 = 8.0 / 255.0;
 /// Darkest light that others are divided by, of 1.
 const DARKEST: f64 = 0.02;
@@ -51,7 +55,7 @@ pub struct Light {
     /// The picture as it would be in even light.
     pub image: Image<f32>,
     /// What paints the background: a ramp near to the surface, its points in scene units.
-    pub ramp: Option<ColorRamp<f32>>,
+    pub ramp: ColorRamp<f32>,
     surface: Surface,
     /// Its mean: the background in even light.
     mean: Color,
@@ -86,14 +90,13 @@ impl Light {
             return None;
         }
         let effect = effect(image, &surface, noise)?;
-        let mut light = Self { image: Image::zeros(image.size()), ramp: None, surface, mean, effect };
+        let ramp = in_scene_units(&surface.ramp(&colors), surface.middle, image.size().unit_px() as f64);
+        let mut light = Self { image: Image::zeros(image.size()), ramp, surface, mean, effect };
         let (width, pixels) = (image.size().width(), image.size().pixels());
         for i in 0..pixels {
             let even = light.even(image.pixel(i).map(f64::from), center(i, width));
             even.iter().enumerate().for_each(|(c, &value)| light.image.data_mut()[c * pixels + i] = value as f32);
         }
-        let fitted = fit(&colors, true).or_else(|| fit(&colors, false));
-        light.ramp = fitted.map(|fitted| in_scene_units(&fitted, surface.middle, image.size().unit_px() as f64));
         Some(light)
     }
 
@@ -155,6 +158,27 @@ impl Surface {
         Some(surface)
     }
 
+    /// The ramp that is nearest to its colors at places: along a line, or about a center if it has one and that is nearer by more than is seen.
+    fn ramp(&self, colors: &[Sample]) -> Fitted {
+        let [x, y, xx, xy, yy] = [1, 2, 3, 4, 5].map(|k| self.numbers.iter().map(|numbers| numbers[k]).sum::<f64>());
+        let center = centered([x, y, xx, xy, yy]).map(|([x, y], stretch)| Course::Center {
+            center: [self.middle[0] + self.size * x, self.middle[1] + self.size * y],
+            stretch,
+            is_circle: false,
+        });
+        let along = |course: Course| {
+            let fitted = Fitted::of(course, colors, f64::from(STEP));
+            (fitted.squares(colors), fitted)
+        };
+        let line = along(Course::Line { angle: y.atan2(x) });
+        let unseen = 0.25 * f64::from(STEP * STEP) * colors.len() as f64;
+        let center = center.filter(|course| line.0 > unseen && course.is_sound()).map(along);
+        match center {
+            Some(center) if center.0 < line.0 => center.1,
+            _ => line.1,
+        }
+    }
+
     fn row(&self, point: [f64; 2]) -> [f64; 6] {
         let [x, y] = [0, 1].map(|c| (point[c] - self.middle[c]) / self.size);
         [1.0, x, y, x * x, x * y, y * y]
@@ -168,31 +192,39 @@ impl Surface {
 
 /// What the light does to things in front of the background: that which leaves their pixels most alike; none if they are alike as they are.
 fn effect(image: &ImageView<'_, f32>, surface: &Surface, noise: f64) -> Option<Effect> {
-    let (width, pixels) = (image.size().width(), image.size().pixels());
-    let seen = |i: usize| (image.pixel(i).map(f64::from), surface.at(center(i, width)));
-    let is_thing = |(color, light): &(Color, Color)| difference(*color, *light) > NEAR * noise + ALIKE;
-    let [mut none, mut added, mut multiplied] = [0.0; 3];
-    for i in 0..pixels {
-        let here = seen(i);
-        if !is_thing(&here) {
-            continue;
-        }
-        let next = [(i % width + APART < width, i + APART), (i + APART * width < pixels, i + APART * width)];
-        for there in next.into_iter().filter(|(is_in, _)| *is_in).map(|(_, i)| seen(i)) {
-            if !is_thing(&there) || difference(here.0, there.0) > NEAR * noise + ALIKE {
+    let (width, height) = (image.size().width(), image.size().height());
+    // Means over three by three pixels have a third of the noise.
+    let mean = |i: usize| -> Color {
+        let around =
+            [i - width - 1, i - width, i - width + 1, i - 1, i, i + 1, i + width - 1, i + width, i + width + 1];
+        core::array::from_fn(|c| around.iter().map(|&i| f64::from(image.channel(c)[i])).sum::<f64>() / 9.0)
+    };
+    let seen = |i: usize| {
+        let (color, light) = (mean(i), surface.at(center(i, width)));
+        (difference(color, light) > NEAR * noise + ALIKE).then_some((color, light))
+    };
+    let alike = 2.0 / 9.0 * noise * noise + ROUNDING * ROUNDING;
+    let mut missed = [0.0; 3];
+    for (x, y) in (1..height.saturating_sub(1)).flat_map(|y| (1..width.saturating_sub(1)).map(move |x| (x, y))) {
+        let Some(here) = seen(y * width + x) else { continue };
+        for (x, y) in [(x + APART, y), (x, y + APART)] {
+            if x + 1 >= width || y + 1 >= height {
                 continue;
             }
+            let Some(there) = seen(y * width + x) else { continue };
             for c in 0..3 {
                 let (by, light) = (there.0[c] - here.0[c], there.1[c] - here.1[c]);
                 let share = (there.0[c] + here.0[c]) / (there.1[c] + here.1[c]).max(2.0 * DARKEST);
-                none += by * by;
-                added += (by - light).powi(2);
-                multiplied += (by - share * light).powi(2);
+                // What is of two things, or at an edge, says nothing.
+                for (missed, by) in missed.iter_mut().zip([by, by - light, by - share * light]) {
+                    *missed += by * by / (by * by + alike);
+                }
             }
         }
     }
-    // Without things there is nothing to tell them by.
-    let is_none = none > 0.0 && none <= added.min(multiplied);
+    let [none, added, multiplied] = missed;
+    // Pictures of cameras, which have noise, have light on everything. Without things there is nothing to tell by.
+    let is_none = noise <= ROUNDED && none > 0.0 && none <= added.min(multiplied);
     (!is_none).then_some(if multiplied < added { Effect::Multiplied } else { Effect::Added })
 }
 

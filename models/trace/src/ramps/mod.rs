@@ -31,8 +31,7 @@ use dvp_core::{Image, ImageView};
 use crate::partition::Color;
 use crate::tuning::MARKERS_APART;
 
-use edge::are_wide;
-pub use edge::clear_share;
+pub use edge::{are_wide, clear_share};
 use fit::Fitted;
 pub use light::Light;
 
