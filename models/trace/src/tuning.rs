@@ -47,6 +47,9 @@ pub const DENOISE_LEFT: f64 = 0.25;
 
 /// How many times as much noise the brightest of a picture must have as the darkest for it to be noise of a camera that counts photons.
 pub const SHOT_RATIO: f64 = 1.5;
+/// How far the variance at alike values may be off the line, on the mean of its logarithm. Of 18 pictures of simulated cameras it was .08 to .17, of
+/// scikit-image's photographs whose noise seems to grow .39 to 1.28.
+pub const SHOT_MISSED: f64 = 0.3;
 
 /// Least standard deviation of uneven light over a picture, of 1: clean flat colors are of one step of 256.
 pub const LEAST_LIGHT: f64 = 1.0 / 255.0;

@@ -272,7 +272,8 @@ fn drawing(
     known: &Known,
     scratch: &mut PictureScratch,
 ) -> Result<Fit<f32>, FitError> {
-    let is_doubtful = leaves_doubt(&traced) || are_wide(&image);
+    // Coders make the edges of colors wide that were clear.
+    let is_doubtful = leaves_doubt(&traced) || !(traced.coded || known.coded) && are_wide(&image);
     let is_coded = traced.coded;
     let is_few = traced.scene.objects.len() <= FEW;
     let mut drawn = self::drawn(traced, image, scratch)?;

@@ -14,12 +14,12 @@ use dvp_core::{Image, ImageView, sort};
 use super::level::{NORMAL_MEDIAN, middle, second_difference};
 use super::means::{DenoiseSettings, denoise};
 use super::{DenoiseScratch, level_above_rounding};
-use crate::tuning::{DENOISE_LEFT, DENOISE_REACH, SHOT_RATIO};
+use crate::tuning::{DENOISE_LEFT, DENOISE_REACH, SHOT_MISSED, SHOT_RATIO};
 
 /// Groups of alike blocks whose noise is measured.
 const GROUPS: usize = 24;
-/// Least blocks of a group: they tell its level within about 12 %.
-const LEAST_BLOCKS: usize = 48;
+/// Least blocks of a group: where all channels are the same, a third of them tells its level within about 15 %.
+const LEAST_BLOCKS: usize = 192;
 /// Most blocks looked at.
 const MOST_BLOCKS: usize = 24_576;
 /// Values that are fewer deviations from black or white are cut off there.
@@ -54,7 +54,8 @@ impl NoiseLaw {
         self.at_black + self.slope * value.max(self.measured[0])
     }
 
-    /// The law of a picture; none if too little of it is neither black nor white.
+    /// The law of a picture; none if too little of it is neither black nor white, or if there is none: textures have as much of what looks like noise as
+    /// they have.
     fn of(image: &ImageView<'_, f32>) -> Option<Self> {
         let mut blocks = blocks(image);
         sort::ascending(&mut blocks, |block| f64::from(block[0]));
@@ -77,7 +78,7 @@ impl NoiseLaw {
                 }
             }
         }
-        best
+        best.filter(|_| least <= SHOT_MISSED * groups.len() as f64)
     }
 
     /// How many times the standard deviation at the darkest that was measured is that at the brightest.
