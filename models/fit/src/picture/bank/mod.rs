@@ -9,10 +9,9 @@ mod tests;
 
 use dvp_core::ImageView;
 
-use super::{
-    CLEARLY_WORSE_IN_NOISE, Known, PictureScratch, drawn, is_likelier, is_of_renderer, leaves_doubt, likelier,
-    of_painted, shorter,
-};
+use super::drawing::{CLEARLY_WORSE_IN_NOISE, drawn, leaves_doubt, of_painted};
+use super::likelier::{is_likelier, is_of_renderer, likelier, shorter};
+use super::{Known, PictureScratch};
 use crate::paint::Canvas;
 use crate::prototypes::{Decoded, Decoder, Undecoded};
 use crate::{Bank, Fit, FitError, Fitter, StopReason};

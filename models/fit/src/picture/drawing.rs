@@ -1,0 +1,194 @@
+//! The fit of a picture as a drawing, as what it was before it was spoiled, or as segments: the likeliest.
+
+use alloc::vec::Vec;
+use core::f64::consts::FRAC_2_SQRT_PI;
+
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
+
+use dvp_core::loss::{ImagePair, Loss as _};
+use dvp_core::render::{EdgeLaw, EdgeProfile, PixelLoss};
+use dvp_core::{Drawing, Image, ImageView, Real as _, Scene};
+use dvp_trace::ramps::are_wide;
+use dvp_trace::tuning::{DOUBTFUL_STAINED, WIDE_BLUR};
+use dvp_trace::{Known, NoDrawing, PoseCovariance, Traced, noise};
+
+use super::PictureScratch;
+use super::likelier::{CLEARLY_WORSE, is_likelier, is_of_renderer, likeliest};
+use super::mend::Wrong;
+use super::spare::Spare;
+use crate::tuning::NOT_FLAT_SHARE;
+use crate::{Ambiguity, Fit, FitError, Fitter, StopReason};
+
+/// [`CLEARLY_WORSE`] in noise, whose own mean is known to half a percent of it at 64 x 64 pixels.
+pub(super) const CLEARLY_WORSE_IN_NOISE: f32 = 1.02;
+/// Pictures of more things are no scenes of the paper's renderer, whatever their edges are: segments, which take long for many, are not asked for.
+const FEW: usize = 16;
+/// Share of a picture of which a drawing that leaves more is none.
+const MOSTLY: f64 = 0.5;
+
+/// The picture as it was before it was spoiled; none if a coder has spoiled it, which is known then, or if it was no drawing.
+#[inline(never)]
+pub(super) fn unspoiled(image: ImageView<'_, f32>, known: &Known) -> Option<Traced> {
+    if known.coded { None } else { dvp_trace::trace(&image, &known.with_spoiled(true)).ok() }
+}
+
+/// The fit of a drawing, or of segments where edges leave a doubt and those are likelier.
+pub(super) fn drawing(
+    fitter: &Fitter<f32>,
+    traced: Traced,
+    image: ImageView<'_, f32>,
+    known: &Known,
+    scratch: &mut PictureScratch,
+) -> Result<Fit<f32>, FitError> {
+    // Coders make the edges of colors wide that were clear.
+    let is_doubtful = leaves_doubt(&traced) || !(traced.coded || known.coded) && are_wide(&image);
+    let is_coded = traced.coded;
+    let is_few = traced.scene.objects.len() <= FEW;
+    let mut drawn = self::drawn(traced, image, scratch)?;
+    let segments = if is_doubtful && is_few { Some(fitter.fit(image, &mut scratch.fit)?) } else { None };
+    // What a coder leaves beside edges looks as if they were wide, unless segments explain it with clear ones.
+    let is_clear = |fit: &Fit<f32>| fit.scene.edge.law == EdgeLaw::Area && fit.unexplained <= NOT_FLAT_SHARE;
+    let may_be_wide = is_doubtful && !(is_coded && segments.as_ref().is_some_and(is_clear));
+    if may_be_wide && let Some(again) = unspoiled(image, known) {
+        let again = self::drawn(again, image, scratch)?;
+        if is_likelier(&again, &drawn, 1.0, CLEARLY_WORSE) {
+            drawn = again;
+        }
+    }
+    match segments {
+        Some(segments) => Ok(likeliest(segments, drawn, CLEARLY_WORSE)),
+        None => settled(fitter, drawn, image, scratch),
+    }
+}
+
+/// The fit of a picture that is no drawing as it is: of what it was before it was spoiled, or of segments.
+pub(super) fn spoiled_or_segments(
+    fitter: &Fitter<f32>,
+    reason: &NoDrawing,
+    image: ImageView<'_, f32>,
+    known: &Known,
+    scratch: &mut PictureScratch,
+) -> Result<Fit<f32>, FitError> {
+    // The paper's renderer has edges of its own, and few things.
+    let is_few = matches!(reason, NoDrawing::Soft { faces, .. } if *faces <= FEW);
+    let mut traced = if is_few { None } else { unspoiled(image, known) };
+    if let Some(traced) = traced.take_if(|traced| traced.scene.objects.len() > FEW) {
+        let drawn = drawn(traced, image, scratch)?;
+        return settled(fitter, drawn, image, scratch);
+    }
+    let segments = fitter.fit(image, &mut scratch.fit)?;
+    let is_of_renderer = is_of_renderer(&segments);
+    if is_few {
+        if is_of_renderer {
+            return Ok(segments);
+        }
+        traced = unspoiled(image, known);
+    }
+    let Some(traced) = traced else { return Ok(segments) };
+    let drawn = drawn(traced, image, scratch)?;
+    if drawn.noise <= f32::of(noise::ROUNDED) {
+        return Ok(likeliest(segments, drawn, CLEARLY_WORSE));
+    }
+    // Noise hides the profile of edges: what looks like the paper's renderer is a drawing only if that is clearly nearer without more things. What both
+    // leave of a noisy picture is its noise for the most part.
+    if is_of_renderer {
+        let is_nearer = CLEARLY_WORSE_IN_NOISE * drawn.loss < segments.loss;
+        let is_more = drawn.scene.objects.len() > segments.scene.objects.len();
+        return Ok(if is_nearer && !is_more { drawn } else { segments });
+    }
+    Ok(likeliest(segments, drawn, CLEARLY_WORSE_IN_NOISE))
+}
+
+/// The fit of a drawing of many things, or without a doubt; if it leaves most of the picture, which is not flat then,
+/// the nearer one of it and of segments.
+#[inline(never)]
+pub(super) fn settled(
+    fitter: &Fitter<f32>,
+    drawn: Fit<f32>,
+    image: ImageView<'_, f32>,
+    scratch: &mut PictureScratch,
+) -> Result<Fit<f32>, FitError> {
+    if drawn.unexplained <= MOSTLY {
+        return Ok(drawn);
+    }
+    let segments = fitter.fit(image, &mut scratch.fit)?;
+    if segments.unexplained > NOT_FLAT_SHARE {
+        return Ok(if drawn.loss < segments.loss { drawn } else { segments });
+    }
+    Ok(likeliest(segments, drawn, CLEARLY_WORSE))
+}
+
+/// The fit of a drawing, mended where nothing hides what it misses, or with the blur of the picture if that brings it nearer.
+#[inline(never)]
+pub(super) fn drawn(
+    mut traced: Traced,
+    image: ImageView<'_, f32>,
+    scratch: &mut PictureScratch,
+) -> Result<Fit<f32>, FitError> {
+    let (canvas, size) = (&mut scratch.canvas, image.size());
+    let (mut painted, mut drawing) = canvas.paint(&traced.scene, size)?;
+    let is_clear = traced.blur <= WIDE_BLUR && traced.noise == 0.0;
+    if let Some(wrong) = is_clear.then(|| Wrong::of(&traced, &drawing, painted, &image)).flatten() {
+        wrong.mend(&mut traced, &drawing, image, canvas)?;
+        (painted, drawing) = canvas.paint(&traced.scene, size)?;
+    }
+    if let Some(spare) = is_clear.then(|| Spare::of(&drawing, painted)).flatten() {
+        spare.leave_out(&mut traced, &drawing, &image, canvas)?;
+        (painted, drawing) = canvas.paint(&traced.scene, size)?;
+    }
+    let mut best = of_painted(&traced.scene, &drawing, painted, image)?;
+    let Traced { scene, covariances, bits, blur, .. } = traced;
+    let (covariance, ambiguity) = doubt_of_poses(&covariances);
+    // Such a profile has the pixel's area in it. The integral of F (1 - F), F the profile, is half the softness of the logistic curve, and the
+    // deviation of a blur over the root of pi.
+    let blurred = (blur > 0.0).then(|| {
+        let softness = FRAC_2_SQRT_PI * (blur * blur + 1.0 / 12.0).sqrt();
+        let edge = EdgeProfile::distance(f32::of(softness) / f32::of_usize(image.size().unit_px()));
+        Scene { edge, ..scene }
+    });
+    if let Some(scene) = blurred {
+        let (painted, drawing) = canvas.paint(&scene, size)?;
+        let other = of_painted(&scene, &drawing, painted, image)?;
+        if other.loss < best.loss {
+            best = other;
+        }
+    }
+    Ok(Fit { bits, stop: StopReason::Converged, covariance, ambiguity, ..best })
+}
+
+/// What a scene that is painted leaves of a picture.
+#[inline(never)]
+pub(super) fn of_painted(
+    scene: &Scene<f32>,
+    drawing: &Drawing<f32>,
+    painted: &Image<f32>,
+    image: ImageView<'_, f32>,
+) -> Result<Fit<f32>, FitError> {
+    let loss = PixelLoss::Mae.value(ImagePair::new(painted.view(), image)?, &mut ())?;
+    Ok(Fit { loss, ..Fit::of_painted(scene.clone(), drawing, &image, painted.data()) })
+}
+
+/// Whether edges leave a doubt that a picture is a drawing. Stains of either sign: blur and profiles of their own leave too much of the other
+/// side beyond edges, filters that sharpen too little.
+pub(super) fn leaves_doubt(traced: &Traced) -> bool {
+    traced.stained.abs() > DOUBTFUL_STAINED
+}
+
+/// What is known of poses as a fit says it: covariances of (x, y, log scale, rotation, log stretch), NaN where nothing is known, and which
+/// objects look alike at every angle.
+fn doubt_of_poses(known: &[Option<PoseCovariance>]) -> (Vec<[f32; 25]>, Vec<Ambiguity>) {
+    if known.iter().all(Option::is_none) {
+        return (Vec::new(), Vec::new());
+    }
+    let mut ambiguity = Vec::new();
+    let covariance = known.iter().enumerate().map(|(object, known)| {
+        let Some(known) = known else { return [f32::NAN; 25] };
+        if known.is_round {
+            ambiguity.push(Ambiguity::Symmetry { object, order: 0 });
+        }
+        core::array::from_fn(|k| f32::of(known.numbers[k / 5][k % 5]))
+    });
+    let covariance = covariance.collect();
+    (covariance, ambiguity)
+}
