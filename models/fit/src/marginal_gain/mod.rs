@@ -11,8 +11,11 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use dvp_core::render::Compositing;
-use dvp_core::scene::Layer;
+use dvp_core::scene::{ColorRamp, DrawnRamp, Layer};
 use dvp_core::{Drawing, ImageSize, ImageView, Real, simd, sort};
+
+/// Pixels of a row over which a ramp is taken as its color in the middle.
+const RAMP_PIECE: usize = 8;
 
 /// Where a row enters or leaves an object: its first pixel with a center beyond the crossing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -65,16 +68,22 @@ pub(crate) fn squared_errors<T: Real>(
                 continue;
             }
             let line = cut.row * size.width();
-            let pixels = line + cut.column..line + end;
-            let sums = [0, 1, 2].map(|c| simd::sum(&image.channel(c)[pixels.clone()]).as_f64());
-            let n = f64::of_usize(pixels.len());
-            let shown = mixture.color(&active, None);
-            for &object in &active {
-                let without = mixture.color(&active, Some(object));
-                // (x - without)^2 - (x - shown)^2, summed.
-                out[object] += (0..3)
-                    .map(|c| (shown[c] - without[c]) * (2.0 * sums[c] - n * (shown[c] + without[c])))
-                    .sum::<f64>();
+            // Where ramps are painted, colors change on the way.
+            let piece = if mixture.have_ramp(&active) { RAMP_PIECE } else { end - cut.column };
+            for first in (cut.column..end).step_by(piece) {
+                let last = (first + piece).min(end);
+                mixture.move_to(&active, [0.5 * f64::of_usize(first + last), f64::of_usize(cut.row) + 0.5], size);
+                let pixels = line + first..line + last;
+                let sums = [0, 1, 2].map(|c| simd::sum(&image.channel(c)[pixels.clone()]).as_f64());
+                let n = f64::of_usize(pixels.len());
+                let shown = mixture.color(&active, None);
+                for &object in &active {
+                    let without = mixture.color(&active, Some(object));
+                    // (x - without)^2 - (x - shown)^2, summed.
+                    out[object] += (0..3)
+                        .map(|c| (shown[c] - without[c]) * (2.0 * sums[c] - n * (shown[c] + without[c])))
+                        .sum::<f64>();
+                }
             }
         }
     }
@@ -107,24 +116,45 @@ fn cut<T: Real>(outline: &[[T; 2]], object: usize, size: ImageSize, cuts: &mut V
 }
 
 /// Colors of pixels that objects cover in whole.
-struct Mixture {
+struct Mixture<T> {
     background: [f64; 3],
     compositing: Compositing,
     /// Every object of the drawing, in full coverage.
     objects: Vec<Layer<f64>>,
+    /// What paints those that have no one color.
+    ramps: Vec<(usize, ColorRamp<T>)>,
     layers: Vec<Layer<f64>>,
     shares: Vec<f64>,
 }
 
-impl Mixture {
-    fn new<T: Real>(drawing: &Drawing<T>, compositing: Compositing) -> Self {
+impl<T: Real> Mixture<T> {
+    fn new(drawing: &Drawing<T>, compositing: Compositing) -> Self {
         let objects = drawing.colors.iter().zip(&drawing.confidences);
+        let ramp = |drawn: &DrawnRamp<T>| {
+            let stops = drawing.stops[drawn.stops.clone()].to_vec();
+            (drawn.object, ColorRamp { kind: drawn.kind, stops })
+        };
         Self {
             background: drawing.background.map(T::as_f64),
             compositing,
             objects: objects.map(|(color, f)| Layer::new(color.map(T::as_f64), 1.0, f.as_f64())).collect(),
+            ramps: drawing.ramps.iter().map(ramp).collect(),
             layers: Vec::new(),
             shares: Vec::new(),
+        }
+    }
+
+    /// Whether one of some objects has a ramp.
+    fn have_ramp(&self, objects: &[usize]) -> bool {
+        self.ramps.iter().any(|(object, _)| objects.contains(object))
+    }
+
+    /// Gives those of some objects that have ramps the colors that these have at a point, px.
+    fn move_to(&mut self, objects: &[usize], point: [f64; 2], size: ImageSize) {
+        let unit = f64::of_usize(size.unit_px());
+        for (object, ramp) in self.ramps.iter().filter(|(object, _)| objects.contains(object)) {
+            let offset = ramp.kind.offset(point.map(|at| T::of(at / unit)));
+            self.objects[*object].color = ramp.color_at(offset).map(T::as_f64);
         }
     }
 

@@ -1,6 +1,7 @@
 use alloc::vec::Vec;
 
-use dvp_core::render::{Compositing, HardMask, HardRenderer, Renderer};
+use dvp_core::render::{Compositing, ExactArea, ExactRenderer, HardMask, HardRenderer, Renderer};
+use dvp_core::scene::{ColorStop, DrawnRamp, RampKind};
 use dvp_core::shape::Rings;
 use dvp_core::{Drawing, Image, ImageSize};
 
@@ -59,4 +60,23 @@ fn a_gain_is_the_error_that_a_rendering_has_without_the_object() {
             }
         }
     }
+}
+
+#[test]
+fn what_a_ramp_takes_away_is_that_of_its_colors() {
+    // A sheet that goes from black to white, over the gray that it has on the mean, on a picture of itself.
+    let size = ImageSize::new(64, 64).unwrap();
+    let mut drawing = Drawing { background: [0.5; 3], ..Drawing::default() };
+    drawing.push_rings(Rings::one(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]), [0.5; 3], 1.0);
+    let stop = |offset: f64| ColorStop { offset, color: [offset; 3] };
+    drawing.stops = [stop(0.0), stop(1.0)].into();
+    drawing.ramps.push(DrawnRamp { object: 0, kind: RampKind::Linear([[0.0, 0.0], [1.0, 0.0]]), stops: 0..2 });
+    let mut image = Image::zeros(size);
+    ExactRenderer { coverage: ExactArea, compositing: Compositing::Over }
+        .render(&drawing, size, &mut Default::default(), image.data_mut())
+        .unwrap();
+    let gain = squared_errors(&drawing, &image.view(), Compositing::Over)[0];
+    let flat: f64 = image.data().iter().map(|value| (value - 0.5).powi(2)).sum();
+    // Pieces of an eighth of the width leave a sixty-fourth.
+    assert!((gain / flat - 63.0 / 64.0).abs() < 1e-3, "{gain} of {flat}");
 }

@@ -3,7 +3,7 @@ use alloc::vec::Vec;
 use dvp_core::{Image, ImageSize, Real};
 
 use super::means::{DenoiseScratch, DenoiseSettings, denoise};
-use super::{denoised, noise_level};
+use super::{denoised, evened, noise_level};
 
 const SIDE: usize = 64;
 
@@ -22,6 +22,21 @@ pub(crate) fn add_noise<T: Real>(image: &mut Image<T>, sigma: f64) {
     for value in image.data_mut() {
         let (radius, turn) = (uniform().max(1e-12), uniform());
         *value += T::of(sigma * (-2.0 * radius.ln()).sqrt() * (core::f64::consts::TAU * turn).cos());
+    }
+}
+
+/// The picture in single precision.
+fn single(image: &Image<f64>) -> Image<f32> {
+    Image::from_planar(image.size(), image.data().iter().map(|&value| value as f32).collect()).unwrap()
+}
+
+/// Adds the noise of a camera: its variance is `read` squared and the value over `photons`.
+fn add_shot_noise(image: &mut Image<f32>, read: f64, photons: f64) {
+    let mut noise = Image::<f64>::zeros(image.size());
+    add_noise(&mut noise, 1.0);
+    for (value, noise) in image.data_mut().iter_mut().zip(noise.data()) {
+        let deviation = (read * read + f64::from(*value) / photons).sqrt();
+        *value = (f64::from(*value) + deviation * noise).clamp(0.0, 1.0) as f32;
     }
 }
 
@@ -129,4 +144,57 @@ fn pictures_without_noise_or_with_numbers_that_are_none_are_left_alone() {
     let mut broken = picture(0.05);
     broken.data_mut()[5] = f64::NAN;
     assert_eq!(denoised(broken.view()), None);
+}
+
+/// A bright disk on dark ground.
+fn lamp(x: usize, y: usize) -> [f64; 3] {
+    let off = [x, y].map(|v| f64::from(u32::try_from(v).unwrap()) - 31.5);
+    [0.1 + 0.6 * (20.5 - off[0].hypot(off[1])).clamp(0.0, 1.0); 3]
+}
+
+#[test]
+fn noise_that_grows_with_the_light_is_found_and_made_even() {
+    let clean = single(&paint(lamp));
+    for (read, photons) in [(0.005, 100.0), (0.01, 300.0), (0.02, 500.0)] {
+        let mut image = clean.clone();
+        add_shot_noise(&mut image, read, photons);
+        let even = evened(&image.view()).expect("the noise grows");
+        for value in [0.1, 0.7] {
+            let (found, is) = (even.law.variance(value).sqrt(), (read * read + value / photons).sqrt());
+            assert!((found / is - 1.0).abs() < 0.25, "{found} for {is} at {value}");
+        }
+        // What is left of it, bright and dark, away from the edge.
+        let deviation = |is_in: &dyn Fn(f64) -> bool| {
+            let [mut sum, mut count] = [0.0; 2];
+            for i in 0..SIDE * SIDE {
+                let radius = [i % SIDE, i / SIDE].map(|v| f64::from(u32::try_from(v).unwrap()) - 31.5);
+                if is_in(radius[0].hypot(radius[1])) {
+                    sum += f64::from(even.image.view().pixel(i)[0] - clean.view().pixel(i)[0]).powi(2);
+                    count += 1.0;
+                }
+            }
+            (sum / count).sqrt() / even.level
+        };
+        let (bright, dark) = (deviation(&|radius| radius < 16.0), deviation(&|radius| radius > 25.0));
+        assert!(bright / dark < 1.35 && dark / bright < 1.35, "{bright} and {dark} of {photons}");
+    }
+}
+
+#[test]
+fn noise_that_is_even_stays() {
+    let mut image = single(&paint(lamp));
+    assert!(evened(&image.view()).is_none(), "there is none");
+    add_noise(&mut image, 0.03);
+    assert!(evened(&image.view()).is_none(), "it is even");
+}
+
+#[test]
+fn textures_are_no_noise_that_grows() {
+    // Waves on the upper half, of all values: more of them where it is brighter in some places, less in others.
+    let mut image = single(&paint(|x, y| {
+        let [x, y] = [x, y].map(|v| f64::from(u32::try_from(v).unwrap()));
+        [0.5 + 0.3 * (0.1 * x).sin() + 0.1 * (0.05 * y).sin().powi(3) * (2.5 * x).cos() * (2.1 * y).cos(); 3]
+    }));
+    add_noise(&mut image, 0.004);
+    assert!(evened(&image.view()).is_none());
 }

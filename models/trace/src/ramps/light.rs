@@ -76,6 +76,8 @@ impl Light {
     #[must_use]
     #[inline(never)]
     pub fn of(image: &ImageView<'_, f32>, noise: f64) -> Option<Self> {
+        // Cameras, which leave noise, see light on everything.
+        let is_noisy = noise > ROUNDED;
         let noise = noise.max(LEAST_NOISE);
         let places = places(image);
         let surface = Surface::of(&places, noise, image)?;
@@ -89,7 +91,7 @@ impl Light {
         if (shown as f64) < LEAST_SHARE * count || change < LEAST_LIGHT.max(LEAST_LIGHT_NOISES * noise) {
             return None;
         }
-        let effect = effect(image, &surface, noise)?;
+        let effect = effect(image, &surface, noise, is_noisy)?;
         let ramp = in_scene_units(&surface.ramp(&colors), surface.middle, image.size().unit_px() as f64);
         let mut light = Self { image: Image::zeros(image.size()), ramp, surface, mean, effect };
         let (width, pixels) = (image.size().width(), image.size().pixels());
@@ -191,7 +193,7 @@ impl Surface {
 }
 
 /// What the light does to things in front of the background: that which leaves their pixels most alike; none if they are alike as they are.
-fn effect(image: &ImageView<'_, f32>, surface: &Surface, noise: f64) -> Option<Effect> {
+fn effect(image: &ImageView<'_, f32>, surface: &Surface, noise: f64, is_noisy: bool) -> Option<Effect> {
     let (width, height) = (image.size().width(), image.size().height());
     // Means over three by three pixels have a third of the noise.
     let mean = |i: usize| -> Color {
@@ -223,8 +225,7 @@ fn effect(image: &ImageView<'_, f32>, surface: &Surface, noise: f64) -> Option<E
         }
     }
     let [none, added, multiplied] = missed;
-    // Pictures of cameras, which have noise, have light on everything. Without things there is nothing to tell by.
-    let is_none = noise <= ROUNDED && none > 0.0 && none <= added.min(multiplied);
+    let is_none = !is_noisy && none > 0.0 && none <= added.min(multiplied);
     (!is_none).then_some(if multiplied < added { Effect::Multiplied } else { Effect::Added })
 }
 

@@ -9,8 +9,8 @@ use proptest::prelude::*;
 use proptest::strategy::ValueTree as _;
 use proptest::test_runner::{RngSeed, TestRunner};
 
-use super::level;
 use super::smooth::is_rough;
+use super::{Light, level};
 
 const SIDE: usize = 80;
 const WHITE: [f32; 3] = [1.0; 3];
@@ -192,4 +192,72 @@ fn what_shows_in_two_places_is_one_ramp() {
     assert_eq!(leveled.ramps.len(), 1);
     let sides = [SIDE / 4, 3 * SIDE / 4].map(|column| leveled.image.view().pixel(SIDE / 2 * SIDE + column));
     assert_eq!(sides[0], sides[1]);
+}
+
+/// Places of a picture as shares of its side, from -1/2 to 1/2.
+fn shares(i: usize) -> [f32; 2] {
+    [i % SIDE, i / SIDE].map(|at| (at as f32 + 0.5) / SIDE as f32 - 0.5)
+}
+
+/// Two disks in front of a dark ground, in light that `lit` changes by the place; of one color each.
+fn in_light(lit: impl Fn(f32, [f32; 2]) -> f32) -> Image<f32> {
+    let size = ImageSize::new(SIDE, SIDE).unwrap();
+    let values: Vec<f32> = (0..size.pixels())
+        .map(|i| {
+            let [x, y] = shares(i);
+            let share = |cx: f32, cy: f32| (SIDE as f32 * (0.15 - (x - cx).hypot(y - cy)) + 0.5).clamp(0.0, 1.0);
+            let color = 0.3 + 0.4 * share(-0.2, -0.15) + 0.3 * share(0.2, 0.2);
+            lit(color, [x, y])
+        })
+        .collect();
+    let rounded = values.iter().flat_map(|value| [(value * 255.0).round() / 255.0; 3]).collect::<Vec<f32>>();
+    Image::from_interleaved(size, &rounded).unwrap()
+}
+
+#[test]
+fn uneven_light_is_taken_out_as_it_came() {
+    let even = in_light(|color, _| color);
+    let lights: [(&str, &dyn Fn(f32, [f32; 2]) -> f32); 3] = [
+        ("added along a line", &|color, [x, y]| color + 0.1 * x - 0.07 * y),
+        ("added about the middle", &|color, [x, y]| color - 0.25 * (x * x + y * y)),
+        ("multiplied", &|color, [x, y]| color * (1.0 - 0.6 * (x * x + y * y) + 0.1 * x)),
+    ];
+    for (name, lit) in lights {
+        let image = in_light(lit);
+        let light = Light::of(&image.view(), 0.0).expect(name);
+        // All of it is brighter or darker by as much, or by as many times.
+        let off: Vec<f32> = light.image.data().iter().zip(even.data()).map(|(found, is)| found / is).collect();
+        let mean = off.iter().sum::<f32>() / off.len() as f32;
+        if name == "multiplied" {
+            assert!(off.iter().all(|off| (off / mean - 1.0).abs() < 0.02), "{name}");
+        } else {
+            let off: Vec<f32> = light.image.data().iter().zip(even.data()).map(|(found, is)| found - is).collect();
+            let mean = off.iter().sum::<f32>() / off.len() as f32;
+            assert!(off.iter().all(|off| (off - mean).abs() < 2.0 / 255.0), "{name}");
+        }
+        for i in (0..SIDE * SIDE).step_by(7) {
+            let color = light.image.view().pixel(i).map(f64::from);
+            let seen = light.seen(color, [(i % SIDE) as f64 + 0.5, (i / SIDE) as f64 + 0.5]);
+            assert!((seen[0] - f64::from(image.view().pixel(i)[0])).abs() < 1e-5, "{name}");
+            // The ramp is near to what is seen of the ground.
+            if (even.view().pixel(i)[0] - 0.3).abs() < 0.01 {
+                let [x, y] = shares(i).map(|at| at + 0.5);
+                let painted = light.ramp.color_at(light.ramp.kind.offset([x, y]))[0];
+                assert!((painted - image.view().pixel(i)[0]).abs() < 3.0 / 255.0, "{name}: {painted}");
+            }
+        }
+    }
+}
+
+#[test]
+fn things_in_front_of_a_ramp_are_in_no_uneven_light() {
+    let ramp = |[x, y]: [f32; 2]| 0.1 * x - 0.07 * y;
+    let even = in_light(|color, _| color);
+    assert!(Light::of(&even.view(), 0.0).is_none(), "it is even");
+    // The ground changes, and they do not.
+    let front = in_light(|color, at| if color > 0.35 { color } else { color + ramp(at) });
+    assert!(Light::of(&front.view(), 0.0).is_none());
+    // Most of the picture shows no surface of second degree.
+    let waves = in_light(|color, [x, y]| color + 0.1 * (20.0 * x).sin() * (20.0 * y).cos());
+    assert!(Light::of(&waves.view(), 0.0).is_none());
 }
