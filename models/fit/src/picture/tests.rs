@@ -5,14 +5,14 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use dvp_core::render::Compositing;
+use dvp_core::render::{Compositing, EdgeProfile};
 use dvp_core::shape::{AnyShape, Cap, Circle, Join, PathRing, Rectangle, Stroke};
 use dvp_core::{Efd, Image, ImageSize, Object, Pose, Scene};
 
 use proptest::prelude::*;
 
+use super::likelier::likeliest;
 use super::*;
-use crate::FitOptions;
 
 const SIDE: usize = 48;
 

@@ -1,5 +1,8 @@
 //! Pictures of cameras: noise that grows with the light, and light that is uneven, taken out before and put back.
 
+#[cfg(test)]
+mod tests;
+
 use dvp_core::render::{Compositing, EdgeLaw};
 use dvp_core::scene::{ColorRamp, ColorStop, RampKind};
 use dvp_core::{Drawing, ImageView, Paint, Real as _};

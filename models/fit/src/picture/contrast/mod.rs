@@ -1,5 +1,8 @@
 //! Pictures that take a small part of the levels of their file, as the 12 bits of a camera do in a file of 16: read as if they took most of them.
 
+#[cfg(test)]
+mod tests;
+
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
