@@ -65,6 +65,7 @@ mod residual;
 mod segment;
 mod split;
 mod split_mix;
+mod stretched;
 #[cfg(test)]
 mod tests;
 mod tuning;

@@ -3,11 +3,12 @@
 
 use alloc::vec::Vec;
 
-use dvp_core::{Image, ImageView, Real, Scene};
+use dvp_core::{ImageView, Real, Scene};
 
 use super::{FitScratch, Fitter};
 use crate::colors::is_rounded;
 use crate::segment::{PIXEL_NOISE, SegmentOptions};
+use crate::stretched::Stretched;
 use crate::tuning::FAINT_CONTRAST;
 use crate::{Fit, FitError};
 
@@ -16,16 +17,14 @@ const HALF_STEP: f64 = 0.5 / 255.0;
 /// Of a step, the standard deviation of rounding.
 const ROUNDING: f64 = 0.2887;
 
-/// A picture at full contrast, and the way back.
-struct Stretched<T> {
-    image: Image<T>,
-    lowest: [T; 3],
-    gain: T,
+/// A picture at full contrast.
+struct Faint<T> {
+    stretched: Stretched<T>,
     /// Most that rounding moves a value.
     rounding: T,
 }
 
-impl<T: Real> Stretched<T> {
+impl<T: Real> Faint<T> {
     /// None of a picture of one color, or of one that is not faint.
     fn of(image: &ImageView<'_, T>) -> Option<Self> {
         let ends = |channel: &[T]| {
@@ -36,15 +35,9 @@ impl<T: Real> Stretched<T> {
         if range <= T::of(HALF_STEP) || range > T::of(FAINT_CONTRAST) {
             return None;
         }
-        let (lowest, gain) = (ends.map(|(low, _)| low), T::one() / range);
-        let mut stretched = Image::zeros(image.size());
-        let planes = stretched.data_mut().chunks_exact_mut(image.size().pixels());
-        for (c, plane) in planes.enumerate() {
-            let values = plane.iter_mut().zip(image.channel(c));
-            values.for_each(|(out, &value)| *out = (value - lowest[c]) * gain);
-        }
+        let gain = T::one() / range;
         let rounding = if is_rounded(image.data().iter().copied()) { T::of(HALF_STEP) * gain } else { T::zero() };
-        Some(Self { image: stretched, lowest, gain, rounding })
+        Some(Self { stretched: Stretched::new(image, ends.map(|(low, _)| low), T::zero(), gain), rounding })
     }
 
     fn options(&self) -> SegmentOptions<T> {
@@ -54,17 +47,6 @@ impl<T: Real> Stretched<T> {
             noise: T::of(PIXEL_NOISE).max(T::of(2.0 * ROUNDING) * self.rounding),
             ..default
         }
-    }
-
-    /// The fit of the picture as it was.
-    fn undo(&self, mut fit: Fit<T>) -> Fit<T> {
-        let colors = fit.scene.objects.iter_mut().flat_map(|object| object.paint.colors_mut());
-        for color in colors.chain([&mut fit.scene.background]) {
-            *color = core::array::from_fn(|c| self.lowest[c] + color[c] / self.gain);
-        }
-        fit.loss /= self.gain;
-        fit.noise /= self.gain;
-        fit
     }
 }
 
@@ -77,11 +59,11 @@ impl<T: Real> Fitter<T> {
         empty: &Fit<T>,
         scratch: &mut FitScratch<T>,
     ) -> Result<Option<Fit<T>>, FitError> {
-        let Some(stretched) = Stretched::of(&image) else { return Ok(None) };
-        let view = stretched.image.view();
+        let Some(whole) = Faint::of(&image) else { return Ok(None) };
+        let view = whole.stretched.image.view();
         scratch.shown.forget();
         scratch.code = None;
-        if !scratch.segmentation.read(&view, &stretched.options()) {
+        if !scratch.segmentation.read(&view, &whole.options()) {
             return Ok(Some(empty.clone()));
         }
         let faint = self.fit_reading(view, true, scratch)?;
@@ -89,6 +71,6 @@ impl<T: Real> Fitter<T> {
         let flat = Fit { scene, ..faint.clone() };
         let is_shorter = faint.bits < self.bits_at(view, &flat, faint.noise, scratch)?;
         scratch.shown.forget();
-        Ok(Some(if is_shorter { stretched.undo(faint) } else { empty.clone() }))
+        Ok(Some(if is_shorter { whole.stretched.undo(faint) } else { empty.clone() }))
     }
 }

@@ -58,7 +58,6 @@ pub use dvp_trace::Known;
 pub use ground::Ground;
 pub use openings::cut_openings;
 
-use contrast::Stretched;
 use drawing::{drawing, of_painted, spoiled_or_segments};
 use likelier::{CLEARLY_WORSE, shorter};
 use most::at_most;
@@ -119,9 +118,12 @@ pub fn fit_picture(
 ) -> Result<Fit<f32>, FitError> {
     check_values(&image)?;
     // Coders, and those who made pixels transparent, knew 8 bits.
-    let stretched = if known.coded || known.matte.is_some() { None } else { Stretched::of(&image) };
+    let stretched = if known.coded || known.matte.is_some() { None } else { contrast::stretched(&image) };
     match stretched {
-        Some(stretched) => Ok(stretched.restored(of_camera(fitter, stretched.image.view(), known, scratch)?)),
+        Some(stretched) => {
+            let fit = of_camera(fitter, stretched.image.view(), known, scratch)?;
+            Ok(contrast::restored(&stretched, fit))
+        }
         None => of_camera(fitter, image, known, scratch),
     }
 }

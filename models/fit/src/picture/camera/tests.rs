@@ -1,4 +1,3 @@
-extern crate std;
 use alloc::vec;
 use alloc::vec::Vec;
 
@@ -101,7 +100,6 @@ fn uneven_light_makes_no_things() {
         for (read_noise, photons) in [(0.0, 1e9), (0.015, 1e9), (0.005, 400.0)] {
             let image = with_noise_of(&clean, read_noise, photons, 4);
             let fit = read(&image);
-            if found(&fit).len() != CELLS.len() { for o in &fit.scene.objects { std::eprintln!("{:?} {:?} {:?}", o.pose, o.color(), o.paint.ramp().is_some()); } std::eprintln!("loss {} {}", fit.loss, dvp_trace::ramps::Light::of(&image.view(), 0.015).is_some()); }
             assert_eq!(found(&fit).len(), CELLS.len(), "{name}, noise {read_noise}, {photons} photons");
             if photons < 1e9 || read_noise > 0.0 {
                 continue;

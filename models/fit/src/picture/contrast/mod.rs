@@ -3,60 +3,36 @@
 #[cfg(test)]
 mod tests;
 
-#[cfg(not(feature = "std"))]
-use num_traits::Float as _;
-
-use dvp_core::{Image, ImageView, Paint};
+use dvp_core::ImageView;
 
 use crate::Fit;
+use crate::colors::is_rounded;
+use crate::stretched::Stretched;
 
 /// Largest range of values that is a small part, of 1: that of 14 bits in a file of 16 is a quarter.
 const SMALL: f32 = 0.3;
 /// What the darkest and the brightest value become: what noise adds to them is not cut off.
 const ENDS: [f32; 2] = [0.05, 0.95];
-/// Steps of a file of 8 bits; how far a value may be off one, of a step. Where there are no levels between these, stretching makes steps of them.
-const STEPS: f32 = 255.0;
-const OFF_STEP: f32 = 0.02;
 
-/// A picture of more contrast.
-#[derive(Debug)]
-pub(super) struct Stretched {
-    /// The picture.
-    pub(super) image: Image<f32>,
-    /// What has become the first of [`ENDS`].
-    low: f32,
-    times: f32,
+/// The picture stretched; none if its values take a large part of [0, 1], or are those of 8 bits: where there are no levels between these, stretching
+/// makes steps of them.
+#[inline(never)]
+pub(super) fn stretched(image: &ImageView<'_, f32>) -> Option<Stretched<f32>> {
+    let [low, high] = range(image)?;
+    if is_rounded(image.data().iter().copied()) {
+        return None;
+    }
+    Some(Stretched::new(image, [low; 3], ENDS[0], (ENDS[1] - ENDS[0]) / (high - low)))
 }
 
-impl Stretched {
-    /// The picture stretched; none if its values take a large part of [0, 1], or are those of 8 bits.
-    #[inline(never)]
-    pub(super) fn of(image: &ImageView<'_, f32>) -> Option<Self> {
-        let [low, high] = range(image)?;
-        let is_step = |value: &f32| (STEPS * value - (STEPS * value).round()).abs() <= OFF_STEP;
-        if image.data().iter().all(is_step) {
-            return None;
-        }
-        let times = (ENDS[1] - ENDS[0]) / (high - low);
-        let values = image.data().iter().map(|value| ENDS[0] + times * (value - low)).collect();
-        Some(Self { image: Image::from_planar(image.size(), values).ok()?, low, times })
+/// A fit of the stretched picture as one of the picture.
+pub(super) fn restored(stretched: &Stretched<f32>, fit: Fit<f32>) -> Fit<f32> {
+    let mut fit = stretched.undo(fit);
+    let colors = fit.scene.objects.iter_mut().flat_map(|object| object.paint.colors_mut());
+    for color in colors.chain([&mut fit.scene.background]) {
+        *color = color.map(|value| value.clamp(0.0, 1.0));
     }
-
-    /// A fit of the stretched picture as one of the picture.
-    pub(super) fn restored(&self, mut fit: Fit<f32>) -> Fit<f32> {
-        let color = |value: f32| (self.low + (value - ENDS[0]) / self.times).clamp(0.0, 1.0);
-        fit.scene.background = fit.scene.background.map(color);
-        for object in &mut fit.scene.objects {
-            if let Paint::Ramp(ramp) = &mut object.paint {
-                ramp.stops.iter_mut().for_each(|stop| stop.color = stop.color.map(color));
-            } else {
-                object.paint = Paint::Flat(object.color().map(color));
-            }
-        }
-        fit.loss /= self.times;
-        fit.noise /= self.times;
-        fit
-    }
+    fit
 }
 
 /// The darkest and the brightest value of two pixels beside one another, since single ones may be a camera's dead ones; none if these are far apart, or one.

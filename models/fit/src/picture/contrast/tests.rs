@@ -1,6 +1,6 @@
 use alloc::vec::Vec;
 
-use dvp_core::{ImageSize, Scene};
+use dvp_core::{Image, ImageSize, Scene};
 use proptest::prelude::*;
 
 use super::super::{Known, PictureScratch, fit_picture};
@@ -53,27 +53,32 @@ fn twelve_bits_in_a_file_of_sixteen_are_a_picture() {
 #[test]
 fn what_has_contrast_or_steps_of_eight_bits_is_read_as_it_is() {
     let step = 1.0 / 65535.0;
-    assert!(Stretched::of(&squares(0.0, 1.0, step).view()).is_none());
-    assert!(Stretched::of(&squares(0.0, 0.2, 1.0 / 255.0).view()).is_none());
-    assert!(Stretched::of(&squares(0.5, 0.0, step).view()).is_none(), "one color");
+    assert!(stretched(&squares(0.0, 1.0, step).view()).is_none());
+    assert!(stretched(&squares(0.0, 0.2, 1.0 / 255.0).view()).is_none());
+    assert!(stretched(&squares(0.5, 0.0, step).view()).is_none(), "one color");
     // A pixel that is dead.
     let mut image = squares(0.0, 0.1, step);
     image.data_mut()[100] = 1.0;
-    assert!(Stretched::of(&image.view()).is_some());
+    assert!(stretched(&image.view()).is_some());
+}
+
+/// Darkest value.
+fn low_of(image: &Image<f32>) -> f32 {
+    image.data().iter().copied().fold(f32::INFINITY, f32::min)
 }
 
 proptest! {
     #[test]
     fn colors_come_back(low in 0.0_f32..0.7, times in 0.005_f32..0.28, color in 0.0_f32..1.0) {
         let image = squares(low, times, 1e-7);
-        let Some(stretched) = Stretched::of(&image.view()) else { return Ok(()) };
-        let values: Vec<f32> = stretched.image.data().to_vec();
+        let Some(other) = stretched(&image.view()) else { return Ok(()) };
+        let values: Vec<f32> = other.image.data().to_vec();
         prop_assert!(values.iter().all(|value| (0.04..0.96).contains(value)));
         let is = low + times * color;
-        let seen = ENDS[0] + stretched.times * (is - stretched.low);
+        let seen = ENDS[0] + other.gain * (is - low_of(&image));
         let mut fit = read(&image);
         fit.scene = Scene::empty([seen; 3]);
-        let restored = stretched.restored(fit);
+        let restored = restored(&other, fit);
         prop_assert!((restored.scene.background[0] - is.clamp(0.0, 1.0)).abs() < 1e-4);
     }
 }
