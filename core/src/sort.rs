@@ -28,6 +28,12 @@ pub fn median_by<V, T: Real>(values: &mut [V], key: impl Fn(&V) -> T) -> Option<
     Some(key(values.select_nth_unstable_by(middle, order).1))
 }
 
+/// The median of numbers, the higher of the two in the middle; none of nothing. Changes their order. One for all that are of a type.
+#[inline(never)]
+pub fn median<T: Real>(values: &mut [T]) -> Option<T> {
+    median_by(values, |&value| value)
+}
+
 /// A number among numbers, NaN as well.
 struct Key(f64);
 

@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 
 use dvp_core::image::CHANNELS;
-use dvp_core::sort::median_by;
+use dvp_core::sort::median;
 use dvp_core::{Drawing, ImageView, Real, Scene};
 
 use crate::residual::Unexplained;
@@ -26,7 +26,7 @@ pub(super) fn or_flat<T: Real>(image: &ImageView<'_, T>, fit: Fit<T>, prices: &P
     let color: [T; CHANNELS] = core::array::from_fn(|channel| {
         values.clear();
         values.extend_from_slice(image.channel(channel));
-        median_by(&mut values, |&value| value).unwrap_or_else(T::zero)
+        median(&mut values).unwrap_or_else(T::zero)
     });
     let errors = |channel: usize| image.channel(channel).iter().map(move |&value| (value - color[channel]).abs());
     let loss = (0..CHANNELS).flat_map(errors).sum::<T>() / T::of_usize(CHANNELS * pixels);

@@ -129,6 +129,7 @@ pub fn fit_picture(
 }
 
 /// The scene of a picture that a camera may have taken.
+#[inline(never)]
 fn of_camera(
     fitter: &Fitter<f32>,
     image: ImageView<'_, f32>,
@@ -153,6 +154,7 @@ fn of_camera(
 }
 
 /// The scene of a picture, with color ramps if it has such.
+#[inline(never)]
 fn with_ramps(
     fitter: &Fitter<f32>,
     image: ImageView<'_, f32>,
@@ -184,6 +186,7 @@ fn may_have_ramps(fitter: &Fitter<f32>, known: &Known) -> bool {
 }
 
 /// The scene of a picture without color ramps, `are_repeated` if it was enlarged by repeating pixels.
+#[inline(never)]
 fn fit_flat(
     fitter: &Fitter<f32>,
     image: ImageView<'_, f32>,

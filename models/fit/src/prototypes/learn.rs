@@ -284,5 +284,5 @@ fn neighbor_distances(distances: &DistanceMatrix, rank: usize) -> Vec<f64> {
 }
 
 fn median(values: &[f64]) -> f64 {
-    sort::median_by(&mut values.to_vec(), |&value| value).unwrap_or(0.0)
+    sort::median(&mut values.to_vec()).unwrap_or(0.0)
 }

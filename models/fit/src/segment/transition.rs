@@ -3,7 +3,7 @@
 use alloc::vec::Vec;
 
 use dvp_core::image::distance;
-use dvp_core::sort::median_by;
+use dvp_core::sort::median;
 use dvp_core::{ImageView, Real};
 
 use super::color::is_same;
@@ -78,7 +78,7 @@ impl<T: Real> SoftScratch<T> {
             self.offs.push(along(color, from, to).1);
         }
         // The median of the largest channel of noise across a line is about its standard deviation.
-        median_by(&mut self.offs, |&off| off).unwrap_or_default()
+        median(&mut self.offs).unwrap_or_default()
     }
 }
 

@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use dvp_core::sort::median_by;
+use dvp_core::sort::median;
 use dvp_core::{ImageView, Real, simd};
 
 /// Differences looked at in all; they give the level within about 2 %.
@@ -59,7 +59,7 @@ pub fn noise_level<T: Real>(image: &ImageView<'_, T>, differences: &mut Vec<T>) 
 
 /// The median of differences.
 pub(super) fn middle<T: Real>(differences: &mut [T]) -> T {
-    median_by(differences, |&value| value).map_or(T::zero(), |median| spread_ties(differences, median))
+    median(differences).map_or(T::zero(), |median| spread_ties(differences, median))
 }
 
 #[inline(always)]

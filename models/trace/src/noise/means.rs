@@ -33,6 +33,7 @@ pub struct DenoiseScratch<T> {
 }
 
 /// Fills `out` (planar, as the image) with means of `image`, alike being judged by `guide`.
+#[inline(never)]
 pub(super) fn denoise<T: Real>(
     image: &ImageView<'_, T>,
     guide: &ImageView<'_, T>,

@@ -122,7 +122,7 @@ impl Chain {
 
 /// The middle one of some values, in order of their size; 0 if there are none.
 pub(super) fn median(values: &[f64]) -> f64 {
-    sort::median_by(&mut values.to_vec(), |&value| value).unwrap_or(0.0)
+    sort::median(&mut values.to_vec()).unwrap_or(0.0)
 }
 
 /// Ends of chains, by their number: twice the chain's, and one more for its finish.

@@ -123,7 +123,7 @@ impl Tip {
         let (of_end, last) = if at_finish { (&chain.marks[n - reach..], n - 1) } else { (&chain.marks[..reach], 0) };
         let [ground, other] = chain.marks[last].cross.sides;
         let mut widths: Vec<f64> = of_end.iter().map(|mark| mark.width / stretch).collect();
-        let width = sort::median_by(&mut widths, |&width| width)?;
+        let width = sort::median(&mut widths)?;
         (ground == other).then_some(Self { at_finish, width, ground })
     }
 

@@ -136,7 +136,7 @@ impl Surface {
         let mut surface = Self { middle: sides, size: sides[0].max(sides[1]), numbers: [[0.0; 6]; 3] };
         for (c, numbers) in surface.numbers.iter_mut().enumerate() {
             let mut values: Vec<f64> = places.iter().map(|(_, color)| color[c]).collect();
-            numbers[0] = sort::median_by(&mut values, |&value| value)?;
+            numbers[0] = sort::median(&mut values)?;
         }
         let mut width = FIRST_WIDTH;
         for _ in 0..ROUNDS {

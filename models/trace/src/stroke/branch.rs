@@ -43,7 +43,7 @@ pub(super) fn pen_width(border: &Border) -> Option<f64> {
     let every = (border.marks.len() / tuning::STROKE_PROBES).max(1);
     let asked = (0..border.marks.len()).step_by(every);
     let mut widths: Vec<_> = asked.clone().filter_map(|mark| Some(border.across(mark, limit)?.distance)).collect();
-    let width = sort::median_by(&mut widths, |&width| width)?;
+    let width = sort::median(&mut widths)?;
     let agreeing = widths.iter().filter(|&&other| is_as_wide(other, width)).count();
     let is_most = agreeing as f64 >= tuning::STROKE_PAIRED_SHARE * asked.count() as f64;
     (is_most && length >= tuning::STROKE_LEAST_LENGTH * width).then_some(width)
@@ -118,7 +118,7 @@ fn measure(hits: &[Option<Hit>], width: f64) -> (f64, Noise) {
     let block = ((squares + tuning::STROKE_OFFSET.powi(2)) / (count + 1.0)).sqrt();
     // Blocks at ends of bends have jumps: the median.
     let mut singles: Vec<_> = blocks.iter().map(|block| (0.5 * block.1).sqrt()).collect();
-    let single = sort::median_by(&mut singles, |&width| width).unwrap_or(0.0);
+    let single = sort::median(&mut singles).unwrap_or(0.0);
     (
         width,
         Noise {

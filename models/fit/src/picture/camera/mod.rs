@@ -3,6 +3,9 @@
 #[cfg(test)]
 mod tests;
 
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
+
 use dvp_core::render::{Compositing, EdgeLaw};
 use dvp_core::scene::{ColorRamp, ColorStop, RampKind};
 use dvp_core::{Drawing, ImageView, Paint, Real as _};
@@ -16,6 +19,7 @@ use crate::{Fit, FitError};
 
 /// The fit of a picture with even noise as one of the picture before: its loss is of that, and poses are as uncertain as the noise between the colors
 /// on both sides of their edges makes them.
+#[inline(never)]
 pub(super) fn with_noise(
     fit: Fit<f32>,
     evened: &Evened,
@@ -35,6 +39,7 @@ pub(super) fn with_noise(
 }
 
 /// A fit, or that of the picture in even light (`read`) if its light is uneven and that is better.
+#[inline(never)]
 pub(super) fn or_in_light(
     fit: Fit<f32>,
     image: ImageView<'_, f32>,
@@ -50,6 +55,7 @@ pub(super) fn or_in_light(
 }
 
 /// The fit of a picture in even light, painted in the light of the picture.
+#[inline(never)]
 fn with_light(
     mut fit: Fit<f32>,
     light: &Light,
@@ -94,6 +100,7 @@ fn outline(drawing: &Drawing<f32>, object: usize) -> &[[f32; 2]] {
 }
 
 /// What is seen of something of one color in even light: a ramp between its ends along the way in which light grows in its middle; none of nothing.
+#[inline(never)]
 fn seen(light: &Light, color: [f32; 3], outline: &[[f32; 2]], unit: f64) -> Option<ColorRamp<f32>> {
     let ends = |c: usize| {
         let values = outline.iter().map(|vertex| f64::from(vertex[c]));
