@@ -39,6 +39,12 @@ pub(crate) fn is_rounded<T: Real>(values: impl IntoIterator<Item = T>) -> bool {
     })
 }
 
+/// How often a picture says what it says: noise that is the same in all channels is no evidence three times over.
+pub(crate) fn repeated<T: Real>(image: &ImageView<'_, T>) -> f64 {
+    let [red, green, blue] = [0, 1, 2].map(|c| image.channel(c));
+    if red == green && red == blue { 3.0 } else { 1.0 }
+}
+
 /// The nearest color of whole steps.
 pub(crate) fn round_color<T: Real>(color: &mut [T; 3]) {
     for value in color {

@@ -14,6 +14,7 @@ use dvp_trace::tuning::{DOUBTFUL_STAINED, WIDE_BLUR};
 use dvp_trace::{Known, NoDrawing, PoseCovariance, Traced, noise};
 
 use super::PictureScratch;
+use super::chance;
 use super::likelier::{CLEARLY_WORSE, is_likelier, is_of_renderer, likeliest};
 use super::mend::Wrong;
 use super::spare::Spare;
@@ -137,17 +138,21 @@ pub(super) fn drawn(
         spare.leave_out(&mut traced, &drawing, &image, canvas)?;
         (painted, drawing) = canvas.paint(&traced.scene, size)?;
     }
+    // Such a profile has the pixel's area in it. The integral of F (1 - F), F the profile, is half the softness of the logistic curve, and the
+    // deviation of a blur over the root of pi.
+    let softness = FRAC_2_SQRT_PI * (traced.blur * traced.blur + 1.0 / 12.0).sqrt();
+    let soft = EdgeProfile::distance(f32::of(softness) / f32::of_usize(size.unit_px()));
+    let blurred = |scene: &Scene<f32>| Scene { edge: soft, ..scene.clone() };
+    if traced.noise > 0.0 {
+        let shown = if traced.blur > 0.0 { blurred(&traced.scene) } else { traced.scene.clone() };
+        chance::leave_out(&mut traced, &shown, &image, canvas)?;
+        (painted, drawing) = canvas.paint(&traced.scene, size)?;
+    }
     let mut best = of_painted(&traced.scene, &drawing, painted, image)?;
     let Traced { scene, covariances, bits, blur, .. } = traced;
     let (covariance, ambiguity) = doubt_of_poses(&covariances);
-    // Such a profile has the pixel's area in it. The integral of F (1 - F), F the profile, is half the softness of the logistic curve, and the
-    // deviation of a blur over the root of pi.
-    let blurred = (blur > 0.0).then(|| {
-        let softness = FRAC_2_SQRT_PI * (blur * blur + 1.0 / 12.0).sqrt();
-        let edge = EdgeProfile::distance(f32::of(softness) / f32::of_usize(image.size().unit_px()));
-        Scene { edge, ..scene }
-    });
-    if let Some(scene) = blurred {
+    if blur > 0.0 {
+        let scene = blurred(&scene);
         let (painted, drawing) = canvas.paint(&scene, size)?;
         let other = of_painted(&scene, &drawing, painted, image)?;
         if other.loss < best.loss {

@@ -15,6 +15,7 @@ use dvp_trace::noise::{DenoiseScratch, denoise_twice};
 use dvp_trace::regions::{Halo, merged_zones};
 
 use super::flat::FlatMap;
+use crate::colors::repeated;
 use crate::tuning::{
     HALO_COLOR, HALO_PIXELS, HALO_WIDTH_PX, MIN_REGION_PIXELS, SOFT_RINGS, STRIP_WIDTH_PX, ZONE_NOISE,
 };
@@ -84,12 +85,6 @@ pub(crate) fn read_flat<T: Real>(
     erode(&smooth, &scratch.zones, &mut scratch.labels, &mut scratch.eroded, deviation);
     restore_small(&mut scratch.zones, &scratch.labels, &mut scratch.eroded);
     map.set(image.size(), &scratch.eroded, SOFT);
-}
-
-/// How often a picture says what it says: noise that is the same in all channels is no evidence three times over.
-fn repeated<T: Real>(image: &ImageView<'_, T>) -> f64 {
-    let [red, green, blue] = [0, 1, 2].map(|c| image.channel(c));
-    if red == green && red == blue { 3.0 } else { 1.0 }
 }
 
 /// Frees zones from strips, from pixels beside another zone, and from those near a boundary that deviate from the color of
