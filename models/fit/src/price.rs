@@ -41,11 +41,6 @@ impl Prices {
         self.object * OBJECT_BITS
     }
 
-    /// Bits of an object with a shape of its own.
-    pub(crate) fn own_bits<T: Real>(&self, object: &Object<T>) -> f64 {
-        self.object_bits() + self.harmonic * COEFFICIENT_BITS * f64::of_usize(object.shape.number_count())
-    }
-
     /// Bits of an object whose shape is one of `bank` prototypes.
     pub(crate) fn known_object_bits(&self, bank: usize) -> f64 {
         self.object_bits() + choice_bits(bank)

@@ -18,7 +18,7 @@ const MOST_CUT_OFF: f64 = 1.713;
 /// Median of the absolute value of a normal variable of standard deviation 1.
 pub(super) const NORMAL_MEDIAN: f64 = 0.6745;
 /// Differences up to this far apart are equal: a small part of a step of 16 bits.
-const TIE: f64 = 1e-5;
+pub(super) const TIE: f64 = 1e-5;
 
 /// Standard deviation of the noise of a channel, from the median of second differences (a - b - c + d) / 2 over blocks of
 /// 2 x 2 pixels.

@@ -11,7 +11,7 @@ use num_traits::Float as _;
 
 use dvp_core::{Image, ImageView, sort};
 
-use super::level::{NORMAL_MEDIAN, middle, second_difference};
+use super::level::{NORMAL_MEDIAN, TIE, middle, second_difference};
 use super::means::{DenoiseSettings, denoise};
 use super::{DenoiseScratch, level_above_rounding};
 use crate::tuning::{DENOISE_LEFT, DENOISE_REACH, SHOT_MISSED, SHOT_RATIO};
@@ -20,6 +20,9 @@ use crate::tuning::{DENOISE_LEFT, DENOISE_REACH, SHOT_MISSED, SHOT_RATIO};
 const GROUPS: usize = 24;
 /// Least blocks of a group: where all channels are the same, a third of them tells its level within about 15 %.
 const LEAST_BLOCKS: usize = 192;
+/// Largest share of blocks without a difference: noise of the rounding of 8 bits, three quarters of a step, leaves a quarter of them without. More is of few
+/// colors.
+const MOST_EQUAL: f64 = 0.3;
 /// Most blocks looked at.
 const MOST_BLOCKS: usize = 24_576;
 /// Values that are fewer deviations from black or white are cut off there.
@@ -58,6 +61,10 @@ impl NoiseLaw {
     /// they have.
     fn of(image: &ImageView<'_, f32>) -> Option<Self> {
         let mut blocks = blocks(image);
+        let equal = blocks.iter().filter(|block| f64::from(block[1]) <= TIE).count();
+        if equal as f64 > MOST_EQUAL * blocks.len() as f64 {
+            return None;
+        }
         sort::ascending(&mut blocks, |block| f64::from(block[0]));
         let size = blocks.len().div_ceil(GROUPS).max(LEAST_BLOCKS);
         let groups: Vec<[f64; 2]> = blocks.chunks(size).filter_map(group).collect();

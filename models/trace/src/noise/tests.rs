@@ -189,6 +189,15 @@ fn noise_that_is_even_stays() {
 }
 
 #[test]
+fn few_colors_are_no_noise_that_grows() {
+    let mut image = single(&paint(lamp));
+    add_shot_noise(&mut image, 0.005, 100.0);
+    assert!(evened(&image.view()).is_some());
+    image.data_mut().iter_mut().for_each(|value| *value = (*value * 8.0).round() / 8.0);
+    assert!(evened(&image.view()).is_none());
+}
+
+#[test]
 fn textures_are_no_noise_that_grows() {
     // Waves on the upper half, of all values: more of them where it is brighter in some places, less in others.
     let mut image = single(&paint(|x, y| {

@@ -1,21 +1,25 @@
 //! Things of a drawing that was read under noise, which that noise explains as well.
 //!
-//! What is averaged keeps spots and stripes of it, and some become things. Such a thing brings the drawing nearer to the picture by less than it takes to
-//! say it.
+//! What is averaged keeps spots and stripes of it, and some become things. Such a thing brings the drawing nearer to the picture by less than a thing costs
+//! beside its outline.
+
+#[cfg(test)]
+mod tests;
 
 use alloc::vec;
 use alloc::vec::Vec;
 use core::f64::consts::LN_2;
 
 use dvp_core::render::ContourRenderer;
-use dvp_core::{ImageView, Object, Scene};
+use dvp_core::{ImageView, Scene};
 use dvp_trace::Traced;
+use dvp_trace::noise::noise_level;
+use dvp_trace::tuning::THING_BITS;
 
 use crate::FitError;
 use crate::colors::repeated;
 use crate::marginal_gain::squared_errors;
 use crate::paint::Canvas;
-use crate::price::Prices;
 
 /// Things that pay so many times what they cost by a first count, in whole pixels, are not asked again.
 const CLEARLY: f64 = 3.0;
@@ -28,13 +32,12 @@ pub(super) fn leave_out(
     image: &ImageView<'_, f32>,
     canvas: &mut Canvas<f32>,
 ) -> Result<(), FitError> {
-    // Squares to bits, at the noise of the picture.
-    let bits = 0.5 / (traced.noise * traced.noise * LN_2 * repeated(image));
-    let price = |object: &Object<f32>| Prices::default().own_bits(object);
+    // Squares to bits, at the noise of the picture: of textures more was averaged away, which they show.
+    let noise = f64::from(noise_level(image, &mut Vec::new())).min(traced.noise);
+    let bits = 0.5 / (noise * noise * LN_2 * repeated(image));
     let (painted, drawing) = canvas.paint(scene, image.size())?;
     let gains = squared_errors(&drawing, image, scene.compositing);
-    let is_asked: Vec<bool> =
-        scene.objects.iter().zip(gains).map(|(object, gain)| bits * gain < CLEARLY * price(object)).collect();
+    let is_asked: Vec<bool> = gains.into_iter().map(|gain| bits * gain < CLEARLY * THING_BITS).collect();
     if !is_asked.contains(&true) {
         return Ok(());
     }
@@ -54,9 +57,8 @@ pub(super) fn leave_out(
             gains[object] += squares(after.view().pixel(i)) - squares(before.view().pixel(i));
         }
     })?;
-    let is_left: Vec<bool> = (scene.objects.iter().zip(&is_asked).zip(gains))
-        .map(|((object, is_asked), gain)| !is_asked || bits * gain >= price(object))
-        .collect();
+    let is_left = is_asked.iter().zip(gains).map(|(is_asked, gain)| !is_asked || bits * gain >= THING_BITS);
+    let is_left: Vec<bool> = is_left.collect();
     let [mut of_objects, mut of_covariances] = [is_left.iter(), is_left.iter()];
     traced.scene.objects.retain(|_| of_objects.next() == Some(&true));
     traced.covariances.retain(|_| of_covariances.next() == Some(&true));
