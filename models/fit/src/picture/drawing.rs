@@ -143,7 +143,7 @@ pub(super) fn drawn(
     let softness = FRAC_2_SQRT_PI * (traced.blur * traced.blur + 1.0 / 12.0).sqrt();
     let soft = EdgeProfile::distance(f32::of(softness) / f32::of_usize(size.unit_px()));
     let blurred = |scene: &Scene<f32>| Scene { edge: soft, ..scene.clone() };
-    if traced.noise > 0.0 {
+    if !is_clear {
         let shown = if traced.blur > 0.0 { blurred(&traced.scene) } else { traced.scene.clone() };
         chance::leave_out(&mut traced, &shown, &image, canvas)?;
         (painted, drawing) = canvas.paint(&traced.scene, size)?;

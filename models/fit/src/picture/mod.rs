@@ -9,7 +9,7 @@
 //! | `mod` | [`fit_picture`]: the decision between the two fits |
 //! | `bank` | pictures whose shapes are known |
 //! | `camera` | noise that grows with the light, and light that is uneven |
-//! | `chance` | things of a noisy drawing that its noise explains as well |
+//! | `chance` | things of a spoiled drawing that noise, or single pixels, explain as well |
 //! | `contrast` | pictures that take a small part of the levels of their file |
 //! | `cut` | pictures that are not flat, as regions of one color |
 //! | `drawing` | a drawing, what was one before it was spoiled, or segments |

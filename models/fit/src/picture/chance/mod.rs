@@ -1,4 +1,4 @@
-//! Things of a drawing that was read under noise, which that noise explains as well.
+//! Things of a drawing that was read under noise, or a blur, which the noise or a dead pixel of a camera explains as well.
 //!
 //! What is averaged keeps spots and stripes of it, and some become things. Such a thing brings the drawing nearer to the picture by less than a thing costs
 //! beside its outline.
@@ -11,10 +11,10 @@ use alloc::vec::Vec;
 use core::f64::consts::LN_2;
 
 use dvp_core::render::ContourRenderer;
-use dvp_core::{ImageView, Scene};
+use dvp_core::{Image, ImageView, Scene};
 use dvp_trace::Traced;
-use dvp_trace::noise::noise_level;
-use dvp_trace::tuning::THING_BITS;
+use dvp_trace::noise::{ROUNDED, noise_level};
+use dvp_trace::tuning::{PIXEL_BITS, THING_BITS};
 
 use crate::FitError;
 use crate::colors::repeated;
@@ -24,7 +24,8 @@ use crate::paint::Canvas;
 /// Things that pay so many times what they cost by a first count, in whole pixels, are not asked again.
 const CLEARLY: f64 = 3.0;
 
-/// Leaves out of a drawing, painted with the edges of `scene`, what does not pay for itself.
+/// Leaves out of a drawing, painted with the edges of `scene`, what does not pay for itself. A pixel that is told as it is costs no more than that: a
+/// camera's dead ones are no things.
 #[inline(never)]
 pub(super) fn leave_out(
     traced: &mut Traced,
@@ -33,32 +34,37 @@ pub(super) fn leave_out(
     canvas: &mut Canvas<f32>,
 ) -> Result<(), FitError> {
     // Squares to bits, at the noise of the picture: of textures more was averaged away, which they show.
-    let noise = f64::from(noise_level(image, &mut Vec::new())).min(traced.noise);
+    let noise = f64::from(noise_level(image, &mut Vec::new())).min(traced.noise).max(ROUNDED);
     let bits = 0.5 / (noise * noise * LN_2 * repeated(image));
     let (painted, drawing) = canvas.paint(scene, image.size())?;
+    let before = painted.clone();
     let gains = squared_errors(&drawing, image, scene.compositing);
-    let is_asked: Vec<bool> = gains.into_iter().map(|gain| bits * gain < CLEARLY * THING_BITS).collect();
+    let renderer = ContourRenderer::new(scene.edge, scene.compositing);
+    let mut pixels = vec![0.0; gains.len()];
+    renderer.visit_coverage(&drawing, image.size(), &mut Default::default(), |object, _, coverage| {
+        pixels[object] += coverage.iter().map(|&share| f64::from(share)).sum::<f64>();
+    })?;
+    let most = gains.into_iter().zip(pixels).map(|(gain, pixels)| (bits * gain).min(PIXEL_BITS * pixels));
+    let is_asked: Vec<bool> = most.map(|most| most < CLEARLY * THING_BITS).collect();
     if !is_asked.contains(&true) {
         return Ok(());
     }
-    let before = painted.clone();
     let rest = scene.objects.iter().zip(&is_asked).filter(|(_, is_asked)| !**is_asked);
     let rest = Scene { objects: rest.map(|(object, _)| object.clone()).collect(), ..scene.clone() };
     let (after, _) = canvas.paint(&rest, image.size())?;
-    let mut gains = vec![0.0; is_asked.len()];
-    let renderer = ContourRenderer::new(scene.edge, scene.compositing);
+    let missed = |painted: &Image<f32>, i: usize| {
+        let (shown, seen) = (painted.view().pixel(i), image.pixel(i));
+        (bits * (0..3).map(|c| f64::from(shown[c] - seen[c]).powi(2)).sum::<f64>()).min(PIXEL_BITS)
+    };
+    let mut saved = vec![0.0; is_asked.len()];
     renderer.visit_coverage(&drawing, image.size(), &mut Default::default(), |object, first, coverage| {
-        if !is_asked[object] {
-            return;
-        }
-        for (i, _) in (first..).zip(coverage).filter(|(_, coverage)| **coverage > 0.0) {
-            let seen = image.pixel(i);
-            let squares = |shown: [f32; 3]| (0..3).map(|c| f64::from(shown[c] - seen[c]).powi(2)).sum::<f64>();
-            gains[object] += squares(after.view().pixel(i)) - squares(before.view().pixel(i));
+        if is_asked[object] {
+            let covered = (first..).zip(coverage).filter(|(_, coverage)| **coverage > 0.0);
+            saved[object] += covered.map(|(i, _)| missed(after, i) - missed(&before, i)).sum::<f64>();
         }
     })?;
-    let is_left = is_asked.iter().zip(gains).map(|(is_asked, gain)| !is_asked || bits * gain >= THING_BITS);
-    let is_left: Vec<bool> = is_left.collect();
+    let is_left: Vec<bool> =
+        is_asked.iter().zip(saved).map(|(is_asked, saved)| !is_asked || saved >= THING_BITS).collect();
     let [mut of_objects, mut of_covariances] = [is_left.iter(), is_left.iter()];
     traced.scene.objects.retain(|_| of_objects.next() == Some(&true));
     traced.covariances.retain(|_| of_covariances.next() == Some(&true));

@@ -1,7 +1,7 @@
 use alloc::vec;
 
 use dvp_core::shape::Rectangle;
-use dvp_core::{Image, ImageSize, Object, Pose};
+use dvp_core::{ImageSize, Object, Pose};
 use dvp_trace::Known;
 
 use super::*;
@@ -23,7 +23,11 @@ fn rectangle(middle: [f32; 2], size: [f32; 2], color: [f32; 3]) -> Object<f32> {
 /// A drawing under noise of a standard deviation of .05: a large square, and a spot of 7 pixels in a color that noise makes of those there, `more` standard
 /// deviations brighter; whether the spot is in the picture.
 fn read(more: f32, is_there: bool, is_gray: bool) -> usize {
-    let spot = rectangle([50.5, 48.5], [7.0, 1.0], [0.2 + 0.05 * more; 3]);
+    left(rectangle([50.5, 48.5], [7.0, 1.0], [0.2 + 0.05 * more; 3]), is_there, is_gray)
+}
+
+/// How many are left of a square and a spot.
+fn left(spot: Object<f32>, is_there: bool, is_gray: bool) -> usize {
     let square = rectangle([24.0, 24.0], [20.0, 20.0], [0.8, 0.8, 0.8]);
     let mut scene = Scene { objects: vec![square, spot], ..Scene::empty([0.2; 3]) };
     let mut canvas = Canvas::default();
@@ -55,4 +59,10 @@ fn what_noise_makes_is_left_out_and_what_is_there_stays() {
     // Noise that all channels share says it once: 7 pixels of 4 standard deviations are 81 bits, of 3 they are 45.
     assert_eq!(read(3.0, true, true), 1);
     assert_eq!(read(6.0, true, true), 2);
+}
+
+#[test]
+fn single_pixels_are_no_things() {
+    assert_eq!(left(rectangle([50.5, 48.5], [1.0, 1.0], [1.0; 3]), true, true), 1);
+    assert_eq!(left(rectangle([50.5, 48.5], [3.0, 3.0], [1.0; 3]), true, true), 2);
 }
