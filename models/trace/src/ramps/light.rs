@@ -22,10 +22,11 @@ use crate::tuning::{LEAST_LIGHT, LEAST_LIGHT_NOISES};
 /// Places along the shorter side at which a picture is looked at: several hundreds for every number.
 const PLACES: usize = 48;
 /// How far colors may be from the first guess, of 1, and by how much less from every next one.
-const FIRST_WIDTH: f64 = 0.25;
+const FIRST_WIDTH: f64 = 0.5;
 const NARROWER: f64 = 0.7;
-/// Rounds until the width is that of noise, and a few more.
+/// Rounds until the width is that of noise, and a few more; and those few.
 const ROUNDS: usize = 20;
+const FLAT_ROUNDS: usize = 5;
 /// Deviations of the noise within which a place shows the surface, and its least share of the places.
 const NEAR: f64 = 3.0;
 const LEAST_SHARE: f64 = 0.5;
@@ -130,7 +131,8 @@ impl Light {
 }
 
 impl Surface {
-    /// The surface that most places show: from their median on, those further off counting less and less.
+    /// The surface that most places show: from their median on, by squares that count less the further off they are, in the end those of noise alone
+    /// (Tukey's biweight).
     fn of(places: &[Sample], noise: f64, image: &ImageView<'_, f32>) -> Option<Self> {
         let sides = [image.size().width(), image.size().height()].map(|side| 0.5 * side as f64);
         let mut surface = Self { middle: sides, size: sides[0].max(sides[1]), numbers: [[0.0; 6]; 3] };
@@ -138,12 +140,15 @@ impl Surface {
             let mut values: Vec<f64> = places.iter().map(|(_, color)| color[c]).collect();
             numbers[0] = sort::median(&mut values)?;
         }
-        let mut width = FIRST_WIDTH;
-        for _ in 0..ROUNDS {
+        // Where most is of one color already, there is no way to go.
+        let is_near = |(point, color): &&Sample| difference(surface.at(*point), *color) < NEAR * noise;
+        let is_flat = places.iter().filter(is_near).count() as f64 >= LEAST_SHARE * places.len() as f64;
+        let (mut width, rounds) = if is_flat { (NEAR * noise, FLAT_ROUNDS) } else { (FIRST_WIDTH, ROUNDS) };
+        for _ in 0..rounds {
             let (mut matrix, mut right) = ([[0.0; 6]; 6], [[0.0; 6]; 3]);
             for &(point, color) in places {
                 let share = difference(surface.at(point), color) / width;
-                let weight = (1.0 + share * share).powi(-2);
+                let weight = (1.0 - share * share).max(0.0).powi(2);
                 let row = surface.row(point);
                 for i in 0..6 {
                     for j in 0..6 {

@@ -12,6 +12,7 @@ use dvp_core::{Drawing, ImageView, Paint, Real as _};
 use dvp_trace::noise::{self, Evened};
 use dvp_trace::ramps::Light;
 
+use super::likelier::is_of_renderer;
 use super::ramps::{AS_NEAR, better, put_under};
 use super::{PictureScratch, of_painted};
 use crate::paint::Canvas;
@@ -46,9 +47,9 @@ pub(super) fn or_in_light(
     scratch: &mut PictureScratch,
     read: impl FnOnce(ImageView<'_, f32>, &mut PictureScratch) -> Result<Fit<f32>, FitError>,
 ) -> Result<Fit<f32>, FitError> {
-    // Drawings that were read as they are have none.
+    // Drawings that were read as they are have none, nor has what the paper's renderer has painted.
     let is_drawing = fit.scene.edge.law == EdgeLaw::Area && fit.noise <= f32::of(noise::ROUNDED) && fit.loss <= AS_NEAR;
-    let light = if is_drawing { None } else { Light::of(&image, f64::from(fit.noise)) };
+    let light = if is_drawing || is_of_renderer(&fit) { None } else { Light::of(&image, f64::from(fit.noise)) };
     let Some(light) = light else { return Ok(fit) };
     let lit = read(light.image.view(), scratch)?;
     Ok(better(with_light(lit, &light, image, &mut scratch.canvas)?, fit))
