@@ -54,7 +54,7 @@ pub const SHOT_MISSED: f64 = 0.3;
 /// Least standard deviation of uneven light over a picture, of 1: clean flat colors are of one step of 256.
 pub const LEAST_LIGHT: f64 = 1.0 / 255.0;
 /// The same, in units of the noise, which hides less.
-pub const LEAST_LIGHT_NOISES: f64 = 0.4;
+pub const LEAST_LIGHT_NOISES: f64 = 0.2;
 
 /// What is averaged away, in units of the noise from pixel to pixel, one after the other as long as what is left has too many faces: noise alone, then
 /// texture. Of 642 drawings with noise, blur or a coder's marks none came to the second. Of scikit-image's photographs `coins` is 116 things without the

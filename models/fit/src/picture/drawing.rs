@@ -25,6 +25,8 @@ use crate::{Ambiguity, Fit, FitError, Fitter, StopReason};
 pub(super) const CLEARLY_WORSE_IN_NOISE: f32 = 1.02;
 /// Pictures of more things are no scenes of the paper's renderer, whatever their edges are: segments, which take long for many, are not asked for.
 const FEW: usize = 16;
+/// The same where there is noise: outlines that it hides leave slivers beside them, and segments none.
+const FEW_IN_NOISE: usize = 48;
 /// Share of a picture of which a drawing that leaves more is none.
 const MOSTLY: f64 = 0.5;
 
@@ -74,7 +76,8 @@ pub(super) fn spoiled_or_segments(
     // The paper's renderer has edges of its own, and few things.
     let is_few = matches!(reason, NoDrawing::Soft { faces, .. } if *faces <= FEW);
     let mut traced = if is_few { None } else { unspoiled(image, known) };
-    if let Some(traced) = traced.take_if(|traced| traced.scene.objects.len() > FEW) {
+    let few = |traced: &Traced| if traced.noise > 0.0 { FEW_IN_NOISE } else { FEW };
+    if let Some(traced) = traced.take_if(|traced| traced.scene.objects.len() > few(traced)) {
         let drawn = drawn(traced, image, scratch)?;
         return settled(fitter, drawn, image, scratch);
     }
