@@ -194,6 +194,9 @@ fn what_shows_in_two_places_is_one_ramp() {
     assert_eq!(sides[0], sides[1]);
 }
 
+/// What is seen of a color at a place.
+type Lit<'a> = &'a dyn Fn(f32, [f32; 2]) -> f32;
+
 /// Places of a picture as shares of its side, from -1/2 to 1/2.
 fn shares(i: usize) -> [f32; 2] {
     [i % SIDE, i / SIDE].map(|at| (at as f32 + 0.5) / SIDE as f32 - 0.5)
@@ -217,7 +220,7 @@ fn in_light(lit: impl Fn(f32, [f32; 2]) -> f32) -> Image<f32> {
 #[test]
 fn uneven_light_is_taken_out_as_it_came() {
     let even = in_light(|color, _| color);
-    let lights: [(&str, &dyn Fn(f32, [f32; 2]) -> f32); 3] = [
+    let lights: [(&str, Lit); 3] = [
         ("added along a line", &|color, [x, y]| color + 0.1 * x - 0.07 * y),
         ("added about the middle", &|color, [x, y]| color - 0.25 * (x * x + y * y)),
         ("multiplied", &|color, [x, y]| color * (1.0 - 0.6 * (x * x + y * y) + 0.1 * x)),

@@ -16,6 +16,7 @@ use super::likelier::is_of_renderer;
 use super::ramps::{AS_NEAR, better, put_under};
 use super::{PictureScratch, of_painted};
 use crate::paint::Canvas;
+use crate::tuning::UNEXPLAINED_SHARE;
 use crate::{Fit, FitError};
 
 /// The fit of a picture with even noise as one of the picture before: its loss is of that, and poses are as uncertain as the noise between the colors
@@ -47,9 +48,12 @@ pub(super) fn or_in_light(
     scratch: &mut PictureScratch,
     read: impl FnOnce(ImageView<'_, f32>, &mut PictureScratch) -> Result<Fit<f32>, FitError>,
 ) -> Result<Fit<f32>, FitError> {
-    // Drawings that were read as they are have none, nor has what the paper's renderer has painted.
-    let is_drawing = fit.scene.edge.law == EdgeLaw::Area && fit.noise <= f32::of(noise::ROUNDED) && fit.loss <= AS_NEAR;
-    let light = if is_drawing || is_of_renderer(&fit) { None } else { Light::of(&image, f64::from(fit.noise)) };
+    // What was read as it is has none: drawings, and what the paper's renderer has painted.
+    let is_clean = fit.noise <= f32::of(noise::ROUNDED);
+    let is_drawing = is_clean && fit.scene.edge.law == EdgeLaw::Area;
+    let is_near = if is_clean { fit.loss <= AS_NEAR } else { fit.unexplained <= UNEXPLAINED_SHARE };
+    let is_read = is_near && (is_drawing || is_of_renderer(&fit));
+    let light = if is_read { None } else { Light::of(&image, f64::from(fit.noise)) };
     let Some(light) = light else { return Ok(fit) };
     let lit = read(light.image.view(), scratch)?;
     Ok(better(with_light(lit, &light, image, &mut scratch.canvas)?, fit))

@@ -14,6 +14,9 @@ const SIDE: usize = 96;
 /// A cell and what it is: its middle and radius, pixels, and its color.
 type Cell = ([f32; 2], f32, f32);
 
+/// What is seen of a color at a place.
+type Lit<'a> = &'a dyn Fn(f32, [f32; 2]) -> f32;
+
 const CELLS: [Cell; 5] = [
     ([22.0, 25.0], 11.0, 0.55),
     ([63.0, 20.0], 8.0, 0.7),
@@ -56,7 +59,7 @@ fn with_noise_of(image: &Image<f32>, read: f64, photons: f64, seed: u64) -> Imag
         let normal = (0..12).map(|_| random.unit()).sum::<f64>() - 6.0;
         let seen = value + (read * read + value / photons).sqrt() * normal;
         let rounded = (255.0 * seen.clamp(0.0, 1.0)).round() / 255.0;
-        (0..3).for_each(|c| values[c * pixels + i] = rounded as f32);
+        (0..3).for_each(|c| values[c * pixels + i] = f32::of(rounded));
     }
     Image::from_planar(image.size(), values).unwrap()
 }
@@ -90,7 +93,7 @@ fn noise_that_grows_with_the_light_makes_no_things() {
 
 #[test]
 fn uneven_light_makes_no_things() {
-    let lights: [(&str, &dyn Fn(f32, [f32; 2]) -> f32); 3] = [
+    let lights: [(&str, Lit); 3] = [
         ("along a line", &|color, [x, y]| color + 0.08 * x + 0.06 * y),
         ("about the middle", &|color, [x, y]| color - 0.2 * (x * x + y * y)),
         ("multiplied", &|color, [x, y]| color * (1.0 - 0.6 * (x * x + y * y))),
@@ -122,7 +125,7 @@ fn poses_are_as_uncertain_as_the_noise_at_their_edges() {
     for (k, (before, after)) in fit.covariance.iter().zip(&restored.covariance).enumerate() {
         // Half way between a cell and the ground there is more noise than on most of the picture.
         let middle = 0.5 * (fit.scene.objects[k].color()[0] + fit.scene.background[0]);
-        let is = (0.005_f32.powi(2) + middle / 300.0) / (evened.level as f32).powi(2);
+        let is = (0.005_f32.powi(2) + middle / 300.0) / f32::of(evened.level).powi(2);
         assert!((after[0] / before[0] / is - 1.0).abs() < 0.4, "{} for {is}", after[0] / before[0]);
     }
 }

@@ -1,7 +1,7 @@
 use alloc::vec;
 
 use dvp_core::shape::Rectangle;
-use dvp_core::{ImageSize, Object, Pose};
+use dvp_core::{ImageSize, Object, Pose, Real as _};
 use dvp_trace::Known;
 
 use super::*;
@@ -39,7 +39,7 @@ fn left(spot: Object<f32>, is_there: bool, is_gray: bool) -> usize {
     for i in 0..3 * pixels {
         let normal = (0..12).map(|_| random.unit()).sum::<f64>() - 6.0;
         image.data_mut()[i] =
-            if is_gray && i >= pixels { image.data()[i - pixels] } else { image.data()[i] + 0.05 * normal as f32 };
+            if is_gray && i >= pixels { image.data()[i - pixels] } else { image.data()[i] + 0.05 * f32::of(normal) };
     }
     let mut traced = dvp_trace::trace(&image.view(), &Known::default().with_spoiled(true)).unwrap();
     scene.edge = traced.scene.edge;
