@@ -82,7 +82,7 @@ fn a_picture_of_nothing_says_so() {
 fn a_picture_that_is_no_better_than_flat_says_so() {
     let folder = tempfile::tempdir().unwrap();
     // A smooth spiral of two arms.
-    let wave = |x: f64, y: f64| (0.5 * x.hypot(y) + 2.0 * y.atan2(x)).sin();
+    let wave = |x: f64, y: f64| (0.8 * x.hypot(y) + 2.0 * y.atan2(x)).sin();
     let value = |x: u32, y: u32| 127.5 + 127.5 * wave(f64::from(x) - 47.5, f64::from(y) - 47.5);
     let spiral = ImageBuffer::from_fn(96, 96, |x, y| Rgb([value(x, y).round() as u8; 3]));
     let said = fitted(folder.path(), "spiral.png", &DynamicImage::from(spiral));

@@ -6,8 +6,6 @@ use core::cmp::Ordering;
 
 use dvp_core::geometry::DisjointSets;
 use dvp_core::{ImageView, Real, sort};
-#[cfg(not(feature = "std"))]
-use num_traits::Float as _;
 
 use super::Halo;
 

@@ -54,7 +54,8 @@ pub(super) fn leave_out(
     let (after, _) = canvas.paint(&rest, image.size())?;
     let missed = |painted: &Image<f32>, i: usize| {
         let (shown, seen) = (painted.view().pixel(i), image.pixel(i));
-        (bits * (0..3).map(|c| f64::from(shown[c] - seen[c]).powi(2)).sum::<f64>()).min(PIXEL_BITS)
+        let off = [0, 1, 2].map(|c| f64::from(shown[c] - seen[c]));
+        (bits * off.iter().map(|off| off * off).sum::<f64>()).min(PIXEL_BITS)
     };
     let mut saved = vec![0.0; is_asked.len()];
     renderer.visit_coverage(&drawing, image.size(), &mut Default::default(), |object, first, coverage| {
