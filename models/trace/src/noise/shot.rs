@@ -25,8 +25,8 @@ const LEAST_BLOCKS: usize = 192;
 const MOST_EQUAL: f64 = 0.3;
 /// Most blocks looked at.
 const MOST_BLOCKS: usize = 24_576;
-/// Values that are fewer deviations from black or white are cut off there.
-const CUT_OFF: f64 = 2.5;
+/// Largest share of a group's blocks with black or white in them: where there are more, these cut the noise off.
+const MOST_CUT_OFF: f64 = 0.1;
 
 /// The variance of a channel's noise as a line over its value.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,11 +61,12 @@ impl NoiseLaw {
     /// they have.
     fn of(image: &ImageView<'_, f32>) -> Option<Self> {
         let mut blocks = blocks(image);
-        let equal = blocks.iter().filter(|block| f64::from(block[1]) <= TIE).count();
-        if equal as f64 > MOST_EQUAL * blocks.len() as f64 {
+        let whole = || blocks.iter().filter(|block| !block.is_cut_off);
+        let equal = whole().filter(|block| f64::from(block.difference) <= TIE).count();
+        if equal as f64 > MOST_EQUAL * whole().count() as f64 {
             return None;
         }
-        sort::ascending(&mut blocks, |block| f64::from(block[0]));
+        sort::ascending(&mut blocks, |block| f64::from(block.value));
         let size = blocks.len().div_ceil(GROUPS).max(LEAST_BLOCKS);
         let groups: Vec<[f64; 2]> = blocks.chunks(size).filter_map(group).collect();
         // The line that most groups are near to: those with edges have more.
@@ -104,34 +105,46 @@ impl NoiseLaw {
     }
 }
 
-/// Mean and second difference of blocks of 2 x 2 values, of all channels, but those with black or white in them.
-fn blocks(image: &ImageView<'_, f32>) -> Vec<[f32; 2]> {
+/// 2 x 2 values of a channel.
+#[derive(Clone, Copy, Debug)]
+struct Block {
+    /// Their mean.
+    value: f32,
+    /// Their second difference, without its sign.
+    difference: f32,
+    /// Whether one of them is black or white.
+    is_cut_off: bool,
+}
+
+/// Blocks of all channels.
+fn blocks(image: &ImageView<'_, f32>) -> Vec<Block> {
     let (width, height) = (image.size().width(), image.size().height());
     let step = (3 * (width / 2) * (height / 2)).div_ceil(MOST_BLOCKS).max(1);
     let mut blocks = Vec::new();
     for channel in [0, 1, 2].map(|c| image.channel(c)) {
         for lines in channel.chunks_exact(2 * width).step_by(step) {
             let (above, below) = lines.split_at(width);
-            for (a, b) in above.chunks_exact(2).zip(below.chunks_exact(2)) {
-                if a.iter().chain(b).all(|&value| value > 0.0 && value < 1.0) {
-                    blocks.push([0.25 * (a[0] + a[1] + b[0] + b[1]), second_difference(a, b)]);
-                }
-            }
+            blocks.extend(above.chunks_exact(2).zip(below.chunks_exact(2)).map(|(a, b)| Block {
+                value: 0.25 * (a[0] + a[1] + b[0] + b[1]),
+                difference: second_difference(a, b),
+                is_cut_off: a.iter().chain(b).any(|&value| value <= 0.0 || value >= 1.0),
+            }));
         }
     }
     blocks
 }
 
 /// Mean value and variance of the noise of alike blocks; none of few, or where it is cut off.
-fn group(blocks: &[[f32; 2]]) -> Option<[f64; 2]> {
-    if blocks.len() < LEAST_BLOCKS {
+fn group(blocks: &[Block]) -> Option<[f64; 2]> {
+    let whole = || blocks.iter().filter(|block| !block.is_cut_off);
+    let count = whole().count();
+    if blocks.len() < LEAST_BLOCKS || ((blocks.len() - count) as f64) > MOST_CUT_OFF * blocks.len() as f64 {
         return None;
     }
-    let mut differences: Vec<f32> = blocks.iter().map(|block| block[1]).collect();
+    let mut differences: Vec<f32> = whole().map(|block| block.difference).collect();
     let deviation = f64::from(middle(&mut differences)) / NORMAL_MEDIAN;
-    let value = blocks.iter().map(|block| f64::from(block[0])).sum::<f64>() / blocks.len() as f64;
-    let is_whole = deviation > 0.0 && (CUT_OFF * deviation..1.0 - CUT_OFF * deviation).contains(&value);
-    is_whole.then_some([value, deviation * deviation])
+    let value = whole().map(|block| f64::from(block.value)).sum::<f64>() / count as f64;
+    (deviation > 0.0).then_some([value, deviation * deviation])
 }
 
 /// The picture with noise of one level, that which [`noise_level`](super::noise_level) tells of it; none if its noise does not grow with the value
