@@ -152,7 +152,8 @@ fn of_camera(
         camera::or_in_light(fit, image, scratch, |even, scratch| fit_flat(fitter, even, false, known, scratch))
     };
     // A coder has taken away what noise would tell of the light.
-    match noise::evened(&image).filter(|_| !known.coded) {
+    let evened = if known.coded { None } else { noise::evened(&image) };
+    match evened {
         Some(evened) => camera::with_noise(read(evened.image.view())?, &evened, image, &mut scratch.canvas),
         None => read(image),
     }

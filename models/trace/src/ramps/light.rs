@@ -24,7 +24,7 @@ const PLACES: usize = 48;
 /// How far colors may be from the first guess, of 1, and by how much less from every next one.
 const FIRST_WIDTH: f64 = 0.5;
 const NARROWER: f64 = 0.7;
-/// Rounds until the width is that of noise, and a few more; and those few.
+/// Rounds until the width is that of noise, and a few more; rounds where it is from the beginning.
 const ROUNDS: usize = 20;
 const FLAT_ROUNDS: usize = 5;
 /// Deviations of the noise within which a place shows the surface, and its least share of the places.
