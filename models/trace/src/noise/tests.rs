@@ -189,18 +189,6 @@ fn noise_that_is_even_stays() {
 }
 
 #[test]
-fn noise_that_black_cuts_off_is_even_before_that() {
-    // A gray square on black, and on nearly black.
-    for ground in [0.0, 0.02] {
-        let mut image =
-            single(&paint(|x, y| if x.abs_diff(32).max(y.abs_diff(32)) < 18 { [0.5, 0.4, 0.6] } else { [ground; 3] }));
-        add_noise(&mut image, 0.05);
-        image.data_mut().iter_mut().for_each(|value| *value = value.clamp(0.0, 1.0));
-        assert!(evened(&image.view()).is_none(), "{ground}");
-    }
-}
-
-#[test]
 fn few_colors_are_no_noise_that_grows() {
     let mut image = single(&paint(lamp));
     add_shot_noise(&mut image, 0.005, 100.0);
