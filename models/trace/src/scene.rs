@@ -36,6 +36,8 @@ pub struct PoseCovariance {
     pub numbers: [[f64; 5]; 5],
     /// Whether it looks alike at every angle.
     pub is_round: bool,
+    /// Which of the picture's heaps, things of one color that have run together, it lies in, if it lies in one.
+    pub heap: Option<usize>,
 }
 
 /// What is known of the pose of a layer's object, if it is a whole outline.
@@ -61,7 +63,7 @@ fn covariance(layer: &Layer, unit: f64) -> Option<PoseCovariance> {
         rows.map(|(row, by)| by * row.iter().zip(other).map(|(value, by)| value * by).sum::<f64>()).sum()
     };
     let numbers = changes.each_ref().map(|one| changes.each_ref().map(|other| entry(one, other)));
-    Some(PoseCovariance { numbers, is_round: count == 3 })
+    Some(PoseCovariance { numbers, is_round: count == 3, heap: layer.heap })
 }
 
 /// The object of a layer; none if it has no outline.

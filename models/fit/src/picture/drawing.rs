@@ -1,25 +1,21 @@
 //! The fit of a picture as a drawing, as what it was before it was spoiled, or as segments: the likeliest.
 
-use alloc::vec::Vec;
-use core::f64::consts::FRAC_2_SQRT_PI;
-
-#[cfg(not(feature = "std"))]
-use num_traits::Float as _;
-
 use dvp_core::loss::{ImagePair, Loss as _};
-use dvp_core::render::{EdgeLaw, EdgeProfile, PixelLoss};
+use dvp_core::render::{EdgeLaw, PixelLoss};
 use dvp_core::{Drawing, Image, ImageView, Real as _, Scene};
 use dvp_trace::ramps::are_wide;
 use dvp_trace::tuning::{DOUBTFUL_STAINED, WIDE_BLUR};
-use dvp_trace::{Known, NoDrawing, PoseCovariance, Traced, noise};
+use dvp_trace::{Known, NoDrawing, Traced, noise};
 
 use super::PictureScratch;
+use super::blurred::{self, blurred};
 use super::chance;
+use super::doubts;
 use super::likelier::{CLEARLY_WORSE, is_likelier, is_of_renderer, likeliest};
 use super::mend::Wrong;
 use super::spare::Spare;
 use crate::tuning::NOT_FLAT_SHARE;
-use crate::{Ambiguity, Fit, FitError, Fitter, StopReason};
+use crate::{Fit, FitError, Fitter, StopReason};
 
 /// [`CLEARLY_WORSE`] in noise, whose own mean is known to half a percent of it at 64 x 64 pixels.
 pub(super) const CLEARLY_WORSE_IN_NOISE: f32 = 1.02;
@@ -141,21 +137,18 @@ pub(super) fn drawn(
         spare.leave_out(&mut traced, &drawing, &image, canvas)?;
         (painted, drawing) = canvas.paint(&traced.scene, size)?;
     }
-    // Such a profile has the pixel's area in it. The integral of F (1 - F), F the profile, is half the softness of the logistic curve, and the
-    // deviation of a blur over the root of pi.
-    let softness = FRAC_2_SQRT_PI * (traced.blur * traced.blur + 1.0 / 12.0).sqrt();
-    let soft = EdgeProfile::distance(f32::of(softness) / f32::of_usize(size.unit_px()));
-    let blurred = |scene: &Scene<f32>| Scene { edge: soft, ..scene.clone() };
+    let unit_px = size.unit_px();
     if !is_clear {
-        let shown = if traced.blur > 0.0 { blurred(&traced.scene) } else { traced.scene.clone() };
+        let shown = if traced.blur > 0.0 { blurred(&traced.scene, traced.blur, unit_px) } else { traced.scene.clone() };
         chance::leave_out(&mut traced, &shown, &image, canvas)?;
         (painted, drawing) = canvas.paint(&traced.scene, size)?;
     }
     let mut best = of_painted(&traced.scene, &drawing, painted, image)?;
     let Traced { scene, covariances, bits, blur, .. } = traced;
-    let (covariance, ambiguity) = doubt_of_poses(&covariances);
+    let (covariance, mut ambiguity) = doubts::of_poses(&covariances);
+    ambiguity.extend(doubts::merged(&drawing, &covariances));
     if blur > 0.0 {
-        let scene = blurred(&scene);
+        let scene = blurred::nearest(blurred(&scene, blur, unit_px), image, canvas)?;
         let (painted, drawing) = canvas.paint(&scene, size)?;
         let other = of_painted(&scene, &drawing, painted, image)?;
         if other.loss < best.loss {
@@ -181,22 +174,4 @@ pub(super) fn of_painted(
 /// side beyond edges, filters that sharpen too little.
 pub(super) fn leaves_doubt(traced: &Traced) -> bool {
     traced.stained.abs() > DOUBTFUL_STAINED
-}
-
-/// What is known of poses as a fit says it: covariances of (x, y, log scale, rotation, log stretch), NaN where nothing is known, and which
-/// objects look alike at every angle.
-fn doubt_of_poses(known: &[Option<PoseCovariance>]) -> (Vec<[f32; 25]>, Vec<Ambiguity>) {
-    if known.iter().all(Option::is_none) {
-        return (Vec::new(), Vec::new());
-    }
-    let mut ambiguity = Vec::new();
-    let covariance = known.iter().enumerate().map(|(object, known)| {
-        let Some(known) = known else { return [f32::NAN; 25] };
-        if known.is_round {
-            ambiguity.push(Ambiguity::Symmetry { object, order: 0 });
-        }
-        core::array::from_fn(|k| f32::of(known.numbers[k / 5][k % 5]))
-    });
-    let covariance = covariance.collect();
-    (covariance, ambiguity)
 }

@@ -10,11 +10,14 @@ use dvp_trace::tuning::CODED_MIX;
 use super::parts::off;
 use crate::paint::Canvas;
 use crate::tuning::NOT_FLAT_SHARE;
-use crate::{Fit, FitError, scene_bits};
+use crate::{Ambiguity, Fit, FitError, scene_bits};
 
 /// Where two fits are of different kinds, the likelier one is taken, unless it misses the picture by so many times as much as the other one:
 /// ringing is read as faces, which come nearer to it but are none, and outlines that are free come nearer than shapes that are known.
 pub(super) const CLEARLY_WORSE: f32 = 2.0;
+
+/// Of so many objects one that has run together with others makes them many: a pair among six.
+const MANY: usize = 3;
 
 /// Whether segments explain a picture as the paper's renderer paints, which no drawing is: by its edges, or by colors that mix.
 pub(super) fn is_of_renderer(segments: &Fit<f32>) -> bool {
@@ -44,10 +47,20 @@ pub(super) fn likeliest(segments: Fit<f32>, drawn: Fit<f32>, factor: f32) -> Fit
     if is_drawing { drawn } else { segments }
 }
 
+/// Which fit has more things. Where many of them have run together, their outlines are one thing of many numbers to one fit and many of few to the
+/// other: what has more things then but takes fewer bits is as much.
+fn amount(one: &Fit<f32>, other: &Fit<f32>) -> Ordering {
+    let things = one.scene.objects.len().cmp(&other.scene.objects.len());
+    let more = if things == Ordering::Less { other } else { one };
+    let merged = more.ambiguity.iter().filter(|ambiguity| matches!(ambiguity, Ambiguity::Merged { .. })).count();
+    let bits = scene_bits(&one.scene, 0).total_cmp(&scene_bits(&other.scene, 0));
+    if MANY * merged >= more.scene.objects.len() && bits != things { Ordering::Equal } else { things }
+}
+
 /// Whether a fit is likelier than another one: with fewer things unless it is clearly farther from the picture (`factor` times), with more if it is
 /// clearly nearer, with as many if it is not farther than `as_many` times.
 pub(super) fn is_likelier(one: &Fit<f32>, other: &Fit<f32>, as_many: f32, factor: f32) -> bool {
-    match one.scene.objects.len().cmp(&other.scene.objects.len()) {
+    match amount(one, other) {
         Ordering::Less => one.loss <= factor * other.loss,
         Ordering::Equal => one.loss <= as_many * other.loss,
         Ordering::Greater => factor * one.loss < other.loss,

@@ -8,10 +8,12 @@
 //! |---|---|
 //! | `mod` | [`fit_picture`]: the decision between the two fits |
 //! | `bank` | pictures whose shapes are known |
+//! | `blurred` | a drawing with the edges of a blur |
 //! | `camera` | noise that grows with the light, and light that is uneven |
 //! | `chance` | things of a spoiled drawing that noise, or single pixels, explain as well |
 //! | `contrast` | pictures that take a small part of the levels of their file |
 //! | `cut` | pictures that are not flat, as regions of one color |
+//! | `doubts` | what a drawing leaves open |
 //! | `drawing` | a drawing, what was one before it was spoiled, or segments |
 //! | `ground` | [`Ground`]: the color that transparent pictures are put over |
 //! | `likelier` | which of two fits the picture is |
@@ -28,10 +30,12 @@
 //! those of the command, which calls it.
 
 mod bank;
+mod blurred;
 mod camera;
 mod chance;
 mod contrast;
 mod cut;
+mod doubts;
 mod drawing;
 mod ground;
 mod likelier;

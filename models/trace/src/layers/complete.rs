@@ -7,7 +7,7 @@ use core::cell::{Cell, OnceCell, RefCell};
 
 use dvp_core::Vec2;
 use dvp_core::geometry::LineSegment;
-use dvp_core::shape::{PathRing, Segment};
+use dvp_core::shape::{FillRule, PathRing, Segment};
 use dvp_core::sort;
 
 use super::join::Group;
@@ -90,6 +90,8 @@ pub(super) struct Completed {
     pub(super) bits: f64,
     /// Whether they cover what they should, and nothing else; false for the last resort.
     pub(super) agrees: bool,
+    /// Whether each of them is a thing by itself; else they are one, and fill by the even-odd rule.
+    pub(super) are_things: bool,
     /// The sides of the polygons that they are painted as, once asked for.
     pub(super) sides: OnceCell<Vec<LineSegment<f64>>>,
 }
@@ -106,7 +108,7 @@ impl Completed {
     /// Two layers as one that covers what both do.
     pub(super) fn with(&self, other: &Self) -> Self {
         let outlines = self.outlines.iter().chain(&other.outlines).cloned().collect();
-        Self { outlines, bits: self.bits + other.bits, agrees: self.agrees && other.agrees, sides: OnceCell::new() }
+        Self { bits: self.bits + other.bits, ..Self::new(outlines, self.agrees && other.agrees) }
     }
 
     /// Whether it is a thing as people draw them: figures, and paths that are parallelograms, as rectangles with a hidden side may be.
@@ -125,12 +127,12 @@ impl Completed {
 
     /// Nothing to complete.
     pub(super) fn none() -> Self {
-        Self { outlines: Vec::new(), bits: 0.0, agrees: true, sides: OnceCell::new() }
+        Self::new(Vec::new(), true)
     }
 
     pub(super) fn new(outlines: Vec<Outline>, agrees: bool) -> Self {
         let bits = outlines.iter().map(|outline| outline.bits + outline.misfit).sum();
-        Self { outlines, bits, agrees, sides: OnceCell::new() }
+        Self { outlines, bits, agrees, are_things: false, sides: OnceCell::new() }
     }
 }
 
@@ -330,11 +332,21 @@ impl Completion<'_> {
 
     /// Whether outlines cover all of the faces of a place and hide nothing; else the pixels that are wrong.
     pub(super) fn check(&self, outlines: &[Outline], place: &Place<'_>) -> Result<(), Vec<[usize; 2]>> {
+        self.check_filled(outlines, FillRule::EvenOdd, place)
+    }
+
+    /// The same for outlines that fill by some rule.
+    pub(super) fn check_filled(
+        &self,
+        outlines: &[Outline],
+        fill: FillRule,
+        place: &Place<'_>,
+    ) -> Result<(), Vec<[usize; 2]>> {
         let polygons: Vec<Vec<[f64; 2]>> = outlines.iter().filter_map(raster::polygon).collect();
         if polygons.is_empty() {
             return Err(Vec::new());
         }
-        raster::check(self.partition, &polygons, place.faces, |face| !place.is_behind(face))
+        raster::check(self.partition, (&polygons, fill), place.faces, |face| !place.is_behind(face))
     }
 }
 

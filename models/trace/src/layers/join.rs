@@ -7,7 +7,7 @@ use alloc::vec::Vec;
 
 use dvp_core::Vec2;
 use dvp_core::geometry::{DisjointSets, LineSegment};
-use dvp_core::shape::Segment;
+use dvp_core::shape::{FillRule, Segment};
 use dvp_core::sort;
 
 use super::complete::{Completed, Completion};
@@ -119,7 +119,7 @@ impl Group {
             let next = polygon.iter().cycle().skip(1);
             polygon.iter().zip(next).all(|(&from, &to)| is_seen(from.into(), to.into()))
         });
-        all_seen && raster::check(completion.partition, &polygons, &self.faces, |_| true).is_ok()
+        all_seen && raster::check(completion.partition, (&polygons, FillRule::EvenOdd), &self.faces, |_| true).is_ok()
     }
 
     /// Both as one, at the place of the hindmost in the order, with the bits that are saved; none if that is no shorter.

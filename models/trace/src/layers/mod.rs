@@ -16,6 +16,7 @@
 //! | `complete` | outlines of what is painted together, in an order |
 //! | `lead` | outlines through what is seen, led around what they must not hide |
 //! | `repeat` | what is another thing again, elsewhere and in another size |
+//! | `overlap` | round things of one color that lie on one another |
 //! | `frame` | the square that a pen has drawn and others hide in part |
 //! | `template` | how an outline lies on what is seen of another thing |
 //! | `swap` | who lies in front, once that is known |
@@ -31,6 +32,7 @@ mod lead;
 mod link;
 mod memo;
 mod order;
+mod overlap;
 mod pen;
 mod raster;
 mod repeat;
@@ -42,6 +44,7 @@ mod template;
 mod visible;
 mod walk;
 
+use alloc::vec;
 use alloc::vec::Vec;
 use core::cell::RefCell;
 
@@ -68,6 +71,8 @@ pub struct Layer {
     pub form: Form,
     /// The faces that are seen of it; none of a line that was taken out before the picture was cut into faces.
     pub faces: Vec<u32>,
+    /// Which of the heaps of the picture, things of one color that have run together, it lies in, if it lies in one.
+    pub heap: Option<usize>,
     /// Description length of the form, and of what it misses, bits.
     pub bits: f64,
 }
@@ -100,7 +105,11 @@ impl Layers {
     /// The same with what each of the things costs beside its form.
     #[must_use]
     pub fn bits_of_things(&self) -> f64 {
-        self.bits() + tuning::THING_BITS * self.layers.len() as f64
+        // What one heap is cut into are things that no reading has to find.
+        let mut heaps: Vec<usize> = self.layers.iter().filter_map(|layer| layer.heap).collect();
+        let alone = self.layers.len() - heaps.len();
+        heaps.dedup();
+        self.bits() + tuning::THING_BITS * (alone + heaps.len()) as f64
     }
 }
 
@@ -135,7 +144,8 @@ pub(crate) fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<C
     let mut layers = Vec::new();
     let mut groups = join::painted(&mut completion);
     repeat::repeat(&mut completion, &mut groups);
-    for join::Group { faces: group, completed } in groups {
+    overlap::part(&completion, &mut groups);
+    for (heap, join::Group { faces: group, completed }) in groups.into_iter().enumerate() {
         let color = partition.rgb(partition.color(group[0]));
         match completion.pen(&group) {
             Some(pen) => {
@@ -144,13 +154,21 @@ pub(crate) fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<C
                     color,
                     form: Form::Stroked(stroke.clone()),
                     faces: group.clone(),
+                    heap: None,
                     bits,
                 }));
             }
+            None if completed.are_things => layers.extend(completed.outlines.iter().map(|outline| Layer {
+                color,
+                form: Form::Filled(vec![outline.clone()]),
+                faces: group.clone(),
+                heap: Some(heap),
+                bits: outline.bits + outline.misfit,
+            })),
             None => {
                 let outlines = completed.outlines.clone();
                 let bits = outlines.iter().map(|outline| outline.bits + outline.misfit).sum();
-                layers.push(Layer { color, form: Form::Filled(outlines), faces: group, bits });
+                layers.push(Layer { color, form: Form::Filled(outlines), faces: group, heap: None, bits });
             }
         }
     }
@@ -161,7 +179,13 @@ pub(crate) fn layers(partition: &Partition, rings: &[Vec<Ring>], matte: Option<C
         let points: usize = stroke.rings.iter().map(|ring| ring.points.len()).sum();
         // Where it passes and how wide it is can be seen, where it ends less so.
         let bits = (2 * points - 1) as f64 * ruler.number(tuning::THIN_SIGMA) + 2.0 * ruler.number(tuning::CRACK_SIGMA);
-        Layer { color: partition.rgb(color), form: Form::Stroked(stroke), faces: Vec::new(), bits: bits + misfit }
+        Layer {
+            color: partition.rgb(color),
+            form: Form::Stroked(stroke),
+            faces: Vec::new(),
+            heap: None,
+            bits: bits + misfit,
+        }
     }));
     Layers { background: partition.rgb(partition.color(background)), layers }
 }

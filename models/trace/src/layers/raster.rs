@@ -27,12 +27,12 @@ pub(super) fn is_nothing(outline: &Outline) -> bool {
     polygon(outline).is_none_or(|points| signed_area(&points).abs() < 1.0 / 255.0)
 }
 
-/// Whether what polygons (pixels, even-odd) cover is what they should cover, but for few pixels: of all pixels of their `own` faces, and of none of
+/// Whether what polygons (pixels, filled by the rule beside them) cover is what they should cover, but for few pixels: of all pixels of their `own` faces, and of none of
 /// any face, however small it is, that must stay seen (`is_seen`, asked of those that are covered). Mixed pixels count for nothing. Else the pixels
 /// [column, row] that are wrong.
 pub(super) fn check(
     partition: &Partition,
-    polygons: &[Vec<[f64; 2]>],
+    (polygons, fill): (&[Vec<[f64; 2]>], FillRule),
     own: &[u32],
     is_seen: impl Fn(u32) -> bool,
 ) -> Result<(), Vec<[usize; 2]>> {
@@ -48,14 +48,19 @@ pub(super) fn check(
     let mut crossings = crossings(polygons, &rows);
     for y in rows {
         let crossings = &mut crossings[y - first];
-        crossings.sort_unstable_by(f64::total_cmp);
-        let mut crossed = 0;
+        crossings.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        let (mut crossed, mut winding) = (0, 0);
         for x in columns.clone() {
-            while crossed < crossings.len() && crossings[crossed] <= x as f64 + 0.5 {
+            while crossed < crossings.len() && crossings[crossed].0 <= x as f64 + 0.5 {
+                winding += crossings[crossed].1;
                 crossed += 1;
             }
+            let is_covered = match fill {
+                FillRule::EvenOdd => crossed % 2 == 1,
+                FillRule::NonZero => winding != 0,
+            };
             let i = y * width + x;
-            let (label, is_covered) = (partition.labels[i], crossed % 2 == 1);
+            let label = partition.labels[i];
             let Some(wanted) = wanted.get_mut(label as usize) else { continue };
             if is_covered && *wanted == Wanted::NotAsked {
                 *wanted = if is_seen(label) { Wanted::Seen } else { Wanted::Any };
@@ -91,17 +96,19 @@ pub(super) fn check(
     if agrees { Ok(()) } else { Err(wrong) }
 }
 
-/// Where the middle of each row meets polygons.
-fn crossings(polygons: &[Vec<[f64; 2]>], rows: &Range<usize>) -> Vec<Vec<f64>> {
-    let mut crossings: Vec<Vec<f64>> = vec![Vec::new(); rows.len()];
+/// Where the middle of each row meets polygons, and which way around: 1 for downward edges of those of positive area and upward ones of others.
+fn crossings(polygons: &[Vec<[f64; 2]>], rows: &Range<usize>) -> Vec<Vec<(f64, i32)>> {
+    let mut crossings: Vec<Vec<(f64, i32)>> = vec![Vec::new(); rows.len()];
     for polygon in polygons {
+        let is_positive = signed_area(polygon) > 0.0;
         let mut last = polygon[polygon.len() - 1];
         for &point in polygon {
             // The first row whose middle is not above a place.
             let row = |y: f64| ((y - 0.5).ceil() as usize).clamp(rows.start, rows.end);
+            let way = if is_positive == (point[1] > last[1]) { 1 } else { -1 };
             for y in row(last[1].min(point[1]))..row(last[1].max(point[1])) {
                 let share = (y as f64 + 0.5 - last[1]) / (point[1] - last[1]);
-                crossings[y - rows.start].push(last[0] + share * (point[0] - last[0]));
+                crossings[y - rows.start].push((last[0] + share * (point[0] - last[0]), way));
             }
             last = point;
         }

@@ -253,7 +253,7 @@ impl Painted<'_> {
         if bits + tuning::THING_BITS > worth {
             return None;
         }
-        let layer = Layer { color, form, faces: Vec::new(), bits };
+        let layer = Layer { color, form, faces: Vec::new(), heap: None, bits };
         let unit = self.image.size().unit_px() as f64;
         let mut object = scene::object(&layer, unit)?;
         for (at, by) in object.pose.translation.iter_mut().zip((corner - *first).to_array()) {

@@ -69,6 +69,9 @@ impl NoiseLaw {
         sort::ascending(&mut blocks, |block| f64::from(block.value));
         let size = blocks.len().div_ceil(GROUPS).max(LEAST_BLOCKS);
         let groups: Vec<[f64; 2]> = blocks.chunks(size).filter_map(group).collect();
+        if groups.len() < blocks.len().div_ceil(2 * size) {
+            return None;
+        }
         // The line that most groups are near to: those with edges have more.
         let (mut best, mut least) = (None, f64::INFINITY);
         for (k, a) in groups.iter().enumerate() {

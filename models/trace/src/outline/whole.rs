@@ -40,8 +40,20 @@ pub(super) fn fit_plain(track: &Track, ruler: &Ruler) -> Option<Outline> {
 
 /// The cheapest whole outline about along a path that costs less than `most` bits.
 pub(super) fn fit(track: &Track, path: &PathRing<f64>, most: f64, ruler: &Ruler) -> Option<Outline> {
+    cheapest(starts(track, path), track, most, ruler)
+}
+
+/// The cheapest circle or ellipse.
+pub(super) fn fit_round(track: &Track, ruler: &Ruler) -> Option<Outline> {
+    let mut starts = Vec::new();
+    rounds(track, &mut starts);
+    cheapest(starts, track, f64::INFINITY, ruler)
+}
+
+/// The cheapest of figures that costs less than `most` bits.
+fn cheapest(starts: Vec<Start>, track: &Track, most: f64, ruler: &Ruler) -> Option<Outline> {
     let mut best: Option<Outline> = None;
-    for (figure, start, free) in starts(track, path) {
+    for (figure, start, free) in starts {
         let most = best.as_ref().map_or(most, |best| best.bits + best.misfit);
         let trial = Trial { samples: &track.samples, ruler, figure, free, renderer: tuning::RENDERER_SIGMA };
         best = trial.run(start, most).or(best);

@@ -18,7 +18,10 @@ const SIDE: usize = 256;
 const RULER: Ruler = Ruler { extent: SIDE as f64 };
 
 fn drawing(forms: Vec<Form>) -> Layers {
-    let layers = forms.into_iter().map(|form| Layer { color: [0.0; 3], form, faces: Vec::new(), bits: 0.0 }).collect();
+    let layers = forms
+        .into_iter()
+        .map(|form| Layer { color: [0.0; 3], form, faces: Vec::new(), heap: None, bits: 0.0 })
+        .collect();
     Layers { background: [1.0; 3], layers }
 }
 

@@ -1,0 +1,98 @@
+//! Things of one color that lie on one another: an outline with corners inward, as the round things whose outlines meet there, where that is no longer.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `stretch` | what of a boundary lies between corners inward |
+//! | `share` | which stretches are of one thing |
+//!
+//! No corner need be told: it is where two outlines meet. A thing of which more than one stretch is seen is told once.
+
+mod share;
+mod stretch;
+
+use alloc::rc::Rc;
+use alloc::vec::Vec;
+
+use dvp_core::Vec2;
+use dvp_core::shape::FillRule;
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
+
+use super::complete::{Completed, Completion, Place};
+use super::join::Group;
+use super::walk;
+use crate::outline::{Outline, OutlineShape};
+use crate::tuning;
+use share::Shared;
+use stretch::Stretches;
+
+/// Windows so near to a corner (pixels) see both sides of it.
+const SPOILED: f64 = 1.5;
+/// And further by so many standard deviations of the blur, which also fills what is between two things as far from where they are nearest.
+const SPOILED_BLURS: f64 = 2.0;
+/// What a blur moves an edge by beside another one, standard deviations of the blur.
+const BLURRED_SIGMA: f64 = 0.05;
+/// Least share of an outline that is seen where others may hide the rest.
+const LEAST_SEEN: f64 = 0.25;
+
+/// Puts several things where the outlines of a group are those of round things that overlap.
+pub(super) fn part(completion: &Completion<'_>, groups: &mut [Group]) {
+    // Outlines along stairs are moved as a whole.
+    if completion.partition.is_hard {
+        return;
+    }
+    for group in groups {
+        if let Some(parts) = parts(completion, group) {
+            group.completed = Rc::new(parts);
+        }
+    }
+}
+
+/// The things that a group is; none if it is no heap of such.
+fn parts(completion: &Completion<'_>, group: &Group) -> Option<Completed> {
+    let completed = &group.completed;
+    let is_path = |outline: &Outline| matches!(outline.shape, OutlineShape::Path(_));
+    let is_pen = completion.pen(&group.faces).is_some();
+    if is_pen || !completed.agrees || !completed.outlines.iter().any(is_path) {
+        return None;
+    }
+    let place = completion.place(&group.faces);
+    let mut rings = walk::samples(&completion.walks(&group.faces, place.rank));
+    let is_closed = rings.iter().all(|ring| ring.closed);
+    // What is seen in parts without anything in front is a line of letters.
+    if group.faces.len() > 1 && rings.iter().any(|ring| ring.closed) {
+        return None;
+    }
+    let blur = completion.partition.blur;
+    for sample in rings.iter_mut().flat_map(|ring| &mut ring.runs).flatten() {
+        sample.sigma = sample.sigma.hypot(BLURRED_SIGMA * blur);
+    }
+    let stretches = Stretches::new(rings, &completed.outlines, SPOILED + SPOILED_BLURS * blur);
+    let Shared { parts, cuts } = share::share(stretches, &completion.ruler)?;
+    // Of what goes on behind others no pixel tells that it is not there.
+    if !is_closed && parts.iter().any(|part| part.seen() < LEAST_SEEN) {
+        return None;
+    }
+    let bits = parts.iter().map(|part| part.bits).sum();
+    let outlines: Vec<Outline> = parts.into_iter().filter_map(|part| part.outline).collect();
+    if outlines.len() < 2 {
+        return None;
+    }
+    // As many numbers say either: things that people draw hardly turn inward.
+    let most = completed.bits + tuning::LEAST_SAVED * outlines.len() as f64;
+    let are_right = bits < most && fits(completion, &outlines, &place, &cuts, SPOILED + 2.0 * SPOILED_BLURS * blur);
+    are_right.then(|| Completed { are_things: true, bits, ..Completed::new(outlines, true) })
+}
+
+/// Whether outlines cover together what they should and no more, but for what is within `reach` (pixels) of the places where they meet, if there is
+/// a blur that fills the gap.
+fn fits(completion: &Completion<'_>, outlines: &[Outline], place: &Place<'_>, cuts: &[Vec2<f64>], reach: f64) -> bool {
+    let is_filled = |&[x, y]: &[usize; 2]| {
+        let middle = Vec2::new(x as f64 + 0.5, y as f64 + 0.5);
+        cuts.iter().any(|&cut| (cut - middle).length() < reach)
+    };
+    match completion.check_filled(outlines, FillRule::NonZero, place) {
+        Ok(()) => true,
+        Err(wrong) => completion.partition.blur > 0.0 && wrong.iter().all(is_filled),
+    }
+}

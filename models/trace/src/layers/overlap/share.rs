@@ -1,0 +1,132 @@
+//! Which stretches of a boundary are of one thing.
+
+use alloc::vec;
+use alloc::vec::Vec;
+use core::f64::consts::TAU;
+
+use dvp_core::Vec2;
+
+use super::stretch::Stretches;
+use crate::outline::{Outline, OutlineShape, fit_round};
+use crate::ruler::Ruler;
+use crate::sample::{RingSamples, Sample};
+
+/// Fewest windows of a stretch that is looked at: as many as a circle has numbers.
+const SHORTEST: usize = 3;
+/// Most windows of a stretch that no round outline has to explain by itself: half of the boundary of a thing of eight pixels.
+const LONG: usize = 24;
+/// Most windows of a stretch that no round outline has to explain at all: of what shows through between things that overlap.
+const SHORT: usize = 8;
+/// Standard deviation (pixels) of the polygon through stretches that are of nothing round.
+const POLYGON_SIGMA: f64 = 0.1;
+/// Most stretches of one boundary: more are the edge of something that is uneven.
+const MOST_STRETCHES: usize = 64;
+
+/// Things, and where the boundary was cut between them.
+pub(super) struct Shared {
+    pub(super) parts: Vec<Part>,
+    pub(super) cuts: Vec<Vec2<f64>>,
+}
+
+/// Stretches of one thing.
+pub(super) struct Part {
+    stretches: Vec<usize>,
+    /// Windows of them.
+    count: usize,
+    /// The round outline through them, if there is one.
+    pub(super) outline: Option<Outline>,
+    /// Bits of that, or of the polygon through them.
+    pub(super) bits: f64,
+}
+
+impl Part {
+    fn new(stretches: Vec<usize>, of: &[Vec<Sample>], ruler: &Ruler) -> Self {
+        let runs: Vec<Vec<Sample>> = stretches.iter().map(|&k| of[k].clone()).collect();
+        let count: usize = runs.iter().map(Vec::len).sum();
+        let polygon = 2.0 * count as f64 * ruler.number(POLYGON_SIGMA);
+        let price = |outline: &Outline| outline.bits + outline.misfit;
+        let outline = fit_round(&RingSamples { runs, closed: false }, ruler).filter(|outline| price(outline) < polygon);
+        let bits = outline.as_ref().map_or(polygon, price);
+        Self { stretches, count, outline, bits }
+    }
+
+    /// Whether it may be of the same thing as another one: their outlines lie on one another, if they have such.
+    fn may_join(&self, other: &Self) -> bool {
+        let (Some(one), Some(other)) = (&self.outline, &other.outline) else { return true };
+        let [(here, one), (there, other)] = [one, other].map(round);
+        (here - there).length() < one.min(other)
+    }
+
+    /// Bits of its outline, if it has one.
+    fn known(&self) -> f64 {
+        self.outline.as_ref().map_or(0.0, |_| self.bits)
+    }
+
+    /// Share of its outline that is seen; 0 without one.
+    pub(super) fn seen(&self) -> f64 {
+        self.outline.as_ref().map_or(0.0, |outline| self.count as f64 / (TAU * round(outline).1))
+    }
+}
+
+/// The middle and the mean radius of a round outline.
+fn round(outline: &Outline) -> (Vec2<f64>, f64) {
+    match outline.shape {
+        OutlineShape::Circle { center, radius } => (center, radius),
+        OutlineShape::Ellipse { center, radii: [a, b], .. } => (center, 0.5 * (a + b)),
+        _ => (Vec2::default(), 0.0),
+    }
+}
+
+/// The things that stretches are of: again and again those two parts become one that cost least more by it. None if what is of none is more than a
+/// few windows.
+pub(super) fn share(mut left: Stretches, ruler: &Ruler) -> Option<Shared> {
+    let (mut parts, mut stretches) = (Vec::new(), Vec::new());
+    while let Some(stretch) = left.samples.pop() {
+        // Shorter ones tell nothing: pixels do.
+        if stretch.len() < SHORTEST {
+            continue;
+        }
+        stretches.push(stretch);
+        let part = Part::new(vec![parts.len()], &stretches, ruler);
+        if part.outline.is_some() || part.count <= LONG {
+            parts.push(part);
+        } else if !left.cut(&stretches.pop()?) {
+            return None;
+        }
+        if stretches.len() > MOST_STRETCHES {
+            return None;
+        }
+    }
+    join(&mut parts, &stretches, ruler);
+    let is_explained = |part: &Part| part.outline.is_some() || part.count <= SHORT;
+    parts.iter().all(is_explained).then_some(Shared { parts, cuts: left.cuts })
+}
+
+/// Joins parts as long as that makes the description shorter.
+fn join(parts: &mut Vec<Part>, stretches: &[Vec<Sample>], ruler: &Ruler) {
+    // The first stretches of two parts, the bits that joining them costs more, and the part that they make.
+    let mut pairs: Vec<([usize; 2], f64, Part)> = Vec::new();
+    loop {
+        for (k, a) in parts.iter().enumerate() {
+            for b in parts[..k].iter().filter(|b| a.may_join(b)) {
+                let key = [a.stretches[0], b.stretches[0]];
+                if pairs.iter().any(|pair| pair.0 == key) {
+                    continue;
+                }
+                let both = a.stretches.iter().chain(&b.stretches).copied().collect();
+                let joined = Part::new(both, stretches, ruler);
+                let is_shorter = joined.bits < a.bits + b.bits && joined.outline.is_some();
+                // What is of no outline by itself goes where it costs least, whatever it cost before.
+                let more = if is_shorter { joined.bits - a.known() - b.known() } else { f64::INFINITY };
+                pairs.push((key, more, joined));
+            }
+        }
+        let best = (0..pairs.len()).min_by(|&a, &b| pairs[a].1.total_cmp(&pairs[b].1));
+        let Some(best) = best.filter(|&best| pairs[best].1 < f64::INFINITY) else { return };
+        let (key, _, joined) = pairs.swap_remove(best);
+        let is_part = |stretch: usize| key.contains(&stretch);
+        pairs.retain(|pair| !pair.0.iter().any(|&stretch| is_part(stretch)));
+        parts.retain(|part| !is_part(part.stretches[0]));
+        parts.push(joined);
+    }
+}

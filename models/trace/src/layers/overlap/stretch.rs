@@ -1,0 +1,76 @@
+//! What of a boundary lies between corners inward.
+
+use alloc::vec::Vec;
+
+use dvp_core::Vec2;
+
+use crate::outline::{Outline, OutlineShape};
+use crate::sample::{RingSamples, Sample};
+use crate::stroke::piece::{direction, pieces};
+
+/// Sine of the turn of a corner inward.
+const LEAST_TURN: f64 = 0.3;
+/// Sine of the turn of a place where edges are blurred, or an outline was drawn across the corner.
+const LEAST_BEND: f64 = 0.1;
+/// Windows to either side that tell which way a boundary goes.
+const REACH: usize = 3;
+
+/// Stretches of a boundary.
+pub(super) struct Stretches {
+    pub(super) samples: Vec<Vec<Sample>>,
+    /// Where they were cut.
+    pub(super) cuts: Vec<Vec2<f64>>,
+    /// Windows nearer to a cut (pixels) are left out.
+    spoiled: f64,
+}
+
+impl Stretches {
+    /// What of a boundary lies between the corners inward of the outlines that were drawn through it.
+    pub(super) fn new(rings: Vec<RingSamples>, outlines: &[Outline], spoiled: f64) -> Self {
+        let cuts = corners(outlines);
+        let is_cut = |sample: &Sample| cuts.iter().any(|&cut| (sample.point - cut).length() < spoiled);
+        let mut samples = Vec::new();
+        for RingSamples { mut runs, closed } in rings {
+            for run in &mut runs {
+                if closed {
+                    let first = run.iter().position(is_cut);
+                    run.rotate_left(first.unwrap_or(0));
+                }
+                samples.extend(run.split(is_cut).map(<[Sample]>::to_vec));
+            }
+        }
+        Self { samples, cuts, spoiled }
+    }
+
+    /// Cuts a stretch where it turns inward most; whether it turns inward anywhere.
+    pub(super) fn cut(&mut self, stretch: &[Sample]) -> bool {
+        let at = |k: usize| stretch[k].point;
+        let turn = |k: usize| {
+            let [before, after] = [at(k) - at(k - REACH), at(k + REACH) - at(k)];
+            before.cross(after) / (before.length() * after.length()).max(1e-9)
+        };
+        let inner = REACH..stretch.len().saturating_sub(REACH);
+        let most = inner.map(|k| (turn(k), at(k))).min_by(|a, b| a.0.total_cmp(&b.0));
+        let Some((_, cut)) = most.filter(|most| most.0 < -LEAST_BEND) else { return false };
+        let is_cut = |sample: &Sample| (sample.point - cut).length() < self.spoiled;
+        self.samples.extend(stretch.split(is_cut).map(<[Sample]>::to_vec));
+        self.cuts.push(cut);
+        true
+    }
+}
+
+/// Where outlines turn inward.
+fn corners(outlines: &[Outline]) -> Vec<Vec2<f64>> {
+    let mut corners = Vec::new();
+    for outline in outlines {
+        let OutlineShape::Path(ring) = &outline.shape else { continue };
+        let pieces = pieces(ring);
+        let before = pieces.iter().cycle().skip(pieces.len().saturating_sub(1));
+        for (before, after) in before.zip(&pieces) {
+            if direction(before, 1.0).cross(direction(after, 0.0)) < -LEAST_TURN {
+                corners.push(after.from());
+            }
+        }
+    }
+    corners
+}
