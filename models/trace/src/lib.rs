@@ -67,7 +67,7 @@ use dvp_core::{Image, ImageSize, ImageView, Scene};
 use crate::boundary::Ring;
 use crate::partition::{Face, NoPartition, Partition, Reading};
 use crate::regions::Regions;
-pub use crate::scene::PoseCovariance;
+pub use crate::scene::{ObjectDoubt, PoseCovariance};
 
 /// A picture as a drawing.
 #[derive(Clone, Debug)]
@@ -75,8 +75,8 @@ pub use crate::scene::PoseCovariance;
 pub struct Traced {
     /// The drawing.
     pub scene: Scene<f32>,
-    /// How far the poses of its objects may be off, where that is known.
-    pub covariances: Vec<Option<PoseCovariance>>,
+    /// What is in doubt of its objects, one by one.
+    pub doubts: Vec<ObjectDoubt>,
     /// Description length of its outlines, and of what they miss, bits.
     pub bits: f64,
     /// Share of the pixels just beyond edges that still show the other side, [0, 1]: near 0 if edges are of area coverage, as the
@@ -299,11 +299,10 @@ fn draw(read: Read, size: ImageSize, known: &Known) -> Result<Traced, NoDrawing>
         centers::meet(&mut layers, read);
     }
     let bits = layers.bits();
-    let (scene, covariances) =
-        scene::scene(&layers, size, known.matte.is_some(), read.is_hard && !read.reading.regions);
+    let (scene, doubts) = scene::scene(&layers, size, known.matte.is_some(), read.is_hard && !read.reading.regions);
     Ok(Traced {
         scene,
-        covariances,
+        doubts,
         bits,
         stained,
         coded: partition.reading.coded,

@@ -11,21 +11,26 @@ use dvp_core::{ImageSize, Object, Pose, Real as _, Scene};
 use crate::layers::{Form, Layer, Layers};
 use crate::outline::{Outline, OutlineShape};
 
-/// The scene that layers make of a picture of some size, and how far the poses of its objects may be off. `is_hard`: no
+/// The scene that layers make of a picture of some size, and what is in doubt of its objects. `is_hard`: no
 /// pixel of the picture is mixed.
 #[must_use]
-pub fn scene(
-    layers: &Layers,
-    size: ImageSize,
-    transparent: bool,
-    is_hard: bool,
-) -> (Scene<f32>, Vec<Option<PoseCovariance>>) {
+pub fn scene(layers: &Layers, size: ImageSize, transparent: bool, is_hard: bool) -> (Scene<f32>, Vec<ObjectDoubt>) {
     let unit = size.unit_px() as f64;
-    let objects = layers.layers.iter().filter_map(|layer| Some((object(layer, unit)?, covariance(layer, unit))));
-    let (objects, covariances) = objects.unzip();
+    let doubt = |layer: &Layer| ObjectDoubt { pose: covariance(layer, unit), heap: layer.heap };
+    let objects = layers.layers.iter().filter_map(|layer| Some((object(layer, unit)?, doubt(layer))));
+    let (objects, doubts) = objects.unzip();
     let background = layers.background.map(|value| f32::of(value.clamp(0.0, 1.0)));
     let edge = if is_hard { EdgeProfile::hard(f32::of(unit)) } else { EdgeProfile::area() };
-    (Scene { background, transparent, objects, edge, compositing: Compositing::Over }, covariances)
+    (Scene { background, transparent, objects, edge, compositing: Compositing::Over }, doubts)
+}
+
+/// What a drawing leaves open of an object.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ObjectDoubt {
+    /// How far its pose may be off, where that is known.
+    pub pose: Option<PoseCovariance>,
+    /// Which of the picture's heaps, things of one color that have run together, it lies in, if it lies in one.
+    pub heap: Option<usize>,
 }
 
 /// How far the pose of an object may be off.
@@ -36,8 +41,6 @@ pub struct PoseCovariance {
     pub numbers: [[f64; 5]; 5],
     /// Whether it looks alike at every angle.
     pub is_round: bool,
-    /// Which of the picture's heaps, things of one color that have run together, it lies in, if it lies in one.
-    pub heap: Option<usize>,
 }
 
 /// What is known of the pose of a layer's object, if it is a whole outline.
@@ -63,7 +66,7 @@ fn covariance(layer: &Layer, unit: f64) -> Option<PoseCovariance> {
         rows.map(|(row, by)| by * row.iter().zip(other).map(|(value, by)| value * by).sum::<f64>()).sum()
     };
     let numbers = changes.each_ref().map(|one| changes.each_ref().map(|other| entry(one, other)));
-    Some(PoseCovariance { numbers, is_round: count == 3, heap: layer.heap })
+    Some(PoseCovariance { numbers, is_round: count == 3 })
 }
 
 /// The object of a layer; none if it has no outline.

@@ -144,9 +144,9 @@ pub(super) fn drawn(
         (painted, drawing) = canvas.paint(&traced.scene, size)?;
     }
     let mut best = of_painted(&traced.scene, &drawing, painted, image)?;
-    let Traced { scene, covariances, bits, blur, .. } = traced;
-    let (covariance, mut ambiguity) = doubts::of_poses(&covariances);
-    ambiguity.extend(doubts::merged(&drawing, &covariances));
+    let Traced { scene, doubts: left, bits, blur, .. } = traced;
+    let (covariance, mut ambiguity) = doubts::of_poses(&left);
+    ambiguity.extend(doubts::merged(&drawing, &left));
     if blur > 0.0 {
         let scene = blurred::nearest(blurred(&scene, blur, unit_px), image, canvas)?;
         let (painted, drawing) = canvas.paint(&scene, size)?;

@@ -10,9 +10,9 @@ use core::mem;
 use core::ops::Range;
 
 use dvp_core::{Drawing, Image, ImageSize, ImageView, Scene};
-use dvp_trace::Traced;
 use dvp_trace::missed::{Missed, Painted, channels, misfit_bits};
 use dvp_trace::tuning::{CODED_CONTRAST, LEAST_CONTRAST};
+use dvp_trace::{ObjectDoubt, Traced};
 
 use super::parts::{Parts, is_thin, off, price, rows, walk};
 use crate::FitError;
@@ -92,13 +92,13 @@ impl Wrong {
         let is_better = self.are_better(gone.chain(added), &mended.after, &image);
         let mut is_left = vec![true; self.is_piece.len()];
         pieces.iter().zip(&is_better).for_each(|(&k, &is_gone)| is_left[k] = !is_gone);
-        let objects = mem::take(&mut traced.scene.objects).into_iter().zip(mem::take(&mut traced.covariances));
+        let objects = mem::take(&mut traced.scene.objects).into_iter().zip(mem::take(&mut traced.doubts));
         let left = objects.zip(is_left).filter(|(_, is_left)| *is_left);
-        (traced.scene.objects, traced.covariances) = left.map(|(object, _)| object).unzip();
+        (traced.scene.objects, traced.doubts) = left.map(|(object, _)| object).unzip();
         let added = mended.scene.objects.into_iter().skip(first).zip(mended.bits);
         for ((object, bits), _) in added.zip(&is_better[pieces.len()..]).filter(|(_, is_better)| **is_better) {
             traced.scene.objects.push(object);
-            traced.covariances.push(None);
+            traced.doubts.push(ObjectDoubt::default());
             traced.bits += bits;
         }
         Ok(())

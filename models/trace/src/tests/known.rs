@@ -7,7 +7,7 @@ use dvp_core::shape::{AnyShape, Ellipse};
 use dvp_core::{Image, Vec2};
 
 use super::{BLUE, SIZE, WHITE, size};
-use crate::{Known, PoseCovariance, trace};
+use crate::{Known, ObjectDoubt, PoseCovariance, trace};
 
 /// Places in a column of pixels at which an ellipse is cut: polygons of the renderers would be off by as much as what is stated.
 const CUTS: usize = 128;
@@ -43,7 +43,9 @@ fn painted(place: [f64; 2], radii: [f64; 2], angle: f64) -> Image<f32> {
 /// Errors of a drawing of one ellipse in stated standard deviations: of x, y, angle, and both axes.
 fn errors(place: [f64; 2], radii: [f64; 2], angle: f64) -> [f64; 5] {
     let traced = trace(&painted(place, radii, angle).view(), &Known::default()).unwrap();
-    let ([found], [Some(PoseCovariance { numbers, .. })]) = (&traced.scene.objects[..], &traced.covariances[..]) else {
+    let ([found], [ObjectDoubt { pose: Some(PoseCovariance { numbers, .. }), .. }]) =
+        (&traced.scene.objects[..], &traced.doubts[..])
+    else {
         panic!("one object, and what is known of it: {radii:?} at {angle}")
     };
     let AnyShape::Ellipse(Ellipse { radii: sides }) = found.shape else { panic!("{:?}", found.shape) };

@@ -7,6 +7,7 @@ mod hard;
 mod known;
 mod lines;
 mod nested;
+mod overlap;
 mod repeated;
 mod seams;
 mod spoiled;

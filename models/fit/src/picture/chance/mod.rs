@@ -66,8 +66,8 @@ pub(super) fn leave_out(
     })?;
     let is_left: Vec<bool> =
         is_asked.iter().zip(saved).map(|(is_asked, saved)| !is_asked || saved >= THING_BITS).collect();
-    let [mut of_objects, mut of_covariances] = [is_left.iter(), is_left.iter()];
+    let [mut of_objects, mut of_doubts] = [is_left.iter(), is_left.iter()];
     traced.scene.objects.retain(|_| of_objects.next() == Some(&true));
-    traced.covariances.retain(|_| of_covariances.next() == Some(&true));
+    traced.doubts.retain(|_| of_doubts.next() == Some(&true));
     Ok(())
 }

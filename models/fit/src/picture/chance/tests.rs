@@ -2,7 +2,7 @@ use alloc::vec;
 
 use dvp_core::shape::Rectangle;
 use dvp_core::{ImageSize, Object, Pose, Real as _};
-use dvp_trace::Known;
+use dvp_trace::{Known, ObjectDoubt};
 
 use super::*;
 use crate::split_mix::SplitMix;
@@ -45,10 +45,10 @@ fn left(spot: Object<f32>, is_there: bool, is_gray: bool) -> usize {
     scene.edge = traced.scene.edge;
     scene.compositing = traced.scene.compositing;
     traced.scene = scene.clone();
-    traced.covariances = vec![None; 2];
+    traced.doubts = vec![ObjectDoubt::default(); 2];
     traced.noise = 0.05;
     leave_out(&mut traced, &scene, &image.view(), &mut canvas).unwrap();
-    assert_eq!(traced.scene.objects.len(), traced.covariances.len());
+    assert_eq!(traced.scene.objects.len(), traced.doubts.len());
     traced.scene.objects.len()
 }
 

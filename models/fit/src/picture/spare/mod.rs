@@ -76,9 +76,9 @@ impl Spare {
         for (&k, part) in self.thin.iter().zip(&of_part) {
             is_left[k] = part.is_some_and(|part| !without[parts.root(part)].is_as_good());
         }
-        let [mut of_objects, mut of_covariances] = [is_left.iter(), is_left.iter()];
+        let [mut of_objects, mut of_doubts] = [is_left.iter(), is_left.iter()];
         traced.scene.objects.retain(|_| of_objects.next() == Some(&true));
-        traced.covariances.retain(|_| of_covariances.next() == Some(&true));
+        traced.doubts.retain(|_| of_doubts.next() == Some(&true));
         Ok(())
     }
 }

@@ -3,7 +3,7 @@
 use dvp_core::render::EdgeProfile;
 use dvp_core::shape::{AnyShape, Rectangle};
 use dvp_core::{ImageSize, Object, Pose, Scene};
-use dvp_trace::{Known, trace};
+use dvp_trace::{Known, ObjectDoubt, trace};
 
 use super::*;
 
@@ -32,12 +32,12 @@ fn left(objects: &[Object<f32>], more: &[Object<f32>]) -> usize {
     let mut traced = trace(&image.view(), &Known::default()).unwrap();
     assert_eq!(traced.scene.objects.len(), objects.len(), "{:?}", traced.scene);
     traced.scene.objects.extend(more.iter().cloned());
-    traced.covariances.extend(more.iter().map(|_| None));
+    traced.doubts.extend(more.iter().map(|_| ObjectDoubt::default()));
     let (painted, drawing) = canvas.paint(&traced.scene, size).unwrap();
     if let Some(spare) = Spare::of(&drawing, &painted.clone()) {
         spare.leave_out(&mut traced, &drawing, &image.view(), &mut canvas).unwrap();
     }
-    assert_eq!(traced.scene.objects.len(), traced.covariances.len());
+    assert_eq!(traced.scene.objects.len(), traced.doubts.len());
     traced.scene.objects.len()
 }
 
@@ -71,7 +71,7 @@ fn what_lies_on_the_sides_of_pixels_is_seen() {
     let image = image.clone();
     let spare = Spare::of(&drawing, &image).expect("the small one is thin");
     let mut traced = trace(&image.view(), &Known::default()).unwrap();
-    (traced.scene, traced.covariances) = (scene, vec![None; 2]);
+    (traced.scene, traced.doubts) = (scene, vec![ObjectDoubt::default(); 2]);
     spare.leave_out(&mut traced, &drawing, &image.view(), &mut canvas).unwrap();
     assert_eq!(traced.scene.objects.len(), 2);
 }

@@ -1,12 +1,15 @@
-//! Things of one color that lie on one another: an outline with corners inward, as the round things whose outlines meet there, where that is no longer.
+//! Things of one color that lie on one another: an outline with corners inward, as the things whose outlines meet there, where that is no longer. These
+//! are round, or others of the picture again.
 //!
 //! | file | holds |
 //! |---|---|
 //! | `stretch` | what of a boundary lies between corners inward |
 //! | `share` | which stretches are of one thing |
+//! | `again` | straight things of the picture, one of which stretches may be again |
 //!
 //! No corner need be told: it is where two outlines meet. A thing of which more than one stretch is seen is told once.
 
+mod again;
 mod share;
 mod stretch;
 
@@ -14,16 +17,20 @@ use alloc::rc::Rc;
 use alloc::vec::Vec;
 
 use dvp_core::Vec2;
+use dvp_core::contour::signed_area;
 use dvp_core::shape::FillRule;
+use dvp_core::sort;
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
 use super::complete::{Completed, Completion, Place};
 use super::join::Group;
-use super::walk;
+use super::{raster, walk};
 use crate::outline::{Outline, OutlineShape};
+use crate::ruler::Ruler;
 use crate::tuning;
-use share::Shared;
+use again::Models;
+use share::{Explains, Shared};
 use stretch::Stretches;
 
 /// Windows so near to a corner (pixels) see both sides of it.
@@ -32,24 +39,29 @@ const SPOILED: f64 = 1.5;
 const SPOILED_BLURS: f64 = 2.0;
 /// What a blur moves an edge by beside another one, standard deviations of the blur.
 const BLURRED_SIGMA: f64 = 0.05;
+/// Square pixels that straight things which overlap share at least, each with one other: more than their outlines are off by.
+const LEAST_SHARED: f64 = 0.5;
+/// Radii closer than so many of their standard deviations together may be equal.
+const EQUAL: f64 = 3.0;
 /// Least share of an outline that is seen where others may hide the rest.
 const LEAST_SEEN: f64 = 0.25;
 
-/// Puts several things where the outlines of a group are those of round things that overlap.
+/// Puts several things where the outlines of a group are those of things that overlap.
 pub(super) fn part(completion: &Completion<'_>, groups: &mut [Group]) {
     // Outlines along stairs are moved as a whole.
     if completion.partition.is_hard {
         return;
     }
+    let models = Models::of(groups);
     for group in groups {
-        if let Some(parts) = parts(completion, group) {
+        if let Some(parts) = parts(completion, group, &models) {
             group.completed = Rc::new(parts);
         }
     }
 }
 
 /// The things that a group is; none if it is no heap of such.
-fn parts(completion: &Completion<'_>, group: &Group) -> Option<Completed> {
+fn parts(completion: &Completion<'_>, group: &Group, models: &Models) -> Option<Completed> {
     let completed = &group.completed;
     let is_path = |outline: &Outline| matches!(outline.shape, OutlineShape::Path(_));
     let is_pen = completion.pen(&group.faces).is_some();
@@ -68,20 +80,43 @@ fn parts(completion: &Completion<'_>, group: &Group) -> Option<Completed> {
         sample.sigma = sample.sigma.hypot(BLURRED_SIGMA * blur);
     }
     let stretches = Stretches::new(rings, &completed.outlines, SPOILED + SPOILED_BLURS * blur);
-    let Shared { parts, cuts } = share::share(stretches, &completion.ruler)?;
+    let Shared { parts, cuts } = share::share(stretches, &Explains { models, ruler: &completion.ruler })?;
     // Of what goes on behind others no pixel tells that it is not there.
     if !is_closed && parts.iter().any(|part| part.seen() < LEAST_SEEN) {
         return None;
     }
     let bits = parts.iter().map(|part| part.bits).sum();
     let outlines: Vec<Outline> = parts.into_iter().filter_map(|part| part.outline).collect();
-    if outlines.len() < 2 {
+    if outlines.len() < 2 || are_side_by_side(&outlines, completed) {
         return None;
     }
     // As many numbers say either: things that people draw hardly turn inward.
-    let most = completed.bits + tuning::LEAST_SAVED * outlines.len() as f64;
+    let most = completed.bits + tuning::LEAST_SAVED * outlines.len() as f64 + spared(&outlines, &completion.ruler);
     let are_right = bits < most && fits(completion, &outlines, &place, &cuts, SPOILED + 2.0 * SPOILED_BLURS * blur);
     are_right.then(|| Completed { are_things: true, bits, ..Completed::new(outlines, true) })
+}
+
+/// Whether there are straight things among some outlines, and these cover no more in all than what is seen: squares that make another thing together.
+fn are_side_by_side(outlines: &[Outline], seen: &Completed) -> bool {
+    let area = |outline: &Outline| raster::polygon(outline).map_or(0.0, |polygon| signed_area(&polygon));
+    let is_round =
+        |outline: &Outline| matches!(outline.shape, OutlineShape::Circle { .. } | OutlineShape::Ellipse { .. });
+    let all: f64 = outlines.iter().map(|outline| area(outline).abs()).sum();
+    let shown = seen.outlines.iter().map(area).sum::<f64>().abs();
+    !outlines.iter().all(is_round) && all - shown < LEAST_SHARED * (outlines.len() - 1) as f64
+}
+
+/// Bits of radii that are told once: those of a path are equal by now if they are to be.
+fn spared(outlines: &[Outline], ruler: &Ruler) -> f64 {
+    let radius = |outline: &Outline| match outline.shape {
+        OutlineShape::Circle { radius, .. } => Some((radius, outline.covariance.get(8)?.sqrt())),
+        _ => None,
+    };
+    let mut radii: Vec<(f64, f64)> = outlines.iter().filter_map(radius).collect();
+    sort::ascending(&mut radii, |&(radius, _)| radius);
+    let next = radii.iter().skip(1);
+    let are_equal = |(one, other): &(&(f64, f64), &(f64, f64))| other.0 - one.0 < EQUAL * (one.1 + other.1);
+    radii.iter().zip(next).filter(are_equal).map(|(one, other)| ruler.number(one.1.max(other.1))).sum()
 }
 
 /// Whether outlines cover together what they should and no more, but for what is within `reach` (pixels) of the places where they meet, if there is

@@ -2,20 +2,24 @@
 
 use alloc::vec;
 use alloc::vec::Vec;
-use core::f64::consts::TAU;
 
 use dvp_core::Vec2;
+use dvp_core::contour::perimeter;
+use dvp_core::geometry::Bounds;
 
+use super::super::raster;
+use super::again::Models;
 use super::stretch::Stretches;
-use crate::outline::{Outline, OutlineShape, fit_round};
+use crate::outline::{Outline, fit_round};
 use crate::ruler::Ruler;
 use crate::sample::{RingSamples, Sample};
+use crate::tuning;
 
 /// Fewest windows of a stretch that is looked at: as many as a circle has numbers.
 const SHORTEST: usize = 3;
-/// Most windows of a stretch that no round outline has to explain by itself: half of the boundary of a thing of eight pixels.
+/// Most windows of a stretch that no outline has to explain by itself: half of the boundary of a thing of eight pixels.
 const LONG: usize = 24;
-/// Most windows of a stretch that no round outline has to explain at all: of what shows through between things that overlap.
+/// Most windows of a stretch that no outline has to explain at all: of what shows through between things that overlap.
 const SHORT: usize = 8;
 /// Standard deviation (pixels) of the polygon through stretches that are of nothing round.
 const POLYGON_SIGMA: f64 = 0.1;
@@ -28,24 +32,35 @@ pub(super) struct Shared {
     pub(super) cuts: Vec<Vec2<f64>>,
 }
 
+/// What stretches may be of, and at which price.
+pub(super) struct Explains<'a> {
+    /// Straight things of the picture.
+    pub(super) models: &'a Models,
+    pub(super) ruler: &'a Ruler,
+}
+
 /// Stretches of one thing.
 pub(super) struct Part {
     stretches: Vec<usize>,
     /// Windows of them.
     count: usize,
-    /// The round outline through them, if there is one.
+    /// The outline through them, if there is one.
     pub(super) outline: Option<Outline>,
     /// Bits of that, or of the polygon through them.
     pub(super) bits: f64,
 }
 
 impl Part {
-    fn new(stretches: Vec<usize>, of: &[Vec<Sample>], ruler: &Ruler) -> Self {
+    fn new(stretches: Vec<usize>, of: &[Vec<Sample>], Explains { models, ruler }: &Explains<'_>) -> Self {
         let runs: Vec<Vec<Sample>> = stretches.iter().map(|&k| of[k].clone()).collect();
         let count: usize = runs.iter().map(Vec::len).sum();
         let polygon = 2.0 * count as f64 * ruler.number(POLYGON_SIGMA);
         let price = |outline: &Outline| outline.bits + outline.misfit;
-        let outline = fit_round(&RingSamples { runs, closed: false }, ruler).filter(|outline| price(outline) < polygon);
+        let model = models.explain(&runs, ruler);
+        let rings = RingSamples { runs, closed: false };
+        let round = fit_round(&rings, ruler).filter(|outline| is_around(outline, &rings.runs));
+        let outlines = [round, model].into_iter().flatten().filter(|outline| price(outline) < polygon);
+        let outline = outlines.min_by(|a, b| price(a).total_cmp(&price(b)));
         let bits = outline.as_ref().map_or(polygon, price);
         Self { stretches, count, outline, bits }
     }
@@ -53,7 +68,7 @@ impl Part {
     /// Whether it may be of the same thing as another one: their outlines lie on one another, if they have such.
     fn may_join(&self, other: &Self) -> bool {
         let (Some(one), Some(other)) = (&self.outline, &other.outline) else { return true };
-        let [(here, one), (there, other)] = [one, other].map(round);
+        let [(here, one, _), (there, other, _)] = [one, other].map(extent);
         (here - there).length() < one.min(other)
     }
 
@@ -64,30 +79,37 @@ impl Part {
 
     /// Share of its outline that is seen; 0 without one.
     pub(super) fn seen(&self) -> f64 {
-        self.outline.as_ref().map_or(0.0, |outline| self.count as f64 / (TAU * round(outline).1))
+        self.outline.as_ref().map_or(0.0, |outline| self.count as f64 / extent(outline).2)
     }
 }
 
-/// The middle and the mean radius of a round outline.
-fn round(outline: &Outline) -> (Vec2<f64>, f64) {
-    match outline.shape {
-        OutlineShape::Circle { center, radius } => (center, radius),
-        OutlineShape::Ellipse { center, radii: [a, b], .. } => (center, 0.5 * (a + b)),
-        _ => (Vec2::default(), 0.0),
-    }
+/// Whether stretches lead around what a round outline covers: around an opening they lead the other way.
+fn is_around(outline: &Outline, runs: &[Vec<Sample>]) -> bool {
+    let (center, ..) = extent(outline);
+    let steps = runs.iter().flat_map(|run| run.windows(2));
+    steps.map(|pair| (pair[0].point - center).cross(pair[1].point - pair[0].point)).sum::<f64>() > 0.0
+}
+
+/// The middle of an outline, half of its mean width and height, and its length.
+fn extent(outline: &Outline) -> (Vec2<f64>, f64, f64) {
+    let polygon = raster::polygon(outline).unwrap_or_default();
+    let bounds = Bounds::of_vertices(&polygon);
+    let (center, size) = bounds.map_or_else(Default::default, |bounds| (bounds.center(), bounds.size()));
+    (center, 0.25 * (size.x + size.y), perimeter(&polygon))
 }
 
 /// The things that stretches are of: again and again those two parts become one that cost least more by it. None if what is of none is more than a
 /// few windows.
-pub(super) fn share(mut left: Stretches, ruler: &Ruler) -> Option<Shared> {
+pub(super) fn share(mut left: Stretches, explains: &Explains<'_>) -> Option<Shared> {
     let (mut parts, mut stretches) = (Vec::new(), Vec::new());
     while let Some(stretch) = left.samples.pop() {
-        // Shorter ones tell nothing: pixels do.
-        if stretch.len() < SHORTEST {
+        // Short ones, and what only cracks tell, say nothing: pixels do.
+        let is_told = |sample: &Sample| sample.sigma < tuning::CRACK_SIGMA;
+        if stretch.len() < SHORTEST || !stretch.iter().any(is_told) {
             continue;
         }
         stretches.push(stretch);
-        let part = Part::new(vec![parts.len()], &stretches, ruler);
+        let part = Part::new(vec![parts.len()], &stretches, explains);
         if part.outline.is_some() || part.count <= LONG {
             parts.push(part);
         } else if !left.cut(&stretches.pop()?) {
@@ -97,13 +119,13 @@ pub(super) fn share(mut left: Stretches, ruler: &Ruler) -> Option<Shared> {
             return None;
         }
     }
-    join(&mut parts, &stretches, ruler);
+    join(&mut parts, &stretches, explains);
     let is_explained = |part: &Part| part.outline.is_some() || part.count <= SHORT;
     parts.iter().all(is_explained).then_some(Shared { parts, cuts: left.cuts })
 }
 
 /// Joins parts as long as that makes the description shorter.
-fn join(parts: &mut Vec<Part>, stretches: &[Vec<Sample>], ruler: &Ruler) {
+fn join(parts: &mut Vec<Part>, stretches: &[Vec<Sample>], explains: &Explains<'_>) {
     // The first stretches of two parts, the bits that joining them costs more, and the part that they make.
     let mut pairs: Vec<([usize; 2], f64, Part)> = Vec::new();
     loop {
@@ -114,7 +136,7 @@ fn join(parts: &mut Vec<Part>, stretches: &[Vec<Sample>], ruler: &Ruler) {
                     continue;
                 }
                 let both = a.stretches.iter().chain(&b.stretches).copied().collect();
-                let joined = Part::new(both, stretches, ruler);
+                let joined = Part::new(both, stretches, explains);
                 let is_shorter = joined.bits < a.bits + b.bits && joined.outline.is_some();
                 // What is of no outline by itself goes where it costs least, whatever it cost before.
                 let more = if is_shorter { joined.bits - a.known() - b.known() } else { f64::INFINITY };

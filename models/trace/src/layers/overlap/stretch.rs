@@ -8,10 +8,12 @@ use crate::outline::{Outline, OutlineShape};
 use crate::sample::{RingSamples, Sample};
 use crate::stroke::piece::{direction, pieces};
 
-/// Sine of the turn of a corner inward.
+/// Sine of the turn of a corner.
 const LEAST_TURN: f64 = 0.3;
 /// Sine of the turn of a place where edges are blurred, or an outline was drawn across the corner.
 const LEAST_BEND: f64 = 0.1;
+/// Windows so near to a corner outward (pixels) hold it: they tell of both sides.
+const CORNER: f64 = 1.0;
 /// Windows to either side that tell which way a boundary goes.
 const REACH: usize = 3;
 
@@ -27,11 +29,13 @@ pub(super) struct Stretches {
 impl Stretches {
     /// What of a boundary lies between the corners inward of the outlines that were drawn through it.
     pub(super) fn new(rings: Vec<RingSamples>, outlines: &[Outline], spoiled: f64) -> Self {
-        let cuts = corners(outlines);
+        let Corners { inward: cuts, outward } = Corners::of(outlines);
+        let is_corner = |sample: &Sample| outward.iter().any(|&corner| (sample.point - corner).length() < CORNER);
         let is_cut = |sample: &Sample| cuts.iter().any(|&cut| (sample.point - cut).length() < spoiled);
         let mut samples = Vec::new();
         for RingSamples { mut runs, closed } in rings {
             for run in &mut runs {
+                run.retain(|sample| !is_corner(sample));
                 if closed {
                     let first = run.iter().position(is_cut);
                     run.rotate_left(first.unwrap_or(0));
@@ -59,18 +63,29 @@ impl Stretches {
     }
 }
 
-/// Where outlines turn inward.
-fn corners(outlines: &[Outline]) -> Vec<Vec2<f64>> {
-    let mut corners = Vec::new();
-    for outline in outlines {
-        let OutlineShape::Path(ring) = &outline.shape else { continue };
-        let pieces = pieces(ring);
-        let before = pieces.iter().cycle().skip(pieces.len().saturating_sub(1));
-        for (before, after) in before.zip(&pieces) {
-            if direction(before, 1.0).cross(direction(after, 0.0)) < -LEAST_TURN {
-                corners.push(after.from());
+/// The corners of outlines.
+#[derive(Default)]
+struct Corners {
+    inward: Vec<Vec2<f64>>,
+    outward: Vec<Vec2<f64>>,
+}
+
+impl Corners {
+    fn of(outlines: &[Outline]) -> Self {
+        let mut corners = Self::default();
+        for outline in outlines {
+            let OutlineShape::Path(ring) = &outline.shape else { continue };
+            let pieces = pieces(ring);
+            let before = pieces.iter().cycle().skip(pieces.len().saturating_sub(1));
+            for (before, after) in before.zip(&pieces) {
+                let turn = direction(before, 1.0).cross(direction(after, 0.0));
+                if turn < -LEAST_TURN {
+                    corners.inward.push(after.from());
+                } else if turn > LEAST_TURN {
+                    corners.outward.push(after.from());
+                }
             }
         }
+        corners
     }
-    corners
 }

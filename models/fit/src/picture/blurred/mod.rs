@@ -1,5 +1,8 @@
 //! A drawing with the edges of a blur.
 
+#[cfg(test)]
+mod tests;
+
 use core::f64::consts::FRAC_2_SQRT_PI;
 
 #[cfg(not(feature = "std"))]

@@ -1,0 +1,125 @@
+//! Things of one color that lie on one another.
+
+use super::*;
+
+/// Disks of red in places and of radii, painted.
+fn disks(disks: &[([f64; 2], f64)]) -> Image<f32> {
+    paint(&scene(WHITE, disks.iter().map(|&(at, radius)| object(circle(radius), at, 0.0, RED)).collect()))
+}
+
+/// Whether each disk is there as a circle, within some pixels, and nothing else.
+fn are_found(found: &Scene<f32>, disks: &[([f64; 2], f64)], within: f64) -> bool {
+    let is_found = |&(at, radius): &([f64; 2], f64)| {
+        found.objects.iter().any(|object| {
+            let AnyShape::Circle(Circle { radius: found }) = object.shape else { return false };
+            let pixels = |value: f32| f64::from(value) * SIZE as f64;
+            let [x, y] = object.pose.translation.map(pixels);
+            (pixels(found) - radius).abs() < within && (x - at[0]).hypot(y - at[1]) < within
+        })
+    };
+    found.objects.len() == disks.len() && disks.iter().all(is_found)
+}
+
+#[test]
+fn disks_that_overlap_are_circles() {
+    // Of the middle one two stretches are seen, and the three close in on a gap.
+    let chain = [([30.3, 40.2], 12.0), ([44.6, 48.1], 12.0), ([57.2, 38.7], 12.0)];
+    let around = [([38.0, 40.0], 11.0), ([56.0, 41.0], 10.0), ([47.3, 56.4], 10.5)];
+    let near = [([40.2, 48.3], 15.0), ([55.9, 44.8], 9.0)];
+    for made in [&chain[..], &around, &near] {
+        let picture = disks(made);
+        let found = found(&picture);
+        assert!(are_found(&found, made, 0.05), "{found:?}");
+        assert!(error(&picture, &found) < 1e-3);
+    }
+}
+
+#[test]
+fn all_of_a_heap_know_of_it() {
+    let made = [([30.3, 40.2], 12.0), ([44.6, 48.1], 12.0), ([75.0, 70.0], 12.0)];
+    let traced = trace(&disks(&made).view(), &Known::default()).unwrap();
+    let heaps: Vec<Option<usize>> = traced.doubts.iter().map(|doubt| doubt.heap).collect();
+    let alone = heaps.iter().position(Option::is_none).unwrap();
+    assert_eq!(heaps.len(), 3);
+    assert!((f64::from(traced.scene.objects[alone].pose.translation[0]) * SIZE as f64 - 75.0).abs() < 0.1);
+    assert_eq!(heaps[(alone + 1) % 3], heaps[(alone + 2) % 3]);
+}
+
+#[test]
+fn triangles_that_overlap_are_others_again() {
+    let triangle = || {
+        let points = vec![[0.0, -10.0], [9.0, 6.0], [-9.0, 6.0]];
+        AnyShape::Path(Path { rings: vec![PathRing::polygon(points)], fill: FillRule::EvenOdd })
+    };
+    let at = |x, y| object(triangle(), [x, y], 0.0, BLUE);
+    let made = scene(WHITE, vec![at(20.3, 24.4), at(60.2, 50.1), at(68.7, 58.3), at(56.4, 61.2)]);
+    let picture = paint(&made);
+    let found = found(&picture);
+    assert_eq!(found.objects.len(), 4, "{found:?}");
+    assert!(error(&picture, &found) < 1e-3);
+    // Without one that is seen whole they are what is seen.
+    let heap = paint(&scene(WHITE, made.objects[1..].to_vec()));
+    assert_eq!(self::found(&heap).objects.len(), 1);
+}
+
+/// A closed path of arcs of one bulge around a place.
+fn scallops(count: usize, radius: f64, bulge: f64) -> AnyShape<f64> {
+    let turn = |k: usize| core::f64::consts::TAU * k as f64 / count as f64;
+    let points = (0..count).map(|k| [radius * turn(k).cos(), radius * turn(k).sin()]).collect();
+    let ring = PathRing { points, segments: vec![Segment::Arc { bulge }; count] };
+    AnyShape::Path(Path { rings: vec![ring], fill: FillRule::EvenOdd })
+}
+
+#[test]
+fn a_thing_of_arcs_that_round_things_do_not_fill_is_one() {
+    for count in [8, 12] {
+        let picture = paint(&scene(WHITE, vec![object(scallops(count, 28.0, 0.8), [48.2, 47.7], 0.0, RED)]));
+        let found = found(&picture);
+        assert_eq!(found.objects.len(), 1, "{found:?}");
+        assert!(error(&picture, &found) < 2e-3);
+    }
+}
+
+/// Two to four disks, each next to one before, none hidden by more than about half.
+fn heaps() -> impl Strategy<Value = Vec<([f64; 2], f64)>> {
+    let next = (0.0..core::f64::consts::TAU, 0.75..1.6, 8.0..13.0);
+    proptest::collection::vec(next, 2..5).prop_map(|steps| {
+        let mut heap: Vec<([f64; 2], f64)> = Vec::new();
+        let mut way = 0.0;
+        for (turn, apart, radius) in steps {
+            let Some(&([x, y], before)) = heap.last() else {
+                heap.push(([48.0, 48.0], radius));
+                way = turn;
+                continue;
+            };
+            // On around, so that none comes to lie on those before the last.
+            way += 0.25 * turn - 0.125 * core::f64::consts::TAU;
+            let far = apart * f64::max(before, radius);
+            heap.push(([x + far * way.cos(), y + far * way.sin()], radius));
+        }
+        heap
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { rng_seed: RngSeed::Fixed(41), cases: 48, ..ProptestConfig::default() })]
+
+    #[test]
+    fn heaps_of_disks_come_back(heap in heaps()) {
+        let is_inside = |&([x, y], radius): &([f64; 2], f64)| {
+            [x, y].iter().all(|&at| at > radius + 2.0 && at + radius + 2.0 < SIZE as f64)
+        };
+        prop_assume!(heap.iter().all(is_inside));
+        let picture = disks(&heap);
+        let found = found(&picture);
+        // Radii that are about equal are made so, which moves an edge by up to a fifth of a pixel.
+        prop_assert!(error(&picture, &found) < 2e-3, "{found:?}");
+        // Of what is nearly hidden, or touches, less can be told.
+        let is_told = heap.iter().enumerate().all(|(k, one)| heap[..k].iter().all(|other| {
+            let far = (one.0[0] - other.0[0]).hypot(one.0[1] - other.0[1]);
+            far > 0.75 * one.1.max(other.1) && (far < 0.9 * (one.1 + other.1) || far > one.1 + other.1 + 2.0)
+        }));
+        prop_assume!(is_told);
+        prop_assert!(are_found(&found, &heap, 0.2), "{heap:?} {found:?}");
+    }
+}
