@@ -34,7 +34,7 @@ use share::{Explains, Shared};
 use stretch::Stretches;
 
 /// Windows so near to a corner (pixels) see both sides of it.
-const SPOILED: f64 = 1.5;
+const SPOILED: f64 = 2.0;
 /// And further by so many standard deviations of the blur, which also fills what is between two things as far from where they are nearest.
 const SPOILED_BLURS: f64 = 2.0;
 /// What a blur moves an edge by beside another one, standard deviations of the blur.
