@@ -17,7 +17,8 @@ use alloc::rc::Rc;
 use alloc::vec::Vec;
 
 use dvp_core::Vec2;
-use dvp_core::contour::signed_area;
+use dvp_core::contour::{contains, signed_area};
+use dvp_core::geometry::Bounds;
 use dvp_core::shape::FillRule;
 use dvp_core::sort;
 #[cfg(not(feature = "std"))]
@@ -87,7 +88,7 @@ fn parts(completion: &Completion<'_>, group: &Group, models: &Models) -> Option<
     }
     let bits = parts.iter().map(|part| part.bits).sum();
     let outlines: Vec<Outline> = parts.into_iter().filter_map(|part| part.outline).collect();
-    if outlines.len() < 2 || are_side_by_side(&outlines, completed) {
+    if outlines.len() < 2 || are_side_by_side(&outlines, completed) || blur > 0.0 && are_in_one_another(&outlines) {
         return None;
     }
     // As many numbers say either: things that people draw hardly turn inward.
@@ -104,6 +105,16 @@ fn are_side_by_side(outlines: &[Outline], seen: &Completed) -> bool {
     let all: f64 = outlines.iter().map(|outline| area(outline).abs()).sum();
     let shown = seen.outlines.iter().map(area).sum::<f64>().abs();
     !outlines.iter().all(is_round) && all - shown < LEAST_SHARED * (outlines.len() - 1) as f64
+}
+
+/// Whether the middle of an outline lies in another one. Where edges are blurred two such are what one thing may be that is uneven.
+fn are_in_one_another(outlines: &[Outline]) -> bool {
+    let polygons: Vec<Vec<[f64; 2]>> = outlines.iter().filter_map(raster::polygon).collect();
+    let middle = |polygon: &[[f64; 2]]| Bounds::of_vertices(polygon).map(|bounds| bounds.center().to_array());
+    let is_in = |k: usize, other: usize| {
+        k != other && middle(&polygons[k]).is_some_and(|middle| contains(&polygons[other], middle))
+    };
+    (0..polygons.len()).any(|k| (0..polygons.len()).any(|other| is_in(k, other)))
 }
 
 /// Bits of radii that are told once: those of a path are equal by now if they are to be.

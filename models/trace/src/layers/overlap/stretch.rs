@@ -8,10 +8,8 @@ use crate::outline::{Outline, OutlineShape};
 use crate::sample::{RingSamples, Sample};
 use crate::stroke::piece::{direction, pieces};
 
-/// Sine of the turn of a corner.
+/// Sine of the turn of a corner: cells that are a little uneven turn inward by half as much over as many windows.
 const LEAST_TURN: f64 = 0.3;
-/// Sine of the turn of a place where edges are blurred, or an outline was drawn across the corner.
-const LEAST_BEND: f64 = 0.1;
 /// Windows so near to a corner outward (pixels) hold it: they tell of both sides.
 const CORNER: f64 = 1.0;
 /// Windows to either side that tell which way a boundary goes.
@@ -55,7 +53,7 @@ impl Stretches {
         };
         let inner = REACH..stretch.len().saturating_sub(REACH);
         let most = inner.map(|k| (turn(k), at(k))).min_by(|a, b| a.0.total_cmp(&b.0));
-        let Some((_, cut)) = most.filter(|most| most.0 < -LEAST_BEND) else { return false };
+        let Some((_, cut)) = most.filter(|most| most.0 < -LEAST_TURN) else { return false };
         let is_cut = |sample: &Sample| (sample.point - cut).length() < self.spoiled;
         self.samples.extend(stretch.split(is_cut).map(<[Sample]>::to_vec));
         self.cuts.push(cut);
