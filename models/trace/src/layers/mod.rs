@@ -16,7 +16,7 @@
 //! | `complete` | outlines of what is painted together, in an order |
 //! | `lead` | outlines through what is seen, led around what they must not hide |
 //! | `repeat` | what is another thing again, elsewhere and in another size |
-//! | `overlap` | round things of one color that lie on one another |
+//! | `overlap` | things of one color that lie on one another |
 //! | `frame` | the square that a pen has drawn and others hide in part |
 //! | `template` | how an outline lies on what is seen of another thing |
 //! | `swap` | who lies in front, once that is known |

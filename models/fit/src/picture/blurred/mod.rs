@@ -17,7 +17,7 @@ use crate::paint::Canvas;
 
 /// Step of the softness that is looked for, as a share: a softness off by half of it is seen by less than what a blur that is none of Gauss leaves.
 const STEP: f32 = 1.05;
-/// Most steps: the blur is known to a tenth.
+/// Most steps, up to a fifth: two pictures had their least at one or two.
 const MOST_STEPS: usize = 4;
 
 /// A scene with edges as soft as a blur of some standard deviation (pixels) makes them.
