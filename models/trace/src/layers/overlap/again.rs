@@ -1,144 +1,188 @@
-//! Straight things of the picture, one of which stretches of a boundary may be again.
+//! Straight things of the picture that are there again, in a heap.
 //!
-//! The sides of a thing without a corner inward have each a direction of their own: that of the boundary tells which side is seen, and two sides tell
-//! where the thing is.
+//! Of things without a corner inward, a corner outward of what they cover together is a corner of one of them: it tells where that is.
 
-use alloc::rc::Rc;
+use alloc::vec;
 use alloc::vec::Vec;
 
 use dvp_core::Vec2;
-use dvp_core::contour::signed_area;
+use dvp_core::contour::contains;
 use dvp_core::geometry::{Bounds, LineSegment, Similarity};
-use dvp_core::sort;
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
-use super::super::complete::Completed;
-use super::super::join::Group;
+use super::super::raster;
+use super::model::Model;
+use super::stretch::{Corner, Stretches};
 use crate::elimination::solve;
-use crate::outline::{Outline, OutlineShape};
+use crate::outline::Outline;
 use crate::ruler::Ruler;
 use crate::sample::Sample;
 use crate::tuning;
 
-/// Most sides of a model.
-const MOST_SIDES: usize = 8;
-/// Shortest side of a model, pixels: between its corners three windows tell its direction.
-const SHORTEST_SIDE: f64 = 5.0;
-/// Most models, those of which there are most things.
-const MOST_MODELS: usize = 4;
-/// Things whose sizes differ by less (pixels) are of one model.
-const ALIKE: f64 = 0.2;
-/// Sine of the angle between a side and a boundary that may be of it: three windows tell it to a few degrees.
+/// Sine of the angle between sides that may be the same.
 const ALONG: f64 = 0.1;
-/// Share of all that sides tell of a place that the less known direction has at least, of 1/4 where both are known alike.
-const TOLD: f64 = 0.01;
+/// What of a boundary lies nearer to a thing (pixels) is its outline: a corner of an outline is off by tenths where its sides are short.
+const NEAR: f64 = 0.4;
+/// Fewest windows that only one thing explains: as many as tell of one side that it is there.
+const LEAST_TOLD: usize = 3;
+/// So far inside (pixels) of each side, at these shares of it, a thing covers only what the heap does.
+const INSIDE: f64 = 0.5;
+const PROBES: [f64; 4] = [0.125, 0.375, 0.625, 0.875];
+/// Things are side by side that are closer (pixels), or overlap by less: a pixel, by which equal things differ on the grid of pixels.
+const BESIDE: f64 = 1.1;
 /// Steps in which a model comes to lie.
 const STEPS: usize = 3;
 
-/// Straight things that are seen whole.
-pub(super) struct Models(Vec<Model>);
-
-/// A straight thing.
-struct Model {
-    outline: Outline,
-    /// Its sides, the thing on the right of each.
-    sides: Vec<LineSegment<f64>>,
-    /// How many things are like it.
-    count: usize,
+/// The things of one kind that have corners of the outlines of a heap, and lie in it; what is left of the stretches of its boundary stays. Each kind is
+/// given as the models that may be of it: things of several kinds that lie on one another are a figure. None if they are one that are of one kind.
+pub(super) fn take(
+    kinds: &[Vec<Model>],
+    stretches: &mut Stretches,
+    heap: &[Outline],
+    ruler: &Ruler,
+) -> Option<Vec<Outline>> {
+    let samples: Vec<Sample> = stretches.samples.iter().flatten().copied().collect();
+    let heap: Vec<Vec<[f64; 2]>> = heap.iter().filter_map(raster::polygon).collect();
+    let taken = kinds.iter().map(|kind| Taken::of(kind, &stretches.corners, &samples, &heap));
+    let count = |is_told: &[bool]| is_told.iter().filter(|&&is_told| is_told).count();
+    let Some(taken) = taken.max_by_key(|taken| count(&taken.is_told)) else { return Some(Vec::new()) };
+    if taken.is_figure() {
+        return None;
+    }
+    let mut is_told = taken.is_told.iter();
+    let mut left = |stretch: &Vec<Sample>| {
+        let is_left = |sample: &Sample| is_told.next().is_some_and(|is_told| !is_told).then_some(*sample);
+        let left: Vec<Option<Sample>> = stretch.iter().map(is_left).collect();
+        left.split(Option::is_none).map(|run| run.iter().copied().flatten().collect()).collect::<Vec<_>>()
+    };
+    stretches.samples = stretches.samples.iter().flat_map(&mut left).collect();
+    let choice = (kinds.len() as f64).log2() + tuning::OUTLINE_PIECE_BITS;
+    let outlines = taken.places.iter().enumerate().map(|(k, (place, on))| {
+        let first = if k == 0 { choice + place.model.bits(ruler) } else { 0.0 };
+        place.outline(on, first, ruler)
+    });
+    Some(outlines.collect())
 }
 
-impl Models {
-    /// The models of what is painted.
-    pub(super) fn of(groups: &[Group]) -> Self {
-        let mut models: Vec<Model> = Vec::new();
-        for model in groups.iter().filter_map(|group| Model::of(&group.completed)) {
-            match models.iter_mut().find(|other| other.is_like(&model)) {
-                Some(other) => other.count += 1,
-                None => models.push(model),
-            }
+/// Things of one kind in a heap.
+struct Taken<'a> {
+    /// Where they are, and what of the boundary said so.
+    places: Vec<(Place<'a>, Vec<Sample>)>,
+    /// Which samples of the boundary are of their outlines.
+    is_told: Vec<bool>,
+}
+
+impl<'a> Taken<'a> {
+    /// The thing that explains most of a boundary, again and again.
+    fn of(kind: &'a [Model], corners: &[Corner], samples: &[Sample], heap: &[Vec<[f64; 2]>]) -> Self {
+        let mut left: Vec<Place<'_>> = kind.iter().flat_map(|model| places(model, corners)).collect();
+        left.retain(|place| place.is_in(heap));
+        let (mut places, mut is_told) = (Vec::new(), vec![false; samples.len()]);
+        while !left.is_empty() {
+            let told = |place: &Place<'_>| {
+                let new = samples.iter().zip(&is_told).filter(|&(sample, is_told)| !is_told && place.has(sample));
+                new.map(|(sample, _)| *sample).collect::<Vec<_>>()
+            };
+            let most = left.iter().map(told).enumerate().max_by_key(|(_, told)| told.len());
+            let Some((k, on)) = most.filter(|(_, told)| told.len() >= LEAST_TOLD) else { break };
+            let place = left.swap_remove(k).fitted(&on);
+            is_told.iter_mut().zip(samples).for_each(|(is_told, sample)| *is_told |= place.has(sample));
+            places.push((place, on));
         }
-        sort::descending(&mut models, |model| model.count as f64);
-        models.truncate(MOST_MODELS);
-        Self(models)
+        Self { places, is_told }
     }
 
-    /// The shortest description of stretches as a model in some place.
-    pub(super) fn explain(&self, runs: &[Vec<Sample>], ruler: &Ruler) -> Option<Outline> {
-        let choice = (self.0.len() as f64).log2() + tuning::OUTLINE_PIECE_BITS;
-        let placed = self.0.iter().filter_map(|model| model.placed(runs, ruler));
-        let placed = placed.map(|outline| Outline { bits: outline.bits + choice, ..outline });
-        placed.min_by(|a, b| (a.bits + a.misfit).total_cmp(&(b.bits + b.misfit)))
+    /// Whether each thing lies beside another one: such make another thing together, as the squares of codes and of letters do. Those that lie on one another
+    /// by chance hardly do.
+    fn is_figure(&self) -> bool {
+        let place = |k: usize| &self.places[k].0;
+        let count = self.places.len();
+        let has_other = |k: usize| (0..count).any(|other| other != k && place(k).is_beside(place(other)));
+        count > 1 && (0..count).all(has_other)
     }
 }
 
-impl Model {
-    /// A thing of few straight sides without a corner inward.
-    fn of(completed: &Rc<Completed>) -> Option<Self> {
-        let [outline] = &completed.outlines[..] else { return None };
-        let is_round = matches!(outline.shape, OutlineShape::Circle { .. } | OutlineShape::Ellipse { .. });
-        let mut corners: Vec<[f64; 2]> = completed.sides().iter().map(|side| side.from.to_array()).collect();
-        if signed_area(&corners) < 0.0 {
-            corners.reverse();
-        }
-        let sides: Vec<LineSegment<f64>> = LineSegment::closed(&corners).collect();
-        let next = sides.iter().cycle().skip(1);
-        let is_outward = sides.iter().zip(next).all(|(side, next)| side.along.cross(next.along) > 0.0);
-        let are_told = sides.len() <= MOST_SIDES && sides.iter().all(|side| side.along.length() >= SHORTEST_SIDE);
-        (completed.agrees && !is_round && is_outward && are_told).then(|| Self {
-            outline: outline.clone(),
-            sides,
-            count: 1,
-        })
-    }
-
-    /// Whether another one is the same but for its place.
-    fn is_like(&self, other: &Self) -> bool {
-        let size = |model: &Self| Bounds::of(model.sides.iter().map(|side| side.from)).map(|bounds| bounds.size());
-        let are_near = |(one, other): (Vec2<f64>, Vec2<f64>)| (one - other).length() < ALIKE;
-        self.sides.len() == other.sides.len() && size(self).zip(size(other)).is_some_and(are_near)
-    }
-
-    /// The model where stretches are of it; none if they do not tell where that is.
-    fn placed(&self, runs: &[Vec<Sample>], ruler: &Ruler) -> Option<Outline> {
-        let directed = runs.iter().flat_map(|run| run.iter().zip(directions(run)));
-        let on: Vec<(&Sample, &LineSegment<f64>)> =
-            directed.filter_map(|(sample, direction)| Some((sample, self.side_along(direction)?))).collect();
-        let mut shift = moved(&on, None)?;
-        let nearest = |sample: &Sample, shift: Vec2<f64>| {
-            let off = |side: &&LineSegment<f64>| side.nearest(sample.point - shift).offset.length_squared();
-            self.sides.iter().min_by(|a, b| off(a).total_cmp(&off(b)))
+/// The places of a model in which it has a corner that an outline has.
+fn places<'a>(model: &'a Model, corners: &[Corner]) -> Vec<Place<'a>> {
+    let next = model.sides.iter().cycle().skip(1);
+    let places = |(before, after): (&LineSegment<f64>, &LineSegment<f64>)| {
+        let along = [before, after].map(|side| side.along.normalized().unwrap_or_default());
+        let is_along = |corner: &&Corner| {
+            (0..2).all(|k| along[k].dot(corner.sides[k]) > 0.0 && along[k].cross(corner.sides[k]).abs() < ALONG)
         };
+        let shift = |corner: &Corner| Place { model, shift: corner.at - after.from };
+        corners.iter().filter(is_along).map(shift).collect::<Vec<_>>()
+    };
+    model.sides.iter().zip(next).flat_map(places).collect()
+}
+
+/// A model in a place.
+struct Place<'a> {
+    model: &'a Model,
+    shift: Vec2<f64>,
+}
+
+impl<'a> Place<'a> {
+    /// The side of the model nearest to a sample, and how far that is (pixels).
+    fn off(&self, sample: &Sample) -> (&'a LineSegment<f64>, f64) {
+        let off = |side: &'a LineSegment<f64>| (side, side.nearest(sample.point - self.shift).offset.length());
+        let sides = self.model.sides[1..].iter().map(off);
+        sides.fold(off(&self.model.sides[0]), |best, side| if side.1 < best.1 { side } else { best })
+    }
+
+    /// Whether a sample is of its outline.
+    fn has(&self, sample: &Sample) -> bool {
+        self.off(sample).1 < NEAR
+    }
+
+    /// Whether it covers nothing but what polygons do.
+    fn is_in(&self, heap: &[Vec<[f64; 2]>]) -> bool {
+        let mut points = self.model.sides.iter().flat_map(|side| {
+            let inward = side.along.normalized().unwrap_or_default().perp() * INSIDE;
+            PROBES.map(|share| side.from + side.along * share + inward + self.shift)
+        });
+        points.all(|point| heap.iter().filter(|polygon| contains(polygon, point.to_array())).count() % 2 == 1)
+    }
+
+    /// Whether a side of one is about where one of the other begins, and they are not apart.
+    fn is_beside(&self, other: &Self) -> bool {
+        let bounds = |place: &Self| Bounds::of(place.model.sides.iter().map(|side| side.from + place.shift));
+        if !bounds(self).zip(bounds(other)).is_some_and(|(here, there)| here.meets(&there, BESIDE)) {
+            return false;
+        }
+        let are_same = |here: &LineSegment<f64>, there: &LineSegment<f64>| {
+            let along = here.along.normalized().unwrap_or_default();
+            let back = there.along.normalized().unwrap_or_default();
+            let apart = along.cross(there.from + other.shift - here.from - self.shift).abs();
+            along.dot(back) < 0.0 && along.cross(back).abs() < ALONG && apart < BESIDE
+        };
+        let sides = &self.model.sides;
+        sides.iter().any(|side| other.model.sides.iter().any(|there| are_same(side, there)))
+    }
+
+    /// The place nearest to samples.
+    fn fitted(mut self, on: &[Sample]) -> Self {
         for _ in 0..STEPS {
-            let on: Vec<(&Sample, &LineSegment<f64>)> =
-                runs.iter().flatten().filter_map(|sample| Some((sample, nearest(sample, shift)?))).collect();
-            shift = moved(&on, Some(shift))?;
+            let on: Vec<(&Sample, &LineSegment<f64>)> = on.iter().map(|sample| (sample, self.off(sample).0)).collect();
+            self.shift = moved(&on, self.shift).unwrap_or(self.shift);
         }
+        self
+    }
+
+    /// The outline there, at so many bits beside those of its place, and how well it fits samples.
+    fn outline(&self, on: &[Sample], bits: f64, ruler: &Ruler) -> Outline {
         let chi2 = |sample: &Sample| {
-            let side = nearest(sample, shift)?;
-            let off = side.nearest(sample.point - shift).offset.length() / sigma(sample, side);
+            let (side, off) = self.off(sample);
+            let off = off / sigma(sample, side);
             // What the end of a stretch shows of something else is off by as much as it likes.
-            Some(off * off.min(tuning::OUTLINE_HUBER))
+            off * off.min(tuning::OUTLINE_HUBER)
         };
-        let misfit = ruler.misfit(runs.iter().flatten().filter_map(chi2).sum());
-        let map = Similarity { translation: shift, ..Similarity::identity() };
-        let bits = 2.0 * ruler.number(tuning::RENDERER_SIGMA);
-        Some(Outline { shape: self.outline.shape.moved(&map), bits, misfit, covariance: Vec::new() })
+        let misfit = ruler.misfit(on.iter().map(chi2).sum());
+        let map = Similarity { translation: self.shift, ..Similarity::identity() };
+        let bits = bits + 2.0 * ruler.number(tuning::RENDERER_SIGMA);
+        Outline { shape: self.model.shape.moved(&map), bits, misfit, covariance: Vec::new() }
     }
-
-    /// The side that has a direction.
-    fn side_along(&self, direction: Vec2<f64>) -> Option<&LineSegment<f64>> {
-        let has_it = |along: Vec2<f64>| along.dot(direction) > 0.0 && along.cross(direction).abs() < ALONG;
-        self.sides.iter().find(|side| side.along.normalized().is_some_and(has_it))
-    }
-}
-
-/// The directions of a stretch at its samples.
-fn directions(run: &[Sample]) -> impl Iterator<Item = Vec2<f64>> {
-    (0..run.len()).map(|k| {
-        let along = run[(k + 1).min(run.len() - 1)].point - run[k.saturating_sub(1)].point;
-        along.normalized().unwrap_or_default()
-    })
 }
 
 /// Deviation (pixels) of the distance of a sample from a side.
@@ -147,16 +191,14 @@ fn sigma(sample: &Sample, side: &LineSegment<f64>) -> f64 {
     (sample.sigma * normal.dot(sample.axis).abs()).hypot(tuning::RENDERER_SIGMA)
 }
 
-/// The shift that brings sides to samples, by all alike or, from a shift on, by those that are near; none if the sides are about parallel.
-fn moved(on: &[(&Sample, &LineSegment<f64>)], from: Option<Vec2<f64>>) -> Option<Vec2<f64>> {
+/// The shift that brings sides nearer to samples, from one that is near; none if the sides are about parallel.
+fn moved(on: &[(&Sample, &LineSegment<f64>)], shift: Vec2<f64>) -> Option<Vec2<f64>> {
     let (mut matrix, mut right) = ([[0.0; 2]; 2], [0.0; 2]);
-    let shift = from.unwrap_or_default();
     for (sample, side) in on {
         let normal = side.along.normalized()?.perp();
         let sigma = sigma(sample, side);
         let off = normal.dot(sample.point - side.from - shift);
-        let sigmas = if from.is_some() { off.abs() / sigma } else { 0.0 };
-        let weight = tuning::OUTLINE_HUBER / sigmas.max(tuning::OUTLINE_HUBER) / (sigma * sigma);
+        let weight = tuning::OUTLINE_HUBER / (off.abs() / sigma).max(tuning::OUTLINE_HUBER) / (sigma * sigma);
         let normal = normal.to_array();
         for i in 0..2 {
             right[i] += weight * normal[i] * off;
@@ -165,7 +207,5 @@ fn moved(on: &[(&Sample, &LineSegment<f64>)], from: Option<Vec2<f64>>) -> Option
             }
         }
     }
-    let [[a, b], [_, c]] = matrix;
-    let is_told = a * c - b * b > TOLD * (a + c) * (a + c);
-    is_told.then(|| solve(matrix, right)).flatten().map(|step| shift + Vec2::from(step))
+    solve(matrix, right).map(|step| shift + Vec2::from(step))
 }

@@ -5,11 +5,13 @@
 //! |---|---|
 //! | `stretch` | what of a boundary lies between corners inward |
 //! | `share` | which stretches are of one thing |
-//! | `again` | straight things of the picture, one of which stretches may be again |
+//! | `model` | straight things that the picture shows |
+//! | `again` | such things that are there again, in a heap |
 //!
 //! No corner need be told: it is where two outlines meet. A thing of which more than one stretch is seen is told once.
 
 mod again;
+mod model;
 mod share;
 mod stretch;
 
@@ -17,7 +19,7 @@ use alloc::rc::Rc;
 use alloc::vec::Vec;
 
 use dvp_core::Vec2;
-use dvp_core::contour::{contains, signed_area};
+use dvp_core::contour::contains;
 use dvp_core::geometry::Bounds;
 use dvp_core::shape::FillRule;
 use dvp_core::sort;
@@ -30,8 +32,8 @@ use super::{raster, walk};
 use crate::outline::{Outline, OutlineShape};
 use crate::ruler::Ruler;
 use crate::tuning;
-use again::Models;
-use share::{Explains, Shared};
+use model::Model;
+use share::Shared;
 use stretch::Stretches;
 
 /// Windows so near to a corner (pixels) see both sides of it.
@@ -40,10 +42,10 @@ const SPOILED: f64 = 2.0;
 const SPOILED_BLURS: f64 = 2.0;
 /// What a blur moves an edge by beside another one, standard deviations of the blur.
 const BLURRED_SIGMA: f64 = 0.05;
-/// Square pixels that straight things which overlap share at least, each with one other: more than their outlines are off by.
-const LEAST_SHARED: f64 = 0.5;
 /// Radii closer than so many of their standard deviations together may be equal.
 const EQUAL: f64 = 3.0;
+/// Most corners outward of one boundary: more are those of something uneven.
+const MOST_CORNERS: usize = 64;
 /// Least share of an outline that is seen where others may hide the rest.
 const LEAST_SEEN: f64 = 0.25;
 
@@ -53,16 +55,16 @@ pub(super) fn part(completion: &Completion<'_>, groups: &mut [Group]) {
     if completion.partition.is_hard {
         return;
     }
-    let models = Models::of(groups);
+    let kinds = model::kinds(groups);
     for group in groups {
-        if let Some(parts) = parts(completion, group, &models) {
+        if let Some(parts) = parts(completion, group, &kinds) {
             group.completed = Rc::new(parts);
         }
     }
 }
 
 /// The things that a group is; none if it is no heap of such.
-fn parts(completion: &Completion<'_>, group: &Group, models: &Models) -> Option<Completed> {
+fn parts(completion: &Completion<'_>, group: &Group, kinds: &[Vec<Model>]) -> Option<Completed> {
     let completed = &group.completed;
     let is_path = |outline: &Outline| matches!(outline.shape, OutlineShape::Path(_));
     let is_pen = completion.pen(&group.faces).is_some();
@@ -80,31 +82,26 @@ fn parts(completion: &Completion<'_>, group: &Group, models: &Models) -> Option<
     for sample in rings.iter_mut().flat_map(|ring| &mut ring.runs).flatten() {
         sample.sigma = sample.sigma.hypot(BLURRED_SIGMA * blur);
     }
-    let stretches = Stretches::new(rings, &completed.outlines, SPOILED + SPOILED_BLURS * blur);
-    let Shared { parts, cuts } = share::share(stretches, &Explains { models, ruler: &completion.ruler })?;
+    let mut stretches = Stretches::new(rings, &completed.outlines, SPOILED + SPOILED_BLURS * blur, blur > 0.0);
+    if stretches.corners.len() > MOST_CORNERS {
+        return None;
+    }
+    let straight = again::take(kinds, &mut stretches, &completed.outlines, &completion.ruler)?;
+    let Shared { parts, cuts } = share::share(stretches, &completion.ruler)?;
     // Of what goes on behind others no pixel tells that it is not there.
     if !is_closed && parts.iter().any(|part| part.seen() < LEAST_SEEN) {
         return None;
     }
-    let bits = parts.iter().map(|part| part.bits).sum();
-    let outlines: Vec<Outline> = parts.into_iter().filter_map(|part| part.outline).collect();
-    if outlines.len() < 2 || are_side_by_side(&outlines, completed) || blur > 0.0 && are_in_one_another(&outlines) {
+    let told: f64 = straight.iter().map(|outline| outline.bits + outline.misfit).sum();
+    let bits = told + parts.iter().map(|part| part.bits).sum::<f64>();
+    let outlines: Vec<Outline> = parts.into_iter().filter_map(|part| part.outline).chain(straight).collect();
+    if outlines.len() < 2 || blur > 0.0 && are_in_one_another(&outlines) {
         return None;
     }
     // As many numbers say either: things that people draw hardly turn inward.
     let most = completed.bits + tuning::LEAST_SAVED * outlines.len() as f64 + spared(&outlines, &completion.ruler);
     let are_right = bits < most && fits(completion, &outlines, &place, &cuts, SPOILED + 2.0 * SPOILED_BLURS * blur);
     are_right.then(|| Completed { are_things: true, bits, ..Completed::new(outlines, true) })
-}
-
-/// Whether there are straight things among some outlines, and these cover no more in all than what is seen: squares that make another thing together.
-fn are_side_by_side(outlines: &[Outline], seen: &Completed) -> bool {
-    let area = |outline: &Outline| raster::polygon(outline).map_or(0.0, |polygon| signed_area(&polygon));
-    let is_round =
-        |outline: &Outline| matches!(outline.shape, OutlineShape::Circle { .. } | OutlineShape::Ellipse { .. });
-    let all: f64 = outlines.iter().map(|outline| area(outline).abs()).sum();
-    let shown = seen.outlines.iter().map(area).sum::<f64>().abs();
-    !outlines.iter().all(is_round) && all - shown < LEAST_SHARED * (outlines.len() - 1) as f64
 }
 
 /// Whether the middle of an outline lies in another one. Where edges are blurred two such are what one thing may be that is uneven.

@@ -8,7 +8,6 @@ use dvp_core::contour::perimeter;
 use dvp_core::geometry::Bounds;
 
 use super::super::raster;
-use super::again::Models;
 use super::stretch::Stretches;
 use crate::outline::{Outline, fit_round};
 use crate::ruler::Ruler;
@@ -32,13 +31,6 @@ pub(super) struct Shared {
     pub(super) cuts: Vec<Vec2<f64>>,
 }
 
-/// What stretches may be of, and at which price.
-pub(super) struct Explains<'a> {
-    /// Straight things of the picture.
-    pub(super) models: &'a Models,
-    pub(super) ruler: &'a Ruler,
-}
-
 /// Stretches of one thing.
 pub(super) struct Part {
     stretches: Vec<usize>,
@@ -51,16 +43,14 @@ pub(super) struct Part {
 }
 
 impl Part {
-    fn new(stretches: Vec<usize>, of: &[Vec<Sample>], Explains { models, ruler }: &Explains<'_>) -> Self {
+    fn new(stretches: Vec<usize>, of: &[Vec<Sample>], ruler: &Ruler) -> Self {
         let runs: Vec<Vec<Sample>> = stretches.iter().map(|&k| of[k].clone()).collect();
         let count: usize = runs.iter().map(Vec::len).sum();
         let polygon = 2.0 * count as f64 * ruler.number(POLYGON_SIGMA);
         let price = |outline: &Outline| outline.bits + outline.misfit;
-        let model = models.explain(&runs, ruler);
         let rings = RingSamples { runs, closed: false };
         let round = fit_round(&rings, ruler).filter(|outline| is_around(outline, &rings.runs));
-        let outlines = [round, model].into_iter().flatten().filter(|outline| price(outline) < polygon);
-        let outline = outlines.min_by(|a, b| price(a).total_cmp(&price(b)));
+        let outline = round.filter(|outline| price(outline) < polygon);
         let bits = outline.as_ref().map_or(polygon, price);
         Self { stretches, count, outline, bits }
     }
@@ -69,7 +59,7 @@ impl Part {
     fn may_join(&self, other: &Self) -> bool {
         let (Some(one), Some(other)) = (&self.outline, &other.outline) else { return true };
         let [(here, one, _), (there, other, _)] = [one, other].map(extent);
-        (here - there).length() < one.min(other)
+        (here - there).length() < one.max(other)
     }
 
     /// Bits of its outline, if it has one.
@@ -100,7 +90,7 @@ fn extent(outline: &Outline) -> (Vec2<f64>, f64, f64) {
 
 /// The things that stretches are of: again and again those two parts become one that cost least more by it. None if what is of none is more than a
 /// few windows.
-pub(super) fn share(mut left: Stretches, explains: &Explains<'_>) -> Option<Shared> {
+pub(super) fn share(mut left: Stretches, ruler: &Ruler) -> Option<Shared> {
     let (mut parts, mut stretches) = (Vec::new(), Vec::new());
     while let Some(stretch) = left.samples.pop() {
         // Short ones, and what only cracks tell, say nothing: pixels do.
@@ -109,7 +99,7 @@ pub(super) fn share(mut left: Stretches, explains: &Explains<'_>) -> Option<Shar
             continue;
         }
         stretches.push(stretch);
-        let part = Part::new(vec![parts.len()], &stretches, explains);
+        let part = Part::new(vec![parts.len()], &stretches, ruler);
         if part.outline.is_some() || part.count <= LONG {
             parts.push(part);
         } else if !left.cut(&stretches.pop()?) {
@@ -119,13 +109,13 @@ pub(super) fn share(mut left: Stretches, explains: &Explains<'_>) -> Option<Shar
             return None;
         }
     }
-    join(&mut parts, &stretches, explains);
+    join(&mut parts, &stretches, ruler);
     let is_explained = |part: &Part| part.outline.is_some() || part.count <= SHORT;
     parts.iter().all(is_explained).then_some(Shared { parts, cuts: left.cuts })
 }
 
 /// Joins parts as long as that makes the description shorter.
-fn join(parts: &mut Vec<Part>, stretches: &[Vec<Sample>], explains: &Explains<'_>) {
+fn join(parts: &mut Vec<Part>, stretches: &[Vec<Sample>], ruler: &Ruler) {
     // The first stretches of two parts, the bits that joining them costs more, and the part that they make.
     let mut pairs: Vec<([usize; 2], f64, Part)> = Vec::new();
     loop {
@@ -136,7 +126,7 @@ fn join(parts: &mut Vec<Part>, stretches: &[Vec<Sample>], explains: &Explains<'_
                     continue;
                 }
                 let both = a.stretches.iter().chain(&b.stretches).copied().collect();
-                let joined = Part::new(both, stretches, explains);
+                let joined = Part::new(both, stretches, ruler);
                 let is_shorter = joined.bits < a.bits + b.bits && joined.outline.is_some();
                 // What is of no outline by itself goes where it costs least, whatever it cost before.
                 let more = if is_shorter { joined.bits - a.known() - b.known() } else { f64::INFINITY };

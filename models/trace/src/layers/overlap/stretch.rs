@@ -8,8 +8,12 @@ use crate::outline::{Outline, OutlineShape};
 use crate::sample::{RingSamples, Sample};
 use crate::stroke::piece::{direction, pieces};
 
-/// Sine of the turn of a corner: cells that are a little uneven turn inward by half as much over as many windows.
-const LEAST_TURN: f64 = 0.3;
+/// Sine of the turn of a corner.
+pub(super) const LEAST_TURN: f64 = 0.3;
+/// Sine of the least turn inward at which what nothing explains is cut: cells that are a little uneven turn by half of the first over as many windows, and
+/// where edges are blurred no corner says more.
+const LEAST_CUT_BLURRED: f64 = 0.3;
+const LEAST_CUT: f64 = 0.1;
 /// Windows so near to a corner outward (pixels) hold it: they tell of both sides.
 const CORNER: f64 = 1.0;
 /// Windows to either side that tell which way a boundary goes.
@@ -20,15 +24,19 @@ pub(super) struct Stretches {
     pub(super) samples: Vec<Vec<Sample>>,
     /// Where they were cut.
     pub(super) cuts: Vec<Vec2<f64>>,
+    /// The corners outward of the outlines.
+    pub(super) corners: Vec<Corner>,
     /// Windows nearer to a cut (pixels) are left out.
     spoiled: f64,
+    /// Sine of the least turn inward at which a stretch is cut.
+    least_cut: f64,
 }
 
 impl Stretches {
     /// What of a boundary lies between the corners inward of the outlines that were drawn through it.
-    pub(super) fn new(rings: Vec<RingSamples>, outlines: &[Outline], spoiled: f64) -> Self {
+    pub(super) fn new(rings: Vec<RingSamples>, outlines: &[Outline], spoiled: f64, is_blurred: bool) -> Self {
         let Corners { inward: cuts, outward } = Corners::of(outlines);
-        let is_corner = |sample: &Sample| outward.iter().any(|&corner| (sample.point - corner).length() < CORNER);
+        let is_corner = |sample: &Sample| outward.iter().any(|corner| (sample.point - corner.at).length() < CORNER);
         let is_cut = |sample: &Sample| cuts.iter().any(|&cut| (sample.point - cut).length() < spoiled);
         let mut samples = Vec::new();
         for RingSamples { mut runs, closed } in rings {
@@ -41,7 +49,8 @@ impl Stretches {
                 samples.extend(run.split(is_cut).map(<[Sample]>::to_vec));
             }
         }
-        Self { samples, cuts, spoiled }
+        let least_cut = if is_blurred { LEAST_CUT_BLURRED } else { LEAST_CUT };
+        Self { samples, cuts, corners: outward, spoiled, least_cut }
     }
 
     /// Cuts a stretch where it turns inward most; whether it turns inward anywhere.
@@ -53,7 +62,7 @@ impl Stretches {
         };
         let inner = REACH..stretch.len().saturating_sub(REACH);
         let most = inner.map(|k| (turn(k), at(k))).min_by(|a, b| a.0.total_cmp(&b.0));
-        let Some((_, cut)) = most.filter(|most| most.0 < -LEAST_TURN) else { return false };
+        let Some((_, cut)) = most.filter(|most| most.0 < -self.least_cut) else { return false };
         let is_cut = |sample: &Sample| (sample.point - cut).length() < self.spoiled;
         self.samples.extend(stretch.split(is_cut).map(<[Sample]>::to_vec));
         self.cuts.push(cut);
@@ -61,11 +70,18 @@ impl Stretches {
     }
 }
 
+/// A corner of an outline.
+pub(super) struct Corner {
+    pub(super) at: Vec2<f64>,
+    /// Unit vectors along the outline, before the corner and after it.
+    pub(super) sides: [Vec2<f64>; 2],
+}
+
 /// The corners of outlines.
 #[derive(Default)]
 struct Corners {
     inward: Vec<Vec2<f64>>,
-    outward: Vec<Vec2<f64>>,
+    outward: Vec<Corner>,
 }
 
 impl Corners {
@@ -76,11 +92,12 @@ impl Corners {
             let pieces = pieces(ring);
             let before = pieces.iter().cycle().skip(pieces.len().saturating_sub(1));
             for (before, after) in before.zip(&pieces) {
-                let turn = direction(before, 1.0).cross(direction(after, 0.0));
+                let (at, sides) = (after.from(), [direction(before, 1.0), direction(after, 0.0)]);
+                let turn = sides[0].cross(sides[1]);
                 if turn < -LEAST_TURN {
-                    corners.inward.push(after.from());
+                    corners.inward.push(at);
                 } else if turn > LEAST_TURN {
-                    corners.outward.push(after.from());
+                    corners.outward.push(Corner { at, sides });
                 }
             }
         }
