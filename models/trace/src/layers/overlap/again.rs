@@ -44,9 +44,8 @@ pub(super) fn take(
 ) -> Option<Vec<Outline>> {
     let samples: Vec<Sample> = stretches.samples.iter().flatten().copied().collect();
     let heap: Vec<Vec<[f64; 2]>> = heap.iter().filter_map(raster::polygon).collect();
-    let taken = kinds.iter().map(|kind| Taken::of(kind, &stretches.corners, &samples, &heap));
-    let count = |is_told: &[bool]| is_told.iter().filter(|&&is_told| is_told).count();
-    let Some(taken) = taken.max_by_key(|taken| count(&taken.is_told)) else { return Some(Vec::new()) };
+    let taken = kinds.iter().map(|kind| Taken::of(kind, stretches, &samples, &heap));
+    let Some(taken) = taken.max_by_key(Taken::told) else { return Some(Vec::new()) };
     if taken.is_figure() {
         return None;
     }
@@ -74,23 +73,36 @@ struct Taken<'a> {
 }
 
 impl<'a> Taken<'a> {
-    /// The thing that explains most of a boundary, again and again.
-    fn of(kind: &'a [Model], corners: &[Corner], samples: &[Sample], heap: &[Vec<[f64; 2]>]) -> Self {
-        let mut left: Vec<Place<'_>> = kind.iter().flat_map(|model| places(model, corners)).collect();
-        left.retain(|place| place.is_in(heap));
-        let (mut places, mut is_told) = (Vec::new(), vec![false; samples.len()]);
-        while !left.is_empty() {
-            let told = |place: &Place<'_>| {
-                let new = samples.iter().zip(&is_told).filter(|&(sample, is_told)| !is_told && place.has(sample));
-                new.map(|(sample, _)| *sample).collect::<Vec<_>>()
-            };
-            let most = left.iter().map(told).enumerate().max_by_key(|(_, told)| told.len());
-            let Some((k, on)) = most.filter(|(_, told)| told.len() >= LEAST_TOLD) else { break };
-            let place = left.swap_remove(k).fitted(&on);
-            is_told.iter_mut().zip(samples).for_each(|(is_told, sample)| *is_told |= place.has(sample));
-            places.push((place, on));
+    /// Those of which a corner is seen; if these explain most of the boundary, then those of which two sides are.
+    fn of(kind: &'a [Model], of: &Stretches, samples: &[Sample], heap: &[Vec<[f64; 2]>]) -> Self {
+        let mut taken = Self { places: Vec::new(), is_told: vec![false; samples.len()] };
+        taken.take(kind.iter().flat_map(|model| at_corners(model, &of.corners)), samples, heap);
+        let told = taken.told();
+        if told < samples.len() && 2 * told > samples.len() {
+            taken.take(kind.iter().flat_map(|model| at_sides(model, &of.sides)), samples, heap);
         }
-        Self { places, is_told }
+        taken
+    }
+
+    /// How many samples are of their outlines.
+    fn told(&self) -> usize {
+        self.is_told.iter().filter(|&&is_told| is_told).count()
+    }
+
+    /// Takes the place that explains most of what is left of a boundary, again and again.
+    fn take(&mut self, places: impl Iterator<Item = Place<'a>>, samples: &[Sample], heap: &[Vec<[f64; 2]>]) {
+        let left = places.filter(|place| place.is_in(heap));
+        let mut left: Vec<(Place<'_>, Vec<usize>)> = left.map(|place| place.told(samples)).collect();
+        loop {
+            left.iter_mut().for_each(|(_, told)| told.retain(|&k| !self.is_told[k]));
+            left.retain(|(_, told)| told.len() >= LEAST_TOLD);
+            let Some(k) = (0..left.len()).max_by_key(|&k| left[k].1.len()) else { return };
+            let (place, told) = left.swap_remove(k);
+            let on: Vec<Sample> = told.iter().map(|&k| samples[k]).collect();
+            let (place, told) = place.fitted(&on).told(samples);
+            told.iter().for_each(|&k| self.is_told[k] = true);
+            self.places.push((place, on));
+        }
     }
 
     /// Whether each thing lies beside another one: such make another thing together, as the squares of codes and of letters do. Those that lie on one another
@@ -104,17 +116,48 @@ impl<'a> Taken<'a> {
 }
 
 /// The places of a model in which it has a corner that an outline has.
-fn places<'a>(model: &'a Model, corners: &[Corner]) -> Vec<Place<'a>> {
+fn at_corners<'a>(model: &'a Model, corners: &[Corner]) -> Vec<Place<'a>> {
     let next = model.sides.iter().cycle().skip(1);
     let places = |(before, after): (&LineSegment<f64>, &LineSegment<f64>)| {
-        let along = [before, after].map(|side| side.along.normalized().unwrap_or_default());
-        let is_along = |corner: &&Corner| {
-            (0..2).all(|k| along[k].dot(corner.sides[k]) > 0.0 && along[k].cross(corner.sides[k]).abs() < ALONG)
+        let is_here = |corner: &&Corner| {
+            let [first, second] = corner.sides;
+            is_along(before, first) && is_along(after, second)
         };
         let shift = |corner: &Corner| Place { model, shift: corner.at - after.from };
-        corners.iter().filter(is_along).map(shift).collect::<Vec<_>>()
+        corners.iter().filter(is_here).map(shift).collect::<Vec<_>>()
     };
     model.sides.iter().zip(next).flat_map(places).collect()
+}
+
+/// The places of a model in which two of its sides lie on sides of an outline.
+fn at_sides<'a>(model: &'a Model, sides: &[LineSegment<f64>]) -> Vec<Place<'a>> {
+    let mut places = Vec::new();
+    for (k, one) in model.sides.iter().enumerate() {
+        for other in &model.sides[..k] {
+            let of = |side: &LineSegment<f64>| {
+                let along = side.along.normalized().unwrap_or_default();
+                let here = sides.iter().filter(|there| is_along(there, along));
+                here.map(|there| there.from - side.from).collect::<Vec<_>>()
+            };
+            let cross = one.along.cross(other.along);
+            for off in of(one) {
+                for there in of(other) {
+                    // Where the lines of both sides meet.
+                    let shift = off + one.along * ((there - off).cross(other.along) / cross);
+                    if shift.x.is_finite() && shift.y.is_finite() {
+                        places.push(Place { model, shift });
+                    }
+                }
+            }
+        }
+    }
+    places
+}
+
+/// Whether a side points about along a unit vector.
+fn is_along(side: &LineSegment<f64>, along: Vec2<f64>) -> bool {
+    let here = side.along.normalized().unwrap_or_default();
+    here.dot(along) > 0.0 && here.cross(along).abs() < ALONG
 }
 
 /// A model in a place.
@@ -131,9 +174,10 @@ impl<'a> Place<'a> {
         sides.fold(off(&self.model.sides[0]), |best, side| if side.1 < best.1 { side } else { best })
     }
 
-    /// Whether a sample is of its outline.
-    fn has(&self, sample: &Sample) -> bool {
-        self.off(sample).1 < NEAR
+    /// The place, and which samples are of its outline.
+    fn told(self, samples: &[Sample]) -> (Self, Vec<usize>) {
+        let told = (0..samples.len()).filter(|&k| self.off(&samples[k]).1 < NEAR).collect();
+        (self, told)
     }
 
     /// Whether it covers nothing but what polygons do.

@@ -100,9 +100,11 @@ pub(super) fn share(mut left: Stretches, ruler: &Ruler) -> Option<Shared> {
         }
         stretches.push(stretch);
         let part = Part::new(vec![parts.len()], &stretches, ruler);
-        if part.outline.is_some() || part.count <= LONG {
+        if part.outline.is_none() && left.cut(stretches.last()?) {
+            stretches.pop();
+        } else if part.outline.is_some() || part.count <= LONG {
             parts.push(part);
-        } else if !left.cut(&stretches.pop()?) {
+        } else {
             return None;
         }
         if stretches.len() > MOST_STRETCHES {

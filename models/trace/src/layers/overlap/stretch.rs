@@ -3,6 +3,8 @@
 use alloc::vec::Vec;
 
 use dvp_core::Vec2;
+use dvp_core::geometry::LineSegment;
+use dvp_core::shape::Piece;
 
 use crate::outline::{Outline, OutlineShape};
 use crate::sample::{RingSamples, Sample};
@@ -24,8 +26,9 @@ pub(super) struct Stretches {
     pub(super) samples: Vec<Vec<Sample>>,
     /// Where they were cut.
     pub(super) cuts: Vec<Vec2<f64>>,
-    /// The corners outward of the outlines.
+    /// The corners outward of the outlines, and their straight sides.
     pub(super) corners: Vec<Corner>,
+    pub(super) sides: Vec<LineSegment<f64>>,
     /// Windows nearer to a cut (pixels) are left out.
     spoiled: f64,
     /// Sine of the least turn inward at which a stretch is cut.
@@ -35,7 +38,7 @@ pub(super) struct Stretches {
 impl Stretches {
     /// What of a boundary lies between the corners inward of the outlines that were drawn through it.
     pub(super) fn new(rings: Vec<RingSamples>, outlines: &[Outline], spoiled: f64, is_blurred: bool) -> Self {
-        let Corners { inward: cuts, outward } = Corners::of(outlines);
+        let Corners { inward: cuts, outward, sides } = Corners::of(outlines);
         let is_corner = |sample: &Sample| outward.iter().any(|corner| (sample.point - corner.at).length() < CORNER);
         let is_cut = |sample: &Sample| cuts.iter().any(|&cut| (sample.point - cut).length() < spoiled);
         let mut samples = Vec::new();
@@ -50,7 +53,7 @@ impl Stretches {
             }
         }
         let least_cut = if is_blurred { LEAST_CUT_BLURRED } else { LEAST_CUT };
-        Self { samples, cuts, corners: outward, spoiled, least_cut }
+        Self { samples, cuts, corners: outward, sides, spoiled, least_cut }
     }
 
     /// Cuts a stretch where it turns inward most; whether it turns inward anywhere.
@@ -82,6 +85,7 @@ pub(super) struct Corner {
 struct Corners {
     inward: Vec<Vec2<f64>>,
     outward: Vec<Corner>,
+    sides: Vec<LineSegment<f64>>,
 }
 
 impl Corners {
@@ -90,6 +94,10 @@ impl Corners {
         for outline in outlines {
             let OutlineShape::Path(ring) = &outline.shape else { continue };
             let pieces = pieces(ring);
+            corners.sides.extend(pieces.iter().filter_map(|piece| match *piece {
+                Piece::Line { from, to } => Some(LineSegment::new(from, to)),
+                _ => None,
+            }));
             let before = pieces.iter().cycle().skip(pieces.len().saturating_sub(1));
             for (before, after) in before.zip(&pieces) {
                 let (at, sides) = (after.from(), [direction(before, 1.0), direction(after, 0.0)]);
