@@ -6,12 +6,10 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use dvp_core::Vec2;
-use dvp_core::contour::contains;
 use dvp_core::geometry::{Bounds, LineSegment, Similarity};
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
-use super::super::raster;
 use super::model::Model;
 use super::stretch::{Corner, Stretches};
 use crate::elimination::solve;
@@ -26,8 +24,8 @@ const ALONG: f64 = 0.1;
 const NEAR: f64 = 0.4;
 /// Fewest windows that only one thing explains: as many as tell of one side that it is there.
 const LEAST_TOLD: usize = 3;
-/// So far inside (pixels) of each side, at these shares of it, a thing covers only what the heap does.
-const INSIDE: f64 = 0.5;
+/// So far inside (pixels) of each side, at these shares of it, pixels are of the heap: where the side is not that of a pixel too, half of that is.
+const INSIDE: f64 = 0.75;
 const PROBES: [f64; 4] = [0.125, 0.375, 0.625, 0.875];
 /// Things are side by side that are closer (pixels), or overlap by less: a pixel, by which equal things differ on the grid of pixels.
 const BESIDE: f64 = 1.1;
@@ -39,12 +37,11 @@ const STEPS: usize = 3;
 pub(super) fn take(
     kinds: &[Vec<Model>],
     stretches: &mut Stretches,
-    heap: &[Outline],
+    is_heap: &dyn Fn(Vec2<f64>) -> bool,
     ruler: &Ruler,
 ) -> Option<Vec<Outline>> {
     let samples: Vec<Sample> = stretches.samples.iter().flatten().copied().collect();
-    let heap: Vec<Vec<[f64; 2]>> = heap.iter().filter_map(raster::polygon).collect();
-    let taken = kinds.iter().map(|kind| Taken::of(kind, stretches, &samples, &heap));
+    let taken = kinds.iter().map(|kind| Taken::of(kind, stretches, &samples, is_heap));
     let Some(taken) = taken.max_by_key(Taken::told) else { return Some(Vec::new()) };
     if taken.is_figure() {
         return None;
@@ -74,12 +71,12 @@ struct Taken<'a> {
 
 impl<'a> Taken<'a> {
     /// Those of which a corner is seen; if these explain most of the boundary, then those of which two sides are.
-    fn of(kind: &'a [Model], of: &Stretches, samples: &[Sample], heap: &[Vec<[f64; 2]>]) -> Self {
+    fn of(kind: &'a [Model], of: &Stretches, samples: &[Sample], is_heap: &dyn Fn(Vec2<f64>) -> bool) -> Self {
         let mut taken = Self { places: Vec::new(), is_told: vec![false; samples.len()] };
-        taken.take(kind.iter().flat_map(|model| at_corners(model, &of.corners)), samples, heap);
+        taken.take(kind.iter().flat_map(|model| at_corners(model, &of.corners)), samples, is_heap);
         let told = taken.told();
         if told < samples.len() && 2 * told > samples.len() {
-            taken.take(kind.iter().flat_map(|model| at_sides(model, &of.sides)), samples, heap);
+            taken.take(kind.iter().flat_map(|model| at_sides(model, &of.sides)), samples, is_heap);
         }
         taken
     }
@@ -90,8 +87,13 @@ impl<'a> Taken<'a> {
     }
 
     /// Takes the place that explains most of what is left of a boundary, again and again.
-    fn take(&mut self, places: impl Iterator<Item = Place<'a>>, samples: &[Sample], heap: &[Vec<[f64; 2]>]) {
-        let left = places.filter(|place| place.is_in(heap));
+    fn take(
+        &mut self,
+        places: impl Iterator<Item = Place<'a>>,
+        samples: &[Sample],
+        is_heap: &dyn Fn(Vec2<f64>) -> bool,
+    ) {
+        let left = places.filter(|place| place.is_in(is_heap));
         let mut left: Vec<(Place<'_>, Vec<usize>)> = left.map(|place| place.told(samples)).collect();
         loop {
             left.iter_mut().for_each(|(_, told)| told.retain(|&k| !self.is_told[k]));
@@ -176,23 +178,28 @@ impl<'a> Place<'a> {
 
     /// The place, and which samples are of its outline.
     fn told(self, samples: &[Sample]) -> (Self, Vec<usize>) {
-        let told = (0..samples.len()).filter(|&k| self.off(&samples[k]).1 < NEAR).collect();
+        let is_around = |point: Vec2<f64>| {
+            let point = point - self.shift;
+            Bounds { min: point, max: point }.meets(&self.model.bounds, NEAR)
+        };
+        let is_told = |&k: &usize| is_around(samples[k].point) && self.off(&samples[k]).1 < NEAR;
+        let told = (0..samples.len()).filter(is_told).collect();
         (self, told)
     }
 
-    /// Whether it covers nothing but what polygons do.
-    fn is_in(&self, heap: &[Vec<[f64; 2]>]) -> bool {
-        let mut points = self.model.sides.iter().flat_map(|side| {
+    /// Whether it covers nothing but pixels of the heap.
+    fn is_in(&self, is_heap: &dyn Fn(Vec2<f64>) -> bool) -> bool {
+        self.model.sides.iter().all(|side| {
             let inward = side.along.normalized().unwrap_or_default().perp() * INSIDE;
-            PROBES.map(|share| side.from + side.along * share + inward + self.shift)
-        });
-        points.all(|point| heap.iter().filter(|polygon| contains(polygon, point.to_array())).count() % 2 == 1)
+            PROBES.iter().all(|&share| is_heap(side.from + side.along * share + inward + self.shift))
+        })
     }
 
     /// Whether a side of one is about where one of the other begins, and they are not apart.
     fn is_beside(&self, other: &Self) -> bool {
-        let bounds = |place: &Self| Bounds::of(place.model.sides.iter().map(|side| side.from + place.shift));
-        if !bounds(self).zip(bounds(other)).is_some_and(|(here, there)| here.meets(&there, BESIDE)) {
+        let there = &other.model.bounds;
+        let apart = other.shift - self.shift;
+        if !self.model.bounds.meets(&Bounds { min: there.min + apart, max: there.max + apart }, BESIDE) {
             return false;
         }
         let are_same = |here: &LineSegment<f64>, there: &LineSegment<f64>| {

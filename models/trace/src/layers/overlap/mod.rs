@@ -86,7 +86,12 @@ fn parts(completion: &Completion<'_>, group: &Group, kinds: &[Vec<Model>]) -> Op
     if stretches.corners.len() > MOST_CORNERS {
         return None;
     }
-    let straight = again::take(kinds, &mut stretches, &completed.outlines, &completion.ruler)?;
+    let [width, height] = completion.partition.size;
+    let is_heap = |Vec2 { x, y }: Vec2<f64>| {
+        let is_seen = x >= 0.0 && y >= 0.0 && x < width as f64 && y < height as f64;
+        is_seen && group.faces.contains(&completion.partition.labels[y as usize * width + x as usize])
+    };
+    let straight = again::take(kinds, &mut stretches, &is_heap, &completion.ruler)?;
     let Shared { parts, cuts } = share::share(stretches, &completion.ruler)?;
     // Of what goes on behind others no pixel tells that it is not there.
     if !is_closed && parts.iter().any(|part| part.seen() < LEAST_SEEN) {

@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use dvp_core::Vec2;
 use dvp_core::contour::signed_area;
-use dvp_core::geometry::LineSegment;
+use dvp_core::geometry::{Bounds, LineSegment};
 use dvp_core::shape::{PathRing, Piece, Segment};
 use dvp_core::sort;
 #[cfg(not(feature = "std"))]
@@ -36,6 +36,7 @@ pub(super) struct Model {
     pub(super) shape: OutlineShape,
     /// Its sides, the thing on the right of each.
     pub(super) sides: Vec<LineSegment<f64>>,
+    pub(super) bounds: Bounds<f64>,
     /// Whether one of them is seen whole.
     pub(super) is_whole: bool,
     /// How many things are like it.
@@ -73,7 +74,8 @@ impl Model {
         let are_told = sides.len() <= MOST_SIDES && sides.iter().all(|side| side.along.length() >= SHORTEST_SIDE);
         let ring = PathRing { points: corners.to_vec(), segments: alloc::vec![Segment::Line; corners.len()] };
         let shape = rectangle(&sides).unwrap_or(OutlineShape::Path(ring));
-        (is_outward && are_told).then_some(Self { shape, sides, is_whole: false, count: 1 })
+        let bounds = Bounds::of_vertices(corners)?;
+        (is_outward && are_told).then_some(Self { shape, sides, bounds, is_whole: false, count: 1 })
     }
 
     /// What is seen whole.
