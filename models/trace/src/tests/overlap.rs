@@ -57,9 +57,51 @@ fn triangles_that_overlap_are_others_again() {
     let found = found(&picture);
     assert_eq!(found.objects.len(), 4, "{found:?}");
     assert!(error(&picture, &found) < 1e-3);
-    // Without one that is seen whole they are what is seen.
-    let heap = paint(&scene(WHITE, made.objects[1..].to_vec()));
-    assert_eq!(self::found(&heap).objects.len(), 1);
+    // Without one that is seen whole, two that show all but a corner tell what they are; one does not.
+    for apart in [[10.0, 7.0], [-9.0, 6.0]] {
+        let heap = paint(&scene(WHITE, vec![at(40.3, 45.2), at(40.3 + apart[0], 45.2 + apart[1])]));
+        assert_eq!(self::found(&heap).objects.len(), 2);
+    }
+    let notched = AnyShape::Path(Path {
+        rings: vec![PathRing::polygon(vec![[-12.0, -9.0], [0.0, -2.0], [12.0, -9.0], [9.0, 11.0], [-9.0, 11.0]])],
+        fill: FillRule::EvenOdd,
+    });
+    let alone = paint(&scene(WHITE, vec![object(notched, [48.0, 48.0], 0.0, BLUE)]));
+    assert_eq!(self::found(&alone).objects.len(), 1);
+}
+
+/// Upright rectangles by their sides, in red.
+fn rectangles(sides: &[[f64; 4]]) -> Image<f32> {
+    let rectangle = |&[left, top, right, bottom]: &[f64; 4]| {
+        object(rectangle(right - left, bottom - top), [0.5 * (left + right), 0.5 * (top + bottom)], 0.0, RED)
+    };
+    paint(&scene(WHITE, sides.iter().map(rectangle).collect()))
+}
+
+#[test]
+fn squares_that_overlap_are_others_again() {
+    let whole = [5.0, 5.0, 20.0, 20.0];
+    // Sides on one line; one that is a pixel wider, as on the grid of pixels; one of which no corner is seen.
+    let in_line = [[30.0, 30.0, 45.0, 45.0], [40.0, 30.0, 55.0, 45.0], [46.0, 39.0, 61.0, 54.0]];
+    let wider = [[30.0, 30.0, 45.0, 45.0], [38.0, 41.0, 54.0, 56.0]];
+    let crossed =
+        [[30.0, 30.0, 45.0, 45.0], [41.0, 27.0, 56.0, 42.0], [36.0, 36.0, 51.0, 51.0], [45.0, 40.0, 60.0, 55.0]];
+    for heap in [&in_line[..], &wider, &crossed] {
+        let picture = rectangles(&[&[whole], heap].concat());
+        let found = found(&picture);
+        assert_eq!(found.objects.len(), heap.len() + 1, "{found:?}");
+        assert!(error(&picture, &found) < 1e-4);
+    }
+}
+
+#[test]
+fn squares_side_by_side_are_a_figure() {
+    let [whole, a, b] = [[5.0, 5.0, 20.0, 20.0], [30.0, 30.0, 45.0, 45.0], [45.0, 30.0, 60.0, 45.0]];
+    // An L, and one whose squares overlap by the pixel by which they may be larger.
+    for c in [[30.0, 45.0, 45.0, 60.0], [30.0, 44.0, 45.0, 59.0]] {
+        let found = found(&rectangles(&[whole, a, b, c]));
+        assert_eq!(found.objects.len(), 2, "{found:?}");
+    }
 }
 
 /// A closed path of arcs of one bulge around a place.

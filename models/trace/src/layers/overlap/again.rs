@@ -27,8 +27,8 @@ const LEAST_TOLD: usize = 3;
 /// So far inside (pixels) of each side, at these shares of it, pixels are of the heap: where the side is not that of a pixel too, half of that is.
 const INSIDE: f64 = 0.75;
 const PROBES: [f64; 4] = [0.125, 0.375, 0.625, 0.875];
-/// Things are side by side that are closer (pixels), or overlap by less: a pixel, by which equal things differ on the grid of pixels.
-const BESIDE: f64 = 1.1;
+/// Things are side by side that are closer (pixels), or overlap by less: by a pixel each, by which equal things differ on the grid of pixels.
+const BESIDE: f64 = 2.1;
 /// Steps in which a model comes to lie.
 const STEPS: usize = 3;
 

@@ -27,6 +27,8 @@ const SHORTEST_SIDE: f64 = 5.0;
 const MOST_KINDS: usize = 4;
 /// Sides that differ by less (pixels) may be of one model.
 const ALIKE: f64 = 0.3;
+/// Sine of the angle between two parts of one side, at most.
+const STRAIGHT: f64 = 0.05;
 /// Sides whose lengths are off by less (pixels) from whole numbers were put on the grid of pixels.
 const ON_GRID: f64 = 0.02;
 
@@ -90,7 +92,7 @@ impl Model {
         Some(Self { shape: outline.shape.clone(), is_whole: true, ..model })
     }
 
-    /// What parts of an outline show but for one corner: there the lines before and after them meet.
+    /// What parts of an outline show but for one corner, where the lines before and after them meet, or for the middle of one side.
     fn but_for_a_corner(outline: &Outline) -> Vec<Self> {
         let OutlineShape::Path(ring) = &outline.shape else { return Vec::new() };
         let pieces = pieces(ring);
@@ -108,7 +110,11 @@ impl Model {
             let corners = (first..first + count).take_while(|&k| turns[k % count]);
             let mut corners: Vec<[f64; 2]> = corners.map(|k| at(k).to().to_array()).collect();
             let (before, after) = (at(first), at(first + corners.len()));
-            corners.push(meeting(before, after)?.to_array());
+            // Of a side whose middle is hidden both ends are seen.
+            let is_one_side = direction(before, 0.0).cross(direction(after, 1.0)).abs() < STRAIGHT;
+            if !is_one_side {
+                corners.push(meeting(before, after)?.to_array());
+            }
             Self::new(&corners)
         };
         firsts.filter_map(model).collect()
