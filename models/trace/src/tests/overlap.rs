@@ -26,7 +26,10 @@ fn disks_that_overlap_are_circles() {
     let chain = [([30.3, 40.2], 12.0), ([44.6, 48.1], 12.0), ([57.2, 38.7], 12.0)];
     let around = [([38.0, 40.0], 11.0), ([56.0, 41.0], 10.0), ([47.3, 56.4], 10.5)];
     let near = [([40.2, 48.3], 15.0), ([55.9, 44.8], 9.0)];
-    for made in [&chain[..], &around, &near] {
+    // A notch between two of them is too narrow for the outline to show it.
+    let narrow =
+        [([48.4, 36.3], 8.4), ([44.6, 45.0], 8.4), ([44.6, 58.5], 8.4), ([30.3, 54.0], 8.4), ([21.8, 51.3], 8.4)];
+    for made in [&chain[..], &around, &near, &narrow] {
         let picture = disks(made);
         let found = found(&picture);
         assert!(are_found(&found, made, 0.05), "{found:?}");
@@ -81,17 +84,22 @@ fn rectangles(sides: &[[f64; 4]]) -> Image<f32> {
 #[test]
 fn squares_that_overlap_are_others_again() {
     let whole = [5.0, 5.0, 20.0, 20.0];
-    // Sides on one line; one that is a pixel wider, as on the grid of pixels; one of which no corner is seen.
+    // Sides on one line, and one that is a pixel wider, as on the grid of pixels.
     let in_line = [[30.0, 30.0, 45.0, 45.0], [40.0, 30.0, 55.0, 45.0], [46.0, 39.0, 61.0, 54.0]];
     let wider = [[30.0, 30.0, 45.0, 45.0], [38.0, 41.0, 54.0, 56.0]];
-    let crossed =
-        [[30.0, 30.0, 45.0, 45.0], [41.0, 27.0, 56.0, 42.0], [36.0, 36.0, 51.0, 51.0], [45.0, 40.0, 60.0, 55.0]];
-    for heap in [&in_line[..], &wider, &crossed] {
+    for heap in [&in_line[..], &wider] {
         let picture = rectangles(&[&[whole], heap].concat());
         let found = found(&picture);
         assert_eq!(found.objects.len(), heap.len() + 1, "{found:?}");
         assert!(error(&picture, &found) < 1e-4);
     }
+}
+
+#[test]
+fn a_square_of_which_no_corner_is_seen_is_another_again() {
+    let lefts_and_tops = [[3.0, 3.0], [42.0, 42.0], [28.0, 28.0], [58.0, 26.0], [27.0, 58.0], [57.0, 59.0]];
+    let picture = rectangles(&lefts_and_tops.map(|[left, top]| [left, top, left + 22.0, top + 22.0]));
+    assert_eq!(found(&picture).objects.len(), 6);
 }
 
 #[test]
