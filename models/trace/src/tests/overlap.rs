@@ -60,7 +60,7 @@ fn triangles_that_overlap_are_others_again() {
     let found = found(&picture);
     assert_eq!(found.objects.len(), 4, "{found:?}");
     assert!(error(&picture, &found) < 1e-3);
-    // Without one that is seen whole, two that show all but a corner tell what they are; one does not.
+    // Without one that is seen whole, those that show all but a corner tell what they are.
     for apart in [[10.0, 7.0], [-9.0, 6.0]] {
         let heap = paint(&scene(WHITE, vec![at(40.3, 45.2), at(40.3 + apart[0], 45.2 + apart[1])]));
         assert_eq!(self::found(&heap).objects.len(), 2);

@@ -11,6 +11,7 @@ use dvp_core::geometry::{Bounds, LineSegment, Similarity};
 use num_traits::Float as _;
 
 use super::model::Model;
+use super::share::Part;
 use super::stretch::{Corner, Stretches};
 use crate::elimination::solve;
 use crate::outline::Outline;
@@ -27,19 +28,19 @@ const LEAST_TOLD: usize = 3;
 /// So far inside (pixels) of each side, at these shares of it, pixels are of the heap: where the side is not that of a pixel too, half of that is.
 const INSIDE: f64 = 0.75;
 const PROBES: [f64; 4] = [0.125, 0.375, 0.625, 0.875];
-/// Things are side by side that are closer (pixels), or overlap by less: by a pixel each, by which equal things differ on the grid of pixels.
-const BESIDE: f64 = 2.1;
+/// Things are side by side that are closer (pixels), or overlap by less, but for what they may be longer.
+const BESIDE: f64 = 0.1;
 /// Steps in which a model comes to lie.
 const STEPS: usize = 3;
 
 /// The things of one kind that have corners of the outlines of a heap, and lie in it; what is left of the stretches of its boundary stays. Each kind is
-/// given as the models that may be of it: things of several kinds that lie on one another are a figure. None if they are one that are of one kind.
+/// given as the models that may be of it: things of several kinds that lie on one another are a figure. So are things that lie side by side: then none.
 pub(super) fn take(
     kinds: &[Vec<Model>],
     stretches: &mut Stretches,
     is_heap: &dyn Fn(Vec2<f64>) -> bool,
     ruler: &Ruler,
-) -> Option<Vec<Outline>> {
+) -> Option<Vec<Part>> {
     let samples: Vec<Sample> = stretches.samples.iter().flatten().copied().collect();
     let taken = kinds.iter().map(|kind| Taken::of(kind, stretches, &samples, is_heap));
     let Some(taken) = taken.max_by_key(Taken::told) else { return Some(Vec::new()) };
@@ -54,11 +55,11 @@ pub(super) fn take(
     };
     stretches.samples = stretches.samples.iter().flat_map(&mut left).collect();
     let choice = (kinds.len() as f64).log2() + tuning::OUTLINE_PIECE_BITS;
-    let outlines = taken.places.iter().enumerate().map(|(k, (place, on))| {
+    let parts = taken.places.iter().enumerate().map(|(k, (place, on))| {
         let first = if k == 0 { choice + place.model.bits(ruler) } else { 0.0 };
-        place.outline(on, first, ruler)
+        Part::again(place.outline(on, first, ruler), on.len())
     });
-    Some(outlines.collect())
+    Some(parts.collect())
 }
 
 /// Things of one kind in a heap.
@@ -99,7 +100,7 @@ impl<'a> Taken<'a> {
             left.iter_mut().for_each(|(_, told)| told.retain(|&k| !self.is_told[k]));
             left.retain(|(_, told)| told.len() >= LEAST_TOLD);
             let Some(k) = (0..left.len()).max_by_key(|&k| left[k].1.len()) else { return };
-            let (place, told) = left.swap_remove(k);
+            let (place, told) = left.remove(k);
             let on: Vec<Sample> = told.iter().map(|&k| samples[k]).collect();
             let (place, told) = place.fitted(&on).told(samples);
             told.iter().for_each(|&k| self.is_told[k] = true);
@@ -198,15 +199,16 @@ impl<'a> Place<'a> {
     /// Whether a side of one is about where one of the other begins, and they are not apart.
     fn is_beside(&self, other: &Self) -> bool {
         let there = &other.model.bounds;
+        let near = BESIDE + self.model.longer + other.model.longer;
         let apart = other.shift - self.shift;
-        if !self.model.bounds.meets(&Bounds { min: there.min + apart, max: there.max + apart }, BESIDE) {
+        if !self.model.bounds.meets(&Bounds { min: there.min + apart, max: there.max + apart }, near) {
             return false;
         }
         let are_same = |here: &LineSegment<f64>, there: &LineSegment<f64>| {
             let along = here.along.normalized().unwrap_or_default();
             let back = there.along.normalized().unwrap_or_default();
             let apart = along.cross(there.from + other.shift - here.from - self.shift).abs();
-            along.dot(back) < 0.0 && along.cross(back).abs() < ALONG && apart < BESIDE
+            along.dot(back) < 0.0 && along.cross(back).abs() < ALONG && apart < near
         };
         let sides = &self.model.sides;
         sides.iter().any(|side| other.model.sides.iter().any(|there| are_same(side, there)))

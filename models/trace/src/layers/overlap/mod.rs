@@ -82,7 +82,7 @@ fn parts(completion: &Completion<'_>, group: &Group, kinds: &[Vec<Model>]) -> Op
     for sample in rings.iter_mut().flat_map(|ring| &mut ring.runs).flatten() {
         sample.sigma = sample.sigma.hypot(BLURRED_SIGMA * blur);
     }
-    let mut stretches = Stretches::new(rings, &completed.outlines, SPOILED + SPOILED_BLURS * blur, blur > 0.0);
+    let mut stretches = Stretches::new(rings, &completed.outlines, SPOILED + SPOILED_BLURS * blur);
     if stretches.corners.len() > MOST_CORNERS {
         return None;
     }
@@ -91,15 +91,15 @@ fn parts(completion: &Completion<'_>, group: &Group, kinds: &[Vec<Model>]) -> Op
         let is_seen = x >= 0.0 && y >= 0.0 && x < width as f64 && y < height as f64;
         is_seen && group.faces.contains(&completion.partition.labels[y as usize * width + x as usize])
     };
-    let straight = again::take(kinds, &mut stretches, &is_heap, &completion.ruler)?;
-    let Shared { parts, cuts } = share::share(stretches, &completion.ruler)?;
+    let again = again::take(kinds, &mut stretches, &is_heap, &completion.ruler)?;
+    let Shared { mut parts, cuts } = share::share(stretches, &completion.ruler)?;
+    parts.extend(again);
     // Of what goes on behind others no pixel tells that it is not there.
     if !is_closed && parts.iter().any(|part| part.seen() < LEAST_SEEN) {
         return None;
     }
-    let told: f64 = straight.iter().map(|outline| outline.bits + outline.misfit).sum();
-    let bits = told + parts.iter().map(|part| part.bits).sum::<f64>();
-    let outlines: Vec<Outline> = parts.into_iter().filter_map(|part| part.outline).chain(straight).collect();
+    let bits = parts.iter().map(|part| part.bits).sum();
+    let outlines: Vec<Outline> = parts.into_iter().filter_map(|part| part.outline).collect();
     if outlines.len() < 2 || blur > 0.0 && are_in_one_another(&outlines) {
         return None;
     }

@@ -41,12 +41,14 @@ pub(super) struct Model {
     pub(super) bounds: Bounds<f64>,
     /// Whether one of them is seen whole.
     pub(super) is_whole: bool,
+    /// By how many pixels its sides may be longer than those of the thing that is seen.
+    pub(super) longer: f64,
     /// How many things are like it.
     count: usize,
 }
 
-/// The kinds of things that are painted, the rarest first, each as the models that may be of it: what is seen whole, and what is seen more than once but
-/// for a corner. Of two models that explain as much the later is better.
+/// The kinds of things that are painted, the rarest first, each as the models that may be of it: what is seen whole, and what is seen but for a corner. Of
+/// two models that explain as much the later is better.
 pub(super) fn kinds(groups: &[Group]) -> Vec<Vec<Model>> {
     let mut models: Vec<Model> = Vec::new();
     for group in groups.iter().filter(|group| group.completed.agrees) {
@@ -60,8 +62,7 @@ pub(super) fn kinds(groups: &[Group]) -> Vec<Vec<Model>> {
             }
         }
     }
-    models.retain(|model| model.is_whole || model.count > 1);
-    sort::descending(&mut models, |model| model.count as f64);
+    sort::descending(&mut models, |model| (2 * model.count + usize::from(model.is_whole)) as f64);
     models.truncate(MOST_KINDS);
     let kind = |model: &Model| model.on_grid().into_iter().chain([model.clone()]).collect();
     models.iter().rev().map(kind).collect()
@@ -77,7 +78,7 @@ impl Model {
         let ring = PathRing { points: corners.to_vec(), segments: alloc::vec![Segment::Line; corners.len()] };
         let shape = rectangle(&sides).unwrap_or(OutlineShape::Path(ring));
         let bounds = Bounds::of_vertices(corners)?;
-        (is_outward && are_told).then_some(Self { shape, sides, bounds, is_whole: false, count: 1 })
+        (is_outward && are_told).then_some(Self { shape, sides, bounds, is_whole: false, longer: 0.0, count: 1 })
     }
 
     /// What is seen whole.
@@ -135,7 +136,7 @@ impl Model {
             Self::new(&[[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(corner))
         };
         let others = (0..9).filter(|&k| k != 4).filter_map(other);
-        others.map(|model| Self { is_whole: self.is_whole, ..model }).collect()
+        others.map(|model| Self { is_whole: self.is_whole, longer: 1.0, ..model }).collect()
     }
 
     /// Whether another one is the same but for its place.

@@ -55,6 +55,12 @@ impl Part {
         Self { stretches, count, outline, bits }
     }
 
+    /// A thing of which so many windows are seen.
+    pub(super) fn again(outline: Outline, count: usize) -> Self {
+        let bits = outline.bits + outline.misfit;
+        Self { stretches: Vec::new(), count, outline: Some(outline), bits }
+    }
+
     /// Whether it may be of the same thing as another one: their outlines lie on one another, if they have such.
     fn may_join(&self, other: &Self) -> bool {
         let (Some(one), Some(other)) = (&self.outline, &other.outline) else { return true };

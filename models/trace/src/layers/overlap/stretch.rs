@@ -10,12 +10,8 @@ use crate::outline::{Outline, OutlineShape};
 use crate::sample::{RingSamples, Sample};
 use crate::stroke::piece::{direction, pieces};
 
-/// Sine of the turn of a corner.
+/// Sine of the turn of a corner: cells that are a little uneven turn inward by half as much over as many windows.
 pub(super) const LEAST_TURN: f64 = 0.3;
-/// Sine of the least turn inward at which what nothing explains is cut: cells that are a little uneven turn by half of the first over as many windows, and
-/// where edges are blurred no corner says more.
-const LEAST_CUT_BLURRED: f64 = 0.3;
-const LEAST_CUT: f64 = 0.1;
 /// Windows so near to a corner outward (pixels) hold it: they tell of both sides.
 const CORNER: f64 = 1.0;
 /// Windows to either side that tell which way a boundary goes.
@@ -31,13 +27,11 @@ pub(super) struct Stretches {
     pub(super) sides: Vec<LineSegment<f64>>,
     /// Windows nearer to a cut (pixels) are left out.
     spoiled: f64,
-    /// Sine of the least turn inward at which a stretch is cut.
-    least_cut: f64,
 }
 
 impl Stretches {
     /// What of a boundary lies between the corners inward of the outlines that were drawn through it.
-    pub(super) fn new(rings: Vec<RingSamples>, outlines: &[Outline], spoiled: f64, is_blurred: bool) -> Self {
+    pub(super) fn new(rings: Vec<RingSamples>, outlines: &[Outline], spoiled: f64) -> Self {
         let Corners { inward: cuts, outward, sides } = Corners::of(outlines);
         let is_corner = |sample: &Sample| outward.iter().any(|corner| (sample.point - corner.at).length() < CORNER);
         let is_cut = |sample: &Sample| cuts.iter().any(|&cut| (sample.point - cut).length() < spoiled);
@@ -52,8 +46,7 @@ impl Stretches {
                 samples.extend(run.split(is_cut).map(<[Sample]>::to_vec));
             }
         }
-        let least_cut = if is_blurred { LEAST_CUT_BLURRED } else { LEAST_CUT };
-        Self { samples, cuts, corners: outward, sides, spoiled, least_cut }
+        Self { samples, cuts, corners: outward, sides, spoiled }
     }
 
     /// Cuts a stretch where it turns inward most; whether it turns inward anywhere.
@@ -65,7 +58,7 @@ impl Stretches {
         };
         let inner = REACH..stretch.len().saturating_sub(REACH);
         let most = inner.map(|k| (turn(k), at(k))).min_by(|a, b| a.0.total_cmp(&b.0));
-        let Some((_, cut)) = most.filter(|most| most.0 < -self.least_cut) else { return false };
+        let Some((_, cut)) = most.filter(|most| most.0 < -LEAST_TURN) else { return false };
         let is_cut = |sample: &Sample| (sample.point - cut).length() < self.spoiled;
         self.samples.extend(stretch.split(is_cut).map(<[Sample]>::to_vec));
         self.cuts.push(cut);
