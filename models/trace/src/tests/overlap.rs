@@ -85,7 +85,7 @@ fn rectangles(sides: &[[f64; 4]]) -> Image<f32> {
 fn squares_that_overlap_are_others_again() {
     let whole = [5.0, 5.0, 20.0, 20.0];
     // Sides on one line, and one that is a pixel wider, as on the grid of pixels.
-    let in_line = [[30.0, 30.0, 45.0, 45.0], [40.0, 30.0, 55.0, 45.0], [46.0, 39.0, 61.0, 54.0]];
+    let in_line = [[30.0, 30.0, 45.0, 45.0], [40.0, 30.0, 55.0, 45.0], [48.0, 40.0, 63.0, 55.0]];
     let wider = [[30.0, 30.0, 45.0, 45.0], [38.0, 41.0, 54.0, 56.0]];
     for heap in [&in_line[..], &wider] {
         let picture = rectangles(&[&[whole], heap].concat());
@@ -100,6 +100,25 @@ fn a_square_of_which_no_corner_is_seen_is_another_again() {
     let lefts_and_tops = [[3.0, 3.0], [42.0, 42.0], [28.0, 28.0], [58.0, 26.0], [27.0, 58.0], [57.0, 59.0]];
     let picture = rectangles(&lefts_and_tops.map(|[left, top]| [left, top, left + 22.0, top + 22.0]));
     assert_eq!(found(&picture).objects.len(), 6);
+}
+
+#[test]
+fn two_bars_in_a_row_are_a_longer_one() {
+    // The longer one has a bite at its foot, where a line crosses it.
+    let points = vec![[-8.0, -30.0], [8.0, -30.0], [8.0, 26.0], [7.0, 26.0], [7.0, 30.0], [-8.0, 30.0]];
+    let longer = AnyShape::Path(Path { rings: vec![PathRing::polygon(points)], fill: FillRule::EvenOdd });
+    let bar = object(rectangle(16.0, 40.0), [20.0, 58.0], 0.0, RED);
+    let picture = paint(&scene(WHITE, vec![bar, object(longer, [60.0, 48.0], 0.0, RED)]));
+    assert_eq!(found(&picture).objects.len(), 2);
+}
+
+#[test]
+fn things_of_another_color_are_no_models() {
+    let square = |x, y, color| object(rectangle(20.0, 20.0), [x, y], 0.0, color);
+    let picture =
+        paint(&scene(WHITE, vec![square(20.0, 20.0, BLUE), square(50.0, 50.0, RED), square(62.0, 58.0, RED)]));
+    // Of those that lie on one another three corners each are seen.
+    assert_eq!(found(&picture).objects.len(), 3);
 }
 
 #[test]

@@ -196,7 +196,8 @@ impl<'a> Place<'a> {
         })
     }
 
-    /// Whether a side of one is about where one of the other begins, and they are not apart.
+    /// Whether a side of one is about where one of the other begins, or two of its sides lie on the lines of two, and they are not apart: then both make
+    /// a longer thing.
     fn is_beside(&self, other: &Self) -> bool {
         let there = &other.model.bounds;
         let near = BESIDE + self.model.longer + other.model.longer;
@@ -204,14 +205,20 @@ impl<'a> Place<'a> {
         if !self.model.bounds.meets(&Bounds { min: there.min + apart, max: there.max + apart }, near) {
             return false;
         }
-        let are_same = |here: &LineSegment<f64>, there: &LineSegment<f64>| {
+        let mut in_row = 0;
+        for here in &self.model.sides {
             let along = here.along.normalized().unwrap_or_default();
-            let back = there.along.normalized().unwrap_or_default();
-            let apart = along.cross(there.from + other.shift - here.from - self.shift).abs();
-            along.dot(back) < 0.0 && along.cross(back).abs() < ALONG && apart < near
-        };
-        let sides = &self.model.sides;
-        sides.iter().any(|side| other.model.sides.iter().any(|there| are_same(side, there)))
+            let is_parallel = |there: &&LineSegment<f64>| is_along(there, along) || is_along(there, -along);
+            for there in other.model.sides.iter().filter(is_parallel) {
+                let off = along.cross(there.from + apart - here.from).abs();
+                let is_same_way = along.dot(there.along) > 0.0;
+                if !is_same_way && off < near {
+                    return true;
+                }
+                in_row += usize::from(is_same_way && off < BESIDE);
+            }
+        }
+        in_row > 1
     }
 
     /// The place nearest to samples.

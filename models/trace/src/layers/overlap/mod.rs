@@ -15,6 +15,7 @@ mod model;
 mod share;
 mod stretch;
 
+use alloc::collections::BTreeMap;
 use alloc::rc::Rc;
 use alloc::vec::Vec;
 
@@ -55,10 +56,17 @@ pub(super) fn part(completion: &Completion<'_>, groups: &mut [Group]) {
     if completion.partition.is_hard {
         return;
     }
-    let kinds = model::kinds(groups);
+    let color = |group: &Group| group.faces.first().map(|&face| completion.partition.faces[face as usize].color);
+    let mut of_color: BTreeMap<Option<usize>, Vec<&mut Group>> = BTreeMap::new();
     for group in groups {
-        if let Some(parts) = parts(completion, group, &kinds) {
-            group.completed = Rc::new(parts);
+        of_color.entry(color(group)).or_default().push(group);
+    }
+    for groups in of_color.into_values() {
+        let kinds = model::kinds(groups.iter().map(|group| &*group.completed));
+        for group in groups {
+            if let Some(parts) = parts(completion, group, &kinds) {
+                group.completed = Rc::new(parts);
+            }
         }
     }
 }

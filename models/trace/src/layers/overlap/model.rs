@@ -1,6 +1,5 @@
 //! Straight things without a corner inward that the picture shows.
 
-use alloc::rc::Rc;
 use alloc::vec::Vec;
 
 use dvp_core::Vec2;
@@ -12,7 +11,6 @@ use dvp_core::sort;
 use num_traits::Float as _;
 
 use super::super::complete::Completed;
-use super::super::join::Group;
 use super::stretch::LEAST_TURN;
 use crate::outline::{Outline, OutlineShape};
 use crate::ruler::Ruler;
@@ -47,13 +45,13 @@ pub(super) struct Model {
     count: usize,
 }
 
-/// The kinds of things that are painted, the rarest first, each as the models that may be of it: what is seen whole, and what is seen but for a corner. Of
-/// two models that explain as much the later is better.
-pub(super) fn kinds(groups: &[Group]) -> Vec<Vec<Model>> {
+/// The kinds of what is painted in one color, the rarest first, each as the models that may be of it: what is seen whole, and what is seen but for a
+/// corner. Of two models that explain as much the later is better.
+pub(super) fn kinds<'a>(painted: impl Iterator<Item = &'a Completed>) -> Vec<Vec<Model>> {
     let mut models: Vec<Model> = Vec::new();
-    for group in groups.iter().filter(|group| group.completed.agrees) {
-        let whole = Model::whole(&group.completed);
-        let hidden = group.completed.outlines.iter().flat_map(Model::but_for_a_corner);
+    for completed in painted.filter(|completed| completed.agrees) {
+        let whole = Model::whole(completed);
+        let hidden = completed.outlines.iter().flat_map(Model::but_for_a_corner);
         for model in whole.into_iter().chain(hidden) {
             match models.iter_mut().find(|other| other.is_like(&model)) {
                 Some(other) if other.is_whole || !model.is_whole => other.count += 1,
@@ -82,7 +80,7 @@ impl Model {
     }
 
     /// What is seen whole.
-    fn whole(completed: &Rc<Completed>) -> Option<Self> {
+    fn whole(completed: &Completed) -> Option<Self> {
         let [outline] = &completed.outlines[..] else { return None };
         let is_round = matches!(outline.shape, OutlineShape::Circle { .. } | OutlineShape::Ellipse { .. });
         let mut corners: Vec<[f64; 2]> = completed.sides().iter().map(|side| side.from.to_array()).collect();
