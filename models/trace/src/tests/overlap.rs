@@ -104,21 +104,12 @@ fn a_square_of_which_no_corner_is_seen_is_another_again() {
 
 #[test]
 fn two_bars_in_a_row_are_a_longer_one() {
-    // The longer one has a bite at its foot, where a line crosses it.
-    let points = vec![[-8.0, -30.0], [8.0, -30.0], [8.0, 26.0], [7.0, 26.0], [7.0, 30.0], [-8.0, 30.0]];
+    // A corner is cut off, so that it is no rectangle.
+    let points = vec![[-8.0, -30.0], [8.0, -30.0], [8.0, 28.5], [6.5, 30.0], [-8.0, 30.0]];
     let longer = AnyShape::Path(Path { rings: vec![PathRing::polygon(points)], fill: FillRule::EvenOdd });
-    let bar = object(rectangle(16.0, 40.0), [20.0, 58.0], 0.0, RED);
-    let picture = paint(&scene(WHITE, vec![bar, object(longer, [60.0, 48.0], 0.0, RED)]));
+    let bar = object(rectangle(16.0, 40.0), [25.0, 48.0], 0.3, RED);
+    let picture = paint(&scene(WHITE, vec![bar, object(longer, [62.0, 48.0], 0.3, RED)]));
     assert_eq!(found(&picture).objects.len(), 2);
-}
-
-#[test]
-fn things_of_another_color_are_no_models() {
-    let square = |x, y, color| object(rectangle(20.0, 20.0), [x, y], 0.0, color);
-    let picture =
-        paint(&scene(WHITE, vec![square(20.0, 20.0, BLUE), square(50.0, 50.0, RED), square(62.0, 58.0, RED)]));
-    // Of those that lie on one another three corners each are seen.
-    assert_eq!(found(&picture).objects.len(), 3);
 }
 
 #[test]
