@@ -152,8 +152,10 @@ impl Model {
 
 /// Sides as those of a rectangle, if they are about at right angles.
 fn rectangle(sides: &[LineSegment<f64>]) -> Option<OutlineShape> {
-    let right = (0..sides.len()).max_by(|&a, &b| sides[a].along.x.total_cmp(&sides[b].along.x))?;
-    let [a, b, c, d] = [0, 1, 2, 3].map(|k| &sides[(right + k) % sides.len()]);
+    let sides: &[LineSegment<f64>; 4] = sides.try_into().ok()?;
+    // From the one that points right, so that the angle is small.
+    let right = (0..4).max_by(|&a, &b| sides[a].along.x.total_cmp(&sides[b].along.x))?;
+    let [a, b, c, d] = [0, 1, 2, 3].map(|k| &sides[(right + k) % 4]);
     let (along, down) = (a.along - c.along, b.along - d.along);
     let is_right =
         (a.along + c.along).length() < ALIKE && along.dot(down).abs() < ALIKE * (along.length() + down.length());
