@@ -105,11 +105,14 @@ fn a_square_of_which_no_corner_is_seen_is_another_again() {
 #[test]
 fn two_bars_in_a_row_are_a_longer_one() {
     // A corner is cut off, so that it is no rectangle.
-    let points = vec![[-8.0, -30.0], [8.0, -30.0], [8.0, 28.5], [6.5, 30.0], [-8.0, 30.0]];
+    let points = vec![[-8.0, -26.0], [8.0, -26.0], [8.0, 24.5], [6.5, 26.0], [-8.0, 26.0]];
     let longer = AnyShape::Path(Path { rings: vec![PathRing::polygon(points)], fill: FillRule::EvenOdd });
-    let bar = object(rectangle(16.0, 40.0), [25.0, 48.0], 0.3, RED);
-    let picture = paint(&scene(WHITE, vec![bar, object(longer, [62.0, 48.0], 0.3, RED)]));
-    assert_eq!(found(&picture).objects.len(), 2);
+    for turn in [0.0, 0.1] {
+        let red = |shape, x, y| object(shape, [x, y], turn, RED);
+        let bars = vec![red(rectangle(16.0, 40.0), 25.0, 48.0), red(longer.clone(), 62.0, 48.0)];
+        let picture = paint(&scene(WHITE, [bars, vec![red(rectangle(10.0, 10.0), 82.0, 18.0)]].concat()));
+        assert_eq!(found(&picture).objects.len(), 3);
+    }
 }
 
 #[test]
