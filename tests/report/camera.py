@@ -7,16 +7,15 @@ program, for comparison. Needs numpy, scipy, pillow and scikit-image. Nobody deb
 another one.
 """
 
-import argparse
 import json
-import pathlib
 import subprocess
-import tempfile
 
 import numpy as np
 from PIL import Image
 from scipy.ndimage import gaussian_filter
 from skimage import filters, measure
+
+import counted
 
 SEED = 611_954_207
 SIDE, CELLS, FINER = 192, 16, 4
@@ -123,42 +122,15 @@ def thresholded(picture):
 
 
 def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("--dvp", required=True)
-    parser.add_argument("--other")
-    parser.add_argument("--work", type=pathlib.Path)
-    parser.add_argument("--count", type=int, default=12)
-    parser.add_argument("--seed", type=int, default=SEED)
-    args = parser.parse_args()
-    work = args.work or pathlib.Path(tempfile.mkdtemp())
-    methods = ["threshold", *(["other"] if args.other else []), "dvp"]
-    print("| picture | " + " | ".join(f"{method}: right | IoU" for method in methods) + " |")
-    print("|---|" + "---|" * 2 * len(methods))
-    sums = {method: [] for method in methods}
-    for k, (name, *how) in enumerate(KINDS):
-        random = np.random.default_rng([args.seed, k])
-        folder = work / f"kind{k}"
-        folder.mkdir(parents=True, exist_ok=True)
-        files, pictures, truths = [], [], []
-        for i in range(args.count):
-            even, labels = cells(random)
-            picture = taken(random, even, *how)
-            files.append(folder / f"{i:02}.png")
-            Image.fromarray(picture).save(files[-1])
-            pictures.append(picture)
-            truths.append(labels)
-        results = {"threshold": [thresholded(picture) for picture in pictures], "dvp": fitted(args.dvp, files, folder / "dvp")}
-        if args.other:
-            results["other"] = fitted(args.other, files, folder / "other")
-        row = []
-        for method in methods:
-            right = np.mean([count == CELLS for count, _ in results[method]])
-            iou = np.mean([overlap(labels, found) for labels, (_, found) in zip(truths, results[method])])
-            sums[method].append((right, iou))
-            row += [f"{right:.2f}", f"{iou:.3f}"]
-        print(f"| {name} | " + " | ".join(row) + " |", flush=True)
-    means = [f"{value:.{2 + column}f}" for method in methods for column, value in enumerate(np.mean(sums[method], axis=0))]
-    print("| all | " + " | ".join(means) + " |")
+    def drawn(random, *how):
+        even, labels = cells(random)
+        return taken(random, even, *how), labels
+
+    def score(labels, result):
+        count, found = result
+        return count == CELLS, overlap(labels, found)
+
+    counted.table(counted.arguments(SEED), KINDS, drawn, {"threshold": thresholded}, fitted, score)
 
 
 if __name__ == "__main__":

@@ -6,11 +6,8 @@ Prints the table of overlaps.md. `--other` is a second program, for comparison. 
 seed below: who looks at its pictures while changing the fit takes another one.
 """
 
-import argparse
 import json
-import pathlib
 import subprocess
-import tempfile
 
 import matplotlib
 import numpy as np
@@ -18,6 +15,8 @@ from PIL import Image
 from scipy.ndimage import distance_transform_edt, gaussian_filter
 from scipy.optimize import linear_sum_assignment
 from skimage import feature, filters, measure, segmentation
+
+import counted
 
 matplotlib.use("Agg")
 from matplotlib import pyplot as plt  # noqa: E402
@@ -160,40 +159,15 @@ def watershed(picture):
 
 
 def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("--dvp", required=True)
-    parser.add_argument("--other")
-    parser.add_argument("--work", type=pathlib.Path)
-    parser.add_argument("--count", type=int, default=12)
-    parser.add_argument("--seed", type=int, default=SEED)
-    args = parser.parse_args()
-    work = args.work or pathlib.Path(tempfile.mkdtemp())
-    methods = ["components", "watershed", *(["other"] if args.other else []), "dvp"]
-    print("| picture | " + " | ".join(f"{method}: right | IoU" for method in methods) + " |")
-    print("|---|" + "---|" * 2 * len(methods))
-    sums = {method: [] for method in methods}
-    for k, (name, what, apart, *camera) in enumerate(KINDS):
-        random = np.random.default_rng([args.seed, k])
-        folder = work / f"kind{k}"
-        folder.mkdir(parents=True, exist_ok=True)
-        files, pictures, truths = [], [], []
-        for i in range(args.count):
-            picture, masks = made(random, what, apart)
-            pictures.append(taken(random, picture, *camera))
-            truths.append(masks)
-            files.append(folder / f"{i:02}.png")
-            Image.fromarray(pictures[-1]).save(files[-1])
-        found = {"components": map(components, pictures), "watershed": map(watershed, pictures), "dvp": fitted(args.dvp, files, folder / "dvp")}
-        if args.other:
-            found["other"] = fitted(args.other, files, folder / "other")
-        cells = []
-        for method in methods:
-            scores = [(len(things) == len(truth), overlap(truth, things)) for truth, things in zip(truths, found[method])]
-            sums[method] += scores
-            cells += np.mean(scores, axis=0).tolist()
-        print(f"| {name} | " + " | ".join(f"{right:.2f} | {iou:.3f}" for right, iou in zip(cells[::2], cells[1::2])) + " |")
-    cells = np.concatenate([np.mean(sums[method], axis=0) for method in methods]).tolist()
-    print("| all | " + " | ".join(f"{right:.2f} | {iou:.3f}" for right, iou in zip(cells[::2], cells[1::2])) + " |")
+    def drawn(random, what, apart, *camera):
+        picture, masks = made(random, what, apart)
+        return taken(random, picture, *camera), masks
+
+    def score(truth, things):
+        return len(things) == len(truth), overlap(truth, things)
+
+    peers = {"components": components, "watershed": watershed}
+    counted.table(counted.arguments(SEED), KINDS, drawn, peers, fitted, score)
 
 
 if __name__ == "__main__":
