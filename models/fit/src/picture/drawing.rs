@@ -14,6 +14,7 @@ use super::doubts;
 use super::likelier::{CLEARLY_WORSE, is_likelier, is_of_renderer, likeliest};
 use super::mend::Wrong;
 use super::spare::Spare;
+use crate::scene_refine::SceneRefine;
 use crate::tuning::NOT_FLAT_SHARE;
 use crate::{Fit, FitError, Fitter, StopReason};
 
@@ -23,6 +24,8 @@ pub(super) const CLEARLY_WORSE_IN_NOISE: f32 = 1.02;
 const FEW: usize = 16;
 /// The same where there is noise: outlines that it hides leave slivers beside them, and segments none.
 const FEW_IN_NOISE: usize = 48;
+/// Most steps of a refinement: dozens of ellipses take as many.
+const MOST_STEPS: usize = 100;
 /// Share of a picture of which a drawing that leaves more is none.
 const MOSTLY: f64 = 0.5;
 
@@ -148,7 +151,11 @@ pub(super) fn drawn(
     let (covariance, mut ambiguity) = doubts::of_poses(&left);
     ambiguity.extend(doubts::merged(&drawing, &left));
     if blur > 0.0 {
-        let scene = blurred::nearest(blurred(&scene, blur, unit_px), image, canvas)?;
+        let mut scene = blurred::nearest(blurred(&scene, blur, unit_px), image, canvas)?;
+        // Windows beside the places where things have run together tell of several; all pixels together tell of each.
+        if left.iter().any(|doubt| doubt.heap.is_some()) {
+            scene = SceneRefine::default().with_max_steps(MOST_STEPS).fit(image, &scene)?.scene;
+        }
         let (painted, drawing) = canvas.paint(&scene, size)?;
         let other = of_painted(&scene, &drawing, painted, image)?;
         if other.loss < best.loss {

@@ -30,6 +30,11 @@ const SIGNIFICANT: f64 = 3.0;
 const SLANTED: f64 = 0.1;
 /// See [`SLANTED`].
 const ENOUGH_SLANTED: f64 = 16.0;
+/// Change of the slope from one window to the next below which a boundary is straight, and below which there is no corner: a bend alone moves what a
+/// window shows of a profile by an eighth of that.
+const STRAIGHT: f64 = 0.05;
+/// See [`STRAIGHT`].
+const SMOOTH: f64 = 0.25;
 /// Cracks before and behind one among which its neighbors are looked for.
 const BESIDE: usize = 2;
 
@@ -39,7 +44,7 @@ const BESIDE: usize = 2;
 pub fn stained(partition: &Partition, rings: &[Vec<Ring>]) -> Option<f64> {
     let of_lines = |k: usize| partition.lines.iter().map(|line| line.stained[k]).sum::<i32>();
     let [mut stained, mut count] = [of_lines(0), of_lines(1)];
-    for (step, here, slope) in straight(rings) {
+    for (step, here, slope) in smooth(rings, STRAIGHT) {
         for share in shares_beyond(partition, step, &here, slope) {
             count += 1;
             stained += i32::from(share > tuning::LEAST_STAIN) - i32::from(share < -tuning::LEAST_STAIN);
@@ -56,7 +61,7 @@ pub fn stained(partition: &Partition, rings: &[Vec<Ring>]) -> Option<f64> {
 #[must_use]
 pub fn blur(partition: &Partition, rings: &[Vec<Ring>]) -> f64 {
     let [mut total, mut count] = [[0.0; 2]; 2];
-    for (step, _, slope) in straight(rings) {
+    for (step, _, slope) in smooth(rings, SMOOTH) {
         let colors = [step.inner, step.other].map(|face| partition.color(face));
         let noise2 = partition.sigma.powi(2) / (0..3).map(|c| (colors[0][c] - colors[1][c]).powi(2)).sum::<f64>();
         let across = middle(step.crack.sides()[0]) - middle(step.crack.sides()[1]);
@@ -84,7 +89,7 @@ pub fn blur(partition: &Partition, rings: &[Vec<Ring>]) -> f64 {
     }
     // What one window shows depends on where in its pixel the edge lies. Slanted edges lie everywhere, so that the mean is right; upright ones lie at
     // one place, which makes the variance wrong by up to a twelfth.
-    let kind = usize::from(count[1] >= ENOUGH_SLANTED);
+    let kind = usize::from(count[1] >= ENOUGH_SLANTED || count[0] == 0.0);
     if count[kind] == 0.0 {
         return 0.0;
     }
@@ -93,16 +98,16 @@ pub fn blur(partition: &Partition, rings: &[Vec<Ring>]) -> f64 {
     variance.max(0.0).sqrt()
 }
 
-/// Steps along straight boundaries with their samples, and how much the boundary moves there per pixel along it.
-fn straight(rings: &[Vec<Ring>]) -> impl Iterator<Item = (&Step, Sample, f64)> {
-    rings.iter().flatten().filter(|ring| ring.steps.len() > 2 * BESIDE).flat_map(|ring| {
+/// Steps with their samples where the slope of the boundary changes by less than `most`, and that slope: how much it moves per pixel along it.
+fn smooth(rings: &[Vec<Ring>], most: f64) -> impl Iterator<Item = (&Step, Sample, f64)> {
+    rings.iter().flatten().filter(|ring| ring.steps.len() > 2 * BESIDE).flat_map(move |ring| {
         let n = ring.steps.len();
         (0..n).filter_map(move |k| {
             // A slanted boundary has cracks of the other axis between, which have no sample.
             let here = ring.steps[k].sample?;
             let before = (1..=BESIDE).find_map(|offset| ring.steps[(k + n - offset) % n].sample)?;
             let behind = (1..=BESIDE).find_map(|offset| ring.steps[(k + offset) % n].sample)?;
-            Some((&ring.steps[k], here, slope(&here, &before, &behind)?))
+            Some((&ring.steps[k], here, slope(&here, &before, &behind, most)?))
         })
     })
 }
@@ -163,16 +168,16 @@ pub(super) fn fourth_difference(at: [f64; 5]) -> f64 {
     at[0] - 4.0 * at[1] + 6.0 * at[2] - 4.0 * at[3] + at[4]
 }
 
-/// Change of the position per pixel along a boundary that is straight over three windows of one axis.
-fn slope(here: &Sample, before: &Sample, behind: &Sample) -> Option<f64> {
+/// Change of the position per pixel along a boundary whose slope changes by less than `most` over three windows of one axis.
+fn slope(here: &Sample, before: &Sample, behind: &Sample, most: f64) -> Option<f64> {
     let along = here.axis.perp();
     let [back, ahead] = [before, behind].map(|other| (other.axis == here.axis).then_some(other.point - here.point));
     let (back, ahead) = (back?, ahead?);
     let (from, to) = (back.dot(along), ahead.dot(along));
     let slopes = [back.dot(here.axis) / from, ahead.dot(here.axis) / to];
-    let is_straight = (slopes[0] - slopes[1]).abs() < 0.05 && from * to < 0.0 && from.abs() < 1.5 && to.abs() < 1.5;
+    let is_smooth = (slopes[0] - slopes[1]).abs() < most && from * to < 0.0 && from.abs() < 1.5 && to.abs() < 1.5;
     let slope = 0.5 * (slopes[0] + slopes[1]);
-    (is_straight && slope.abs() < MOST_SLOPE).then_some(slope)
+    (is_smooth && slope.abs() < MOST_SLOPE).then_some(slope)
 }
 
 /// Shares of the other side's color in the pixels next to a crack that a straight line through the sample does not touch.

@@ -40,23 +40,29 @@ pub(super) fn fit_plain(track: &Track, ruler: &Ruler) -> Option<Outline> {
 
 /// The cheapest whole outline about along a path that costs less than `most` bits.
 pub(super) fn fit(track: &Track, path: &PathRing<f64>, most: f64, ruler: &Ruler) -> Option<Outline> {
-    cheapest(starts(track, path), track, most, ruler)
+    cheapest(starts(track, path), track, most, ruler, &|_| true)
 }
 
-/// The cheapest circle or ellipse.
-pub(super) fn fit_round(track: &Track, ruler: &Ruler) -> Option<Outline> {
+/// The cheapest circle or ellipse that may be.
+pub(super) fn fit_round(track: &Track, ruler: &Ruler, may_be: &dyn Fn(&Outline) -> bool) -> Option<Outline> {
     let mut starts = Vec::new();
     rounds(track, &mut starts);
-    cheapest(starts, track, f64::INFINITY, ruler)
+    cheapest(starts, track, f64::INFINITY, ruler, may_be)
 }
 
-/// The cheapest of figures that costs less than `most` bits.
-fn cheapest(starts: Vec<Start>, track: &Track, most: f64, ruler: &Ruler) -> Option<Outline> {
+/// The cheapest of figures that may be and costs less than `most` bits.
+fn cheapest(
+    starts: Vec<Start>,
+    track: &Track,
+    most: f64,
+    ruler: &Ruler,
+    may_be: &dyn Fn(&Outline) -> bool,
+) -> Option<Outline> {
     let mut best: Option<Outline> = None;
     for (figure, start, free) in starts {
         let most = best.as_ref().map_or(most, |best| best.bits + best.misfit);
         let trial = Trial { samples: &track.samples, ruler, figure, free, renderer: tuning::RENDERER_SIGMA };
-        best = trial.run(start, most).or(best);
+        best = trial.run(start, most).filter(may_be).or(best);
     }
     best
 }

@@ -26,7 +26,7 @@ const NEAR: f64 = 0.4;
 /// Fewest windows that only one thing explains: as many as tell of one side that it is there.
 const LEAST_TOLD: usize = 3;
 /// So far inside (pixels) of each side, at these shares of it, pixels are of the heap: where the side is not that of a pixel too, half of that is.
-const INSIDE: f64 = 0.75;
+pub(super) const INSIDE: f64 = 0.75;
 const PROBES: [f64; 4] = [0.125, 0.375, 0.625, 0.875];
 /// Things are side by side that are closer (pixels), or overlap by less, but for what they may be longer.
 const BESIDE: f64 = 0.1;

@@ -5,12 +5,14 @@
 //! |---|---|
 //! | `stretch` | what of a boundary lies between corners inward |
 //! | `share` | which stretches are of one thing |
+//! | `cover` | what these leave uncovered |
 //! | `model` | straight things that the picture shows |
 //! | `again` | such things that are there again, in a heap |
 //!
 //! No corner need be told: it is where two outlines meet. A thing of which more than one stretch is seen is told once.
 
 mod again;
+mod cover;
 mod model;
 mod share;
 mod stretch;
@@ -34,7 +36,7 @@ use crate::outline::{Outline, OutlineShape};
 use crate::ruler::Ruler;
 use crate::tuning;
 use model::Model;
-use share::Shared;
+use share::{Heap, Part, Shared};
 use stretch::Stretches;
 
 /// Windows so near to a corner (pixels) see both sides of it.
@@ -99,8 +101,30 @@ fn parts(completion: &Completion<'_>, group: &Group, kinds: &[Vec<Model>]) -> Op
         let is_seen = x >= 0.0 && y >= 0.0 && x < width as f64 && y < height as f64;
         is_seen && group.faces.contains(&completion.partition.labels[y as usize * width + x as usize])
     };
+    let may_be_heap = |Vec2 { x, y }: Vec2<f64>| {
+        let is_seen = x >= 0.0 && y >= 0.0 && x < width as f64 && y < height as f64;
+        !is_seen || {
+            let face = completion.partition.labels[y as usize * width + x as usize];
+            group.faces.contains(&face) || place.is_behind(face)
+        }
+    };
     let again = again::take(kinds, &mut stretches, &is_heap, &completion.ruler)?;
-    let Shared { mut parts, cuts } = share::share(stretches, &completion.ruler)?;
+    let heap = Heap { may_be: &may_be_heap, ruler: &completion.ruler };
+    let mut shared = share::share(stretches, &heap)?;
+    let reach = SPOILED + 2.0 * SPOILED_BLURS * blur;
+    let missed = |parts: &[Part]| {
+        let outlines: Vec<Outline> = parts.iter().chain(&again).filter_map(|part| part.outline.clone()).collect();
+        let mut wrong = completion.check_filled(&outlines, FillRule::NonZero, &place).err().unwrap_or_default();
+        let cuts = &shared.cuts;
+        let is_filled = |&[x, y]: &[usize; 2]| {
+            let middle = Vec2::new(x as f64 + 0.5, y as f64 + 0.5);
+            blur > 0.0 && cuts.iter().any(|&cut| (cut - middle).length() < reach)
+        };
+        wrong.retain(|at| group.faces.contains(&completion.partition.labels[at[1] * width + at[0]]) && !is_filled(at));
+        wrong
+    };
+    cover::cover(&mut shared.parts, &shared.stretches, &heap, &missed)?;
+    let Shared { mut parts, cuts, .. } = shared;
     parts.extend(again);
     // Of what goes on behind others no pixel tells that it is not there.
     if !is_closed && parts.iter().any(|part| part.seen() < LEAST_SEEN) {
@@ -113,7 +137,7 @@ fn parts(completion: &Completion<'_>, group: &Group, kinds: &[Vec<Model>]) -> Op
     }
     // As many numbers say either: things that people draw hardly turn inward.
     let most = completed.bits + tuning::LEAST_SAVED * outlines.len() as f64 + spared(&outlines, &completion.ruler);
-    let are_right = bits < most && fits(completion, &outlines, &place, &cuts, SPOILED + 2.0 * SPOILED_BLURS * blur);
+    let are_right = bits < most && fits(completion, &outlines, &place, &cuts, reach);
     are_right.then(|| Completed { are_things: true, bits, ..Completed::new(outlines, true) })
 }
 

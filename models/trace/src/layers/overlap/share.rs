@@ -5,9 +5,10 @@ use alloc::vec::Vec;
 
 use dvp_core::Vec2;
 use dvp_core::contour::perimeter;
-use dvp_core::geometry::Bounds;
+use dvp_core::geometry::{Bounds, LineSegment};
 
 use super::super::raster;
+use super::again::INSIDE;
 use super::stretch::Stretches;
 use crate::outline::{Outline, fit_round};
 use crate::ruler::Ruler;
@@ -16,10 +17,6 @@ use crate::tuning;
 
 /// Fewest windows of a stretch that is looked at: as many as a circle has numbers.
 const SHORTEST: usize = 3;
-/// Most windows of a stretch that no outline has to explain by itself: half of the boundary of a thing of eight pixels.
-const LONG: usize = 24;
-/// Most windows of a stretch that no outline has to explain at all: of what shows through between things that overlap.
-const SHORT: usize = 8;
 /// Standard deviation (pixels) of the polygon through stretches that are of nothing round.
 const POLYGON_SIGMA: f64 = 0.1;
 /// Most stretches of one boundary: more are the edge of something that is uneven.
@@ -29,11 +26,22 @@ const MOST_STRETCHES: usize = 64;
 pub(super) struct Shared {
     pub(super) parts: Vec<Part>,
     pub(super) cuts: Vec<Vec2<f64>>,
+    pub(super) stretches: Vec<Vec<Sample>>,
+}
+
+/// What things of a heap are held against.
+pub(super) struct Heap<'a> {
+    /// Whether a place is of the heap, or may be.
+    pub(super) may_be: &'a dyn Fn(Vec2<f64>) -> bool,
+    pub(super) ruler: &'a Ruler,
 }
 
 /// Stretches of one thing.
+#[derive(Clone)]
 pub(super) struct Part {
-    stretches: Vec<usize>,
+    pub(super) stretches: Vec<usize>,
+    /// Places that it reaches to, as pixels that nothing else covers tell.
+    pub(super) held: Vec<Sample>,
     /// Windows of them.
     count: usize,
     /// The outline through them, if there is one.
@@ -43,22 +51,28 @@ pub(super) struct Part {
 }
 
 impl Part {
-    fn new(stretches: Vec<usize>, of: &[Vec<Sample>], ruler: &Ruler) -> Self {
-        let runs: Vec<Vec<Sample>> = stretches.iter().map(|&k| of[k].clone()).collect();
+    pub(super) fn new(stretches: Vec<usize>, held: Vec<Sample>, of: &[Vec<Sample>], heap: &Heap<'_>) -> Self {
+        let mut runs: Vec<Vec<Sample>> = stretches.iter().map(|&k| of[k].clone()).collect();
         let count: usize = runs.iter().map(Vec::len).sum();
-        let polygon = 2.0 * count as f64 * ruler.number(POLYGON_SIGMA);
+        let polygon = 2.0 * count as f64 * heap.ruler.number(POLYGON_SIGMA);
         let price = |outline: &Outline| outline.bits + outline.misfit;
+        let seen = runs.clone();
+        match runs.last_mut() {
+            Some(last) => last.extend(&held),
+            None => runs.push(held.clone()),
+        }
         let rings = RingSamples { runs, closed: false };
-        let round = fit_round(&rings, ruler).filter(|outline| is_around(outline, &rings.runs));
-        let outline = round.filter(|outline| price(outline) < polygon);
+        let may_be = |outline: &Outline| is_around(outline, &seen) && is_in(outline, heap);
+        let outline = fit_round(&rings, heap.ruler, &may_be);
+        let outline = outline.filter(|outline| count == 0 || price(outline) < polygon);
         let bits = outline.as_ref().map_or(polygon, price);
-        Self { stretches, count, outline, bits }
+        Self { stretches, held, count, outline, bits }
     }
 
     /// A thing of which so many windows are seen.
     pub(super) fn again(outline: Outline, count: usize) -> Self {
         let bits = outline.bits + outline.misfit;
-        Self { stretches: Vec::new(), count, outline: Some(outline), bits }
+        Self { stretches: Vec::new(), held: Vec::new(), count, outline: Some(outline), bits }
     }
 
     /// Whether it may be of the same thing as another one: their outlines lie on one another, if they have such.
@@ -83,7 +97,18 @@ impl Part {
 fn is_around(outline: &Outline, runs: &[Vec<Sample>]) -> bool {
     let (center, ..) = extent(outline);
     let steps = runs.iter().flat_map(|run| run.windows(2));
-    steps.map(|pair| (pair[0].point - center).cross(pair[1].point - pair[0].point)).sum::<f64>() > 0.0
+    runs.is_empty()
+        || steps.map(|pair| (pair[0].point - center).cross(pair[1].point - pair[0].point)).sum::<f64>() > 0.0
+}
+
+/// Whether an outline covers nothing but pixels of the heap.
+fn is_in(outline: &Outline, heap: &Heap<'_>) -> bool {
+    let polygon = raster::polygon(outline).unwrap_or_default();
+    let mut sides = LineSegment::closed(&polygon);
+    sides.all(|side| {
+        let inward = side.along.normalized().unwrap_or_default().perp() * INSIDE;
+        (heap.may_be)(side.from + side.along * 0.5 + inward)
+    })
 }
 
 /// The middle of an outline, half of its mean width and height, and its length.
@@ -96,7 +121,7 @@ fn extent(outline: &Outline) -> (Vec2<f64>, f64, f64) {
 
 /// The things that stretches are of: again and again those two parts become one that cost least more by it. None if what is of none is more than a
 /// few windows.
-pub(super) fn share(mut left: Stretches, ruler: &Ruler) -> Option<Shared> {
+pub(super) fn share(mut left: Stretches, heap: &Heap<'_>) -> Option<Shared> {
     let (mut parts, mut stretches) = (Vec::new(), Vec::new());
     while let Some(stretch) = left.samples.pop() {
         // Short ones, and what only cracks tell, say nothing: pixels do.
@@ -105,25 +130,22 @@ pub(super) fn share(mut left: Stretches, ruler: &Ruler) -> Option<Shared> {
             continue;
         }
         stretches.push(stretch);
-        let part = Part::new(vec![parts.len()], &stretches, ruler);
+        let part = Part::new(vec![parts.len()], Vec::new(), &stretches, heap);
         if part.outline.is_none() && left.cut(stretches.last()?) {
             stretches.pop();
-        } else if part.outline.is_some() || part.count <= LONG {
-            parts.push(part);
         } else {
-            return None;
+            parts.push(part);
         }
         if stretches.len() > MOST_STRETCHES {
             return None;
         }
     }
-    join(&mut parts, &stretches, ruler);
-    let is_explained = |part: &Part| part.outline.is_some() || part.count <= SHORT;
-    parts.iter().all(is_explained).then_some(Shared { parts, cuts: left.cuts })
+    join(&mut parts, &stretches, heap);
+    Some(Shared { parts, cuts: left.cuts, stretches })
 }
 
 /// Joins parts as long as that makes the description shorter.
-fn join(parts: &mut Vec<Part>, stretches: &[Vec<Sample>], ruler: &Ruler) {
+fn join(parts: &mut Vec<Part>, stretches: &[Vec<Sample>], heap: &Heap<'_>) {
     // The first stretches of two parts, the bits that joining them costs more, and the part that they make.
     let mut pairs: Vec<([usize; 2], f64, Part)> = Vec::new();
     loop {
@@ -134,7 +156,7 @@ fn join(parts: &mut Vec<Part>, stretches: &[Vec<Sample>], ruler: &Ruler) {
                     continue;
                 }
                 let both = a.stretches.iter().chain(&b.stretches).copied().collect();
-                let joined = Part::new(both, stretches, ruler);
+                let joined = Part::new(both, Vec::new(), stretches, heap);
                 let is_shorter = joined.bits < a.bits + b.bits && joined.outline.is_some();
                 // What is of no outline by itself goes where it costs least, whatever it cost before.
                 let more = if is_shorter { joined.bits - a.known() - b.known() } else { f64::INFINITY };
