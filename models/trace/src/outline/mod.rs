@@ -168,8 +168,13 @@ pub fn fit_closed(ring: &RingSamples, ruler: &Ruler) -> Option<Outline> {
 
 /// The circle or ellipse, of those that may be, that describes what is seen of a boundary best; none if there is none, or it is not known to half a pixel.
 #[must_use]
-pub(crate) fn fit_round(ring: &RingSamples, ruler: &Ruler, may_be: &dyn Fn(&Outline) -> bool) -> Option<Outline> {
-    whole::fit_round(&Track::of_ring(ring)?, ruler, may_be)
+pub(crate) fn fit_round(
+    ring: &RingSamples,
+    most: f64,
+    ruler: &Ruler,
+    may_be: &dyn Fn(&Outline) -> bool,
+) -> Option<Outline> {
+    whole::fit_round(&Track::of_ring(ring)?, most, ruler, may_be)
 }
 
 /// The shortest description of an open line through samples.

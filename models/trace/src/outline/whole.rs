@@ -44,10 +44,10 @@ pub(super) fn fit(track: &Track, path: &PathRing<f64>, most: f64, ruler: &Ruler)
 }
 
 /// The cheapest circle or ellipse that may be.
-pub(super) fn fit_round(track: &Track, ruler: &Ruler, may_be: &dyn Fn(&Outline) -> bool) -> Option<Outline> {
+pub(super) fn fit_round(track: &Track, most: f64, ruler: &Ruler, may_be: &dyn Fn(&Outline) -> bool) -> Option<Outline> {
     let mut starts = Vec::new();
     rounds(track, &mut starts);
-    cheapest(starts, track, f64::INFINITY, ruler, may_be)
+    cheapest(starts, track, most, ruler, may_be)
 }
 
 /// The cheapest of figures that may be and costs less than `most` bits.

@@ -19,6 +19,10 @@ use crate::tuning;
 const SHORTEST: usize = 3;
 /// Standard deviation (pixels) of the polygon through stretches that are of nothing round.
 const POLYGON_SIGMA: f64 = 0.1;
+/// Bits of a stretch below which two cannot be fewer: those of two circles.
+const WORTH_CUTTING: f64 = 70.0;
+/// Windows from one place where a stretch may be cut to the next, at first.
+const STEP: usize = 3;
 /// Most stretches of one boundary: more are the edge of something that is uneven.
 const MOST_STRETCHES: usize = 64;
 
@@ -54,7 +58,7 @@ impl Part {
     pub(super) fn new(stretches: Vec<usize>, held: Vec<Sample>, of: &[Vec<Sample>], heap: &Heap<'_>) -> Self {
         let mut runs: Vec<Vec<Sample>> = stretches.iter().map(|&k| of[k].clone()).collect();
         let count: usize = runs.iter().map(Vec::len).sum();
-        let polygon = 2.0 * count as f64 * heap.ruler.number(POLYGON_SIGMA);
+        let polygon = polygon(count, heap.ruler);
         let price = |outline: &Outline| outline.bits + outline.misfit;
         let seen = runs.clone();
         match runs.last_mut() {
@@ -63,8 +67,8 @@ impl Part {
         }
         let rings = RingSamples { runs, closed: false };
         let may_be = |outline: &Outline| is_around(outline, &seen) && is_in(outline, heap);
-        let outline = fit_round(&rings, heap.ruler, &may_be);
-        let outline = outline.filter(|outline| count == 0 || price(outline) < polygon);
+        let most = if count == 0 { f64::INFINITY } else { polygon };
+        let outline = fit_round(&rings, most, heap.ruler, &may_be);
         let bits = outline.as_ref().map_or(polygon, price);
         Self { stretches, held, count, outline, bits }
     }
@@ -129,19 +133,43 @@ pub(super) fn share(mut left: Stretches, heap: &Heap<'_>) -> Option<Shared> {
         if stretch.len() < SHORTEST || !stretch.iter().any(is_told) {
             continue;
         }
-        stretches.push(stretch);
-        let part = Part::new(vec![parts.len()], Vec::new(), &stretches, heap);
-        if part.outline.is_none() && left.cut(stretches.last()?) {
-            stretches.pop();
-        } else {
-            parts.push(part);
+        if let Some((cut, halves)) = cut(&stretch, &left, heap) {
+            left.samples.extend(halves);
+            left.cuts.push(cut);
+            continue;
         }
+        stretches.push(stretch);
+        parts.push(Part::new(vec![parts.len()], Vec::new(), &stretches, heap));
         if stretches.len() > MOST_STRETCHES {
             return None;
         }
     }
     join(&mut parts, &stretches, heap);
     Some(Shared { parts, cuts: left.cuts, stretches })
+}
+
+/// Bits of so many windows as a polygon.
+fn polygon(count: usize, ruler: &Ruler) -> f64 {
+    2.0 * count as f64 * ruler.number(POLYGON_SIGMA)
+}
+
+/// Where a stretch is two that cost less, and these.
+fn cut(stretch: &[Sample], left: &Stretches, heap: &Heap<'_>) -> Option<(Vec2<f64>, Vec<Vec<Sample>>)> {
+    let price = |stretch: &Vec<Sample>| Part::new(vec![0], Vec::new(), core::slice::from_ref(stretch), heap).bits;
+    let whole = price(&stretch.to_vec());
+    if whole < WORTH_CUTTING {
+        return None;
+    }
+    let halves = |k: usize| {
+        let halves = left.halves(stretch, stretch[k].point);
+        // What nobody explains then costs what it does as a polygon.
+        let left_out = stretch.len() - halves.iter().map(Vec::len).sum::<usize>();
+        (halves.iter().map(price).sum::<f64>() + polygon(left_out, heap.ruler), k, halves)
+    };
+    let best = |places: &mut dyn Iterator<Item = usize>| places.map(halves).min_by(|a, b| a.0.total_cmp(&b.0));
+    let (_, near, _) = best(&mut (0..stretch.len()).step_by(STEP))?;
+    let (bits, k, halves) = best(&mut (near.saturating_sub(STEP - 1)..(near + STEP).min(stretch.len())))?;
+    (bits < whole).then(|| (stretch[k].point, halves))
 }
 
 /// Joins parts as long as that makes the description shorter.

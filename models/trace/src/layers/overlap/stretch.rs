@@ -14,8 +14,6 @@ use crate::stroke::piece::{direction, pieces};
 pub(super) const LEAST_TURN: f64 = 0.3;
 /// Windows so near to a corner outward (pixels) hold it: they tell of both sides.
 const CORNER: f64 = 1.0;
-/// Windows to either side that tell which way a boundary goes.
-const REACH: usize = 3;
 
 /// Stretches of a boundary.
 pub(super) struct Stretches {
@@ -49,20 +47,9 @@ impl Stretches {
         Self { samples, cuts, corners: outward, sides, spoiled }
     }
 
-    /// Cuts a stretch where it turns inward most; whether it turns inward anywhere.
-    pub(super) fn cut(&mut self, stretch: &[Sample]) -> bool {
-        let at = |k: usize| stretch[k].point;
-        let turn = |k: usize| {
-            let [before, after] = [at(k) - at(k - REACH), at(k + REACH) - at(k)];
-            before.cross(after) / (before.length() * after.length()).max(1e-9)
-        };
-        let inner = REACH..stretch.len().saturating_sub(REACH);
-        let most = inner.map(|k| (turn(k), at(k))).min_by(|a, b| a.0.total_cmp(&b.0));
-        let Some((_, cut)) = most.filter(|most| most.0 < -LEAST_TURN) else { return false };
-        let is_cut = |sample: &Sample| (sample.point - cut).length() < self.spoiled;
-        self.samples.extend(stretch.split(is_cut).map(<[Sample]>::to_vec));
-        self.cuts.push(cut);
-        true
+    /// What is left of a stretch that is cut.
+    pub(super) fn halves(&self, stretch: &[Sample], cut: Vec2<f64>) -> Vec<Vec<Sample>> {
+        stretch.split(|sample| (sample.point - cut).length() < self.spoiled).map(<[Sample]>::to_vec).collect()
     }
 }
 
