@@ -22,17 +22,16 @@ use alloc::rc::Rc;
 use alloc::vec::Vec;
 
 use dvp_core::Vec2;
-use dvp_core::contour::contains;
-use dvp_core::geometry::Bounds;
 use dvp_core::shape::FillRule;
 use dvp_core::sort;
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
-use super::complete::{Completed, Completion, Place};
+use super::complete::{Completed, Completion};
 use super::join::Group;
-use super::{raster, walk};
+use super::walk;
 use crate::outline::{Outline, OutlineShape};
+use crate::partition::OUTSIDE;
 use crate::ruler::Ruler;
 use crate::tuning;
 use model::Model;
@@ -96,59 +95,46 @@ fn parts(completion: &Completion<'_>, group: &Group, kinds: &[Vec<Model>]) -> Op
     if stretches.corners.len() > MOST_CORNERS {
         return None;
     }
-    let [width, height] = completion.partition.size;
-    let is_heap = |Vec2 { x, y }: Vec2<f64>| {
-        let is_seen = x >= 0.0 && y >= 0.0 && x < width as f64 && y < height as f64;
-        is_seen && group.faces.contains(&completion.partition.labels[y as usize * width + x as usize])
-    };
     let may_be_heap = |Vec2 { x, y }: Vec2<f64>| {
-        let is_seen = x >= 0.0 && y >= 0.0 && x < width as f64 && y < height as f64;
-        !is_seen || {
-            let face = completion.partition.labels[y as usize * width + x as usize];
-            group.faces.contains(&face) || place.is_behind(face)
-        }
+        let face = if x < 0.0 || y < 0.0 { OUTSIDE } else { completion.partition.face_at([x as usize, y as usize]) };
+        face == OUTSIDE || group.faces.contains(&face) || place.is_behind(face)
     };
-    let again = again::take(kinds, &mut stretches, &is_heap, &completion.ruler)?;
+    let again = again::take(kinds, &mut stretches, &may_be_heap, &completion.ruler)?;
     let heap = Heap { may_be: &may_be_heap, ruler: &completion.ruler };
-    let mut shared = share::share(stretches, &heap)?;
+    let Shared { mut parts, cuts, stretches } = share::share(stretches, &heap)?;
+    // Pixels that are covered and should not be, or not and should; where a blur fills the gap between outlines that meet they may be either.
     let reach = SPOILED + 2.0 * SPOILED_BLURS * blur;
-    let missed = |parts: &[Part]| {
-        let outlines: Vec<Outline> = parts.iter().chain(&again).filter_map(|part| part.outline.clone()).collect();
-        let mut wrong = completion.check_filled(&outlines, FillRule::NonZero, &place).err().unwrap_or_default();
-        let cuts = &shared.cuts;
+    let wrong = |outlines: &[Outline]| {
         let is_filled = |&[x, y]: &[usize; 2]| {
             let middle = Vec2::new(x as f64 + 0.5, y as f64 + 0.5);
             blur > 0.0 && cuts.iter().any(|&cut| (cut - middle).length() < reach)
         };
-        wrong.retain(|at| group.faces.contains(&completion.partition.labels[at[1] * width + at[0]]) && !is_filled(at));
+        let mut wrong = completion.check_filled(outlines, FillRule::NonZero, &place).err().unwrap_or_default();
+        wrong.retain(|at| !is_filled(at));
+        if wrong.len() as f64 > tuning::MOST_WRONG_PIXELS { wrong } else { Vec::new() }
+    };
+    let outlines =
+        |parts: &[Part]| parts.iter().chain(&again).filter_map(|part| part.outline.clone()).collect::<Vec<_>>();
+    let missed = |parts: &[Part]| {
+        let mut wrong = wrong(&outlines(parts));
+        wrong.retain(|at| group.faces.contains(&completion.partition.face_at(*at)));
         wrong
     };
-    cover::cover(&mut shared.parts, &shared.stretches, &heap, &missed)?;
-    let Shared { mut parts, cuts, .. } = shared;
+    cover::cover(&mut parts, &stretches, &heap, &missed)?;
+    let outlines = outlines(&parts);
     parts.extend(again);
     // Of what goes on behind others no pixel tells that it is not there.
     if !is_closed && parts.iter().any(|part| part.seen() < LEAST_SEEN) {
         return None;
     }
     let bits = parts.iter().map(|part| part.bits).sum();
-    let outlines: Vec<Outline> = parts.into_iter().filter_map(|part| part.outline).collect();
-    if outlines.len() < 2 || blur > 0.0 && are_in_one_another(&outlines) {
+    if outlines.len() < 2 {
         return None;
     }
     // As many numbers say either: things that people draw hardly turn inward.
     let most = completed.bits + tuning::LEAST_SAVED * outlines.len() as f64 + spared(&outlines, &completion.ruler);
-    let are_right = bits < most && fits(completion, &outlines, &place, &cuts, reach);
+    let are_right = bits < most && wrong(&outlines).is_empty();
     are_right.then(|| Completed { are_things: true, bits, ..Completed::new(outlines, true) })
-}
-
-/// Whether the middle of an outline lies in another one. Where edges are blurred two such are what one thing may be that is uneven.
-fn are_in_one_another(outlines: &[Outline]) -> bool {
-    let polygons: Vec<Vec<[f64; 2]>> = outlines.iter().filter_map(raster::polygon).collect();
-    let middle = |polygon: &[[f64; 2]]| Bounds::of_vertices(polygon).map(|bounds| bounds.center().to_array());
-    let is_in = |k: usize, other: usize| {
-        k != other && middle(&polygons[k]).is_some_and(|middle| contains(&polygons[other], middle))
-    };
-    (0..polygons.len()).any(|k| (0..polygons.len()).any(|other| is_in(k, other)))
 }
 
 /// Bits of radii that are told once: those of a path are equal by now if they are to be.
@@ -162,17 +148,4 @@ fn spared(outlines: &[Outline], ruler: &Ruler) -> f64 {
     let next = radii.iter().skip(1);
     let are_equal = |(one, other): &(&(f64, f64), &(f64, f64))| other.0 - one.0 < EQUAL * (one.1 + other.1);
     radii.iter().zip(next).filter(are_equal).map(|(one, other)| ruler.number(one.1.max(other.1))).sum()
-}
-
-/// Whether outlines cover together what they should and no more, but for what is within `reach` (pixels) of the places where they meet, if there is
-/// a blur that fills the gap.
-fn fits(completion: &Completion<'_>, outlines: &[Outline], place: &Place<'_>, cuts: &[Vec2<f64>], reach: f64) -> bool {
-    let is_filled = |&[x, y]: &[usize; 2]| {
-        let middle = Vec2::new(x as f64 + 0.5, y as f64 + 0.5);
-        cuts.iter().any(|&cut| (cut - middle).length() < reach)
-    };
-    match completion.check_filled(outlines, FillRule::NonZero, place) {
-        Ok(()) => true,
-        Err(wrong) => completion.partition.blur > 0.0 && wrong.iter().all(is_filled),
-    }
 }
