@@ -11,6 +11,7 @@ use super::super::raster;
 use super::share::{Heap, Part};
 use crate::outline::Outline;
 use crate::sample::Sample;
+use crate::tuning;
 
 /// Standard deviation (pixels) of the place that an outline reaches to: it is told by whole pixels.
 const HELD_SIGMA: f64 = 0.5;
@@ -19,29 +20,36 @@ const MOST_HELD: usize = 8;
 /// Most regions that are looked at.
 const MOST_REGIONS: usize = 32;
 
-/// Covers what is missed, region by region: by the thing that costs least more by it, or another one.
+/// Covers what is missed, region by region: by the thing that costs least more by it, or another one; small ones only by what is there.
 pub(super) fn cover(
     parts: &mut Vec<Part>,
     stretches: &[Vec<Sample>],
     heap: &Heap<'_>,
     missed: &dyn Fn(&[Part]) -> Vec<[usize; 2]>,
-) -> Option<()> {
+) {
+    let mut left_out = BTreeSet::new();
     for _ in 0..MOST_REGIONS {
-        let Some(region) = largest(&missed(parts)) else { return Some(()) };
-        let grown = |part: &Part| grown(part, &region, stretches, heap);
-        let of_parts = (0..parts.len()).filter_map(|k| {
-            let part = &parts[k];
-            let found = grown(part)?;
-            Some((found.bits - part.bits, Some(k), found))
+        let mut missed = missed(parts);
+        missed.retain(|at| !left_out.contains(at));
+        let pixels = largest(&missed);
+        if pixels.is_empty() {
+            return;
+        }
+        let region: Vec<Vec2<f64>> = pixels.iter().map(|&[x, y]| Vec2::new(x as f64 + 0.5, y as f64 + 0.5)).collect();
+        let of_parts = parts.iter().enumerate().filter_map(|(k, part)| {
+            let found = grown(part, &region, stretches, heap)?;
+            Some((found.bits - part.bits, k, found))
         });
-        let other = another(&region, stretches, heap).map(|part| (part.bits, None, part));
-        let best = of_parts.chain(other).min_by(|a, b| a.0.total_cmp(&b.0));
-        match best? {
-            (_, Some(k), part) => parts[k] = part,
-            (_, None, part) => parts.push(part),
+        let is_small = region.len() as f64 <= tuning::MOST_WRONG_PIXELS;
+        let other = if is_small { None } else { another(&region, stretches, heap) };
+        let other = other.map(|part| (part.bits, parts.len(), part));
+        match of_parts.chain(other).min_by(|a, b| a.0.total_cmp(&b.0)) {
+            Some((_, k, part)) if k < parts.len() => parts[k] = part,
+            Some((_, _, part)) => parts.push(part),
+            None if is_small => left_out.extend(pixels),
+            None => return,
         }
     }
-    None
 }
 
 /// The part with an outline that covers a region too.
@@ -96,9 +104,9 @@ fn farthest(outline: &Outline, region: &[Vec2<f64>]) -> Option<Sample> {
     Some(Sample::new(at + axis * 0.5, axis, HELD_SIGMA))
 }
 
-/// The middles of the pixels of the largest region.
-fn largest(missed: &[[usize; 2]]) -> Option<Vec<Vec2<f64>>> {
-    let mut left: BTreeSet<[usize; 2]> = missed.iter().copied().collect();
+/// The largest region of pixels that hang together.
+pub(super) fn largest(pixels: &[[usize; 2]]) -> Vec<[usize; 2]> {
+    let mut left: BTreeSet<[usize; 2]> = pixels.iter().copied().collect();
     let mut largest: Vec<[usize; 2]> = Vec::new();
     while let Some(first) = left.pop_first() {
         let (mut region, mut next) = (Vec::new(), Vec::from([first]));
@@ -111,5 +119,5 @@ fn largest(missed: &[[usize; 2]]) -> Option<Vec<Vec2<f64>>> {
             largest = region;
         }
     }
-    (!largest.is_empty()).then(|| largest.iter().map(|&[x, y]| Vec2::new(x as f64 + 0.5, y as f64 + 0.5)).collect())
+    largest
 }

@@ -111,7 +111,7 @@ fn parts(completion: &Completion<'_>, group: &Group, kinds: &[Vec<Model>]) -> Op
         };
         let mut wrong = completion.check_filled(outlines, FillRule::NonZero, &place).err().unwrap_or_default();
         wrong.retain(|at| !is_filled(at));
-        if wrong.len() as f64 > tuning::MOST_WRONG_PIXELS { wrong } else { Vec::new() }
+        wrong
     };
     let outlines =
         |parts: &[Part]| parts.iter().chain(&again).filter_map(|part| part.outline.clone()).collect::<Vec<_>>();
@@ -120,7 +120,10 @@ fn parts(completion: &Completion<'_>, group: &Group, kinds: &[Vec<Model>]) -> Op
         wrong.retain(|at| group.faces.contains(&completion.partition.face_at(*at)));
         wrong
     };
-    cover::cover(&mut parts, &stretches, &heap, &missed)?;
+    // What a coder left beside an edge is no pixel of anything.
+    if blur > 0.0 || !completion.partition.reading.coded {
+        cover::cover(&mut parts, &stretches, &heap, &missed);
+    }
     let outlines = outlines(&parts);
     parts.extend(again);
     // Of what goes on behind others no pixel tells that it is not there.
@@ -131,9 +134,14 @@ fn parts(completion: &Completion<'_>, group: &Group, kinds: &[Vec<Model>]) -> Op
     if outlines.len() < 2 {
         return None;
     }
-    // As many numbers say either: things that people draw hardly turn inward.
-    let most = completed.bits + tuning::LEAST_SAVED * outlines.len() as f64 + spared(&outlines, &completion.ruler);
-    let are_right = bits < most && wrong(&outlines).is_empty();
+    // As many numbers say either: things that people draw hardly turn inward. Where pixels alone tell of things, these must be shorter.
+    let are_told = parts.iter().all(|part| part.outline.is_some() && part.held.is_empty());
+    let saved = if are_told { tuning::LEAST_SAVED * outlines.len() as f64 } else { 0.0 };
+    let most = completed.bits + saved + spared(&outlines, &completion.ruler);
+    let wrong = wrong(&outlines);
+    // A blur leaves a few wherever outlines are near each other.
+    let count = if blur > 0.0 { cover::largest(&wrong).len() } else { wrong.len() };
+    let are_right = bits < most && count as f64 <= tuning::MOST_WRONG_PIXELS;
     are_right.then(|| Completed { are_things: true, bits, ..Completed::new(outlines, true) })
 }
 
