@@ -120,8 +120,8 @@ fn parts(completion: &Completion<'_>, group: &Group, kinds: &[Vec<Model>]) -> Op
         wrong.retain(|at| group.faces.contains(&completion.partition.face_at(*at)));
         wrong
     };
-    // What a coder left beside an edge is no pixel of anything.
-    if blur > 0.0 || !completion.partition.reading.coded {
+    // What straight things leave is no thing that is round, and what a coder left beside an edge no pixel of anything.
+    if again.is_empty() && (blur > 0.0 || !completion.partition.reading.coded) {
         cover::cover(&mut parts, &stretches, &heap, &missed);
     }
     let outlines = outlines(&parts);
