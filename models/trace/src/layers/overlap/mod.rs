@@ -101,7 +101,7 @@ fn parts(completion: &Completion<'_>, group: &Group, kinds: &[Vec<Model>]) -> Op
     };
     let again = again::take(kinds, &mut stretches, &may_be_heap, &completion.ruler)?;
     let heap = Heap { may_be: &may_be_heap, ruler: &completion.ruler };
-    let Shared { mut parts, cuts, stretches } = share::share(stretches, &heap)?;
+    let Shared { mut parts, cuts, stretches } = share::share(stretches, completed.bits, &heap)?;
     // Pixels that are covered and should not be, or not and should; where a blur fills the gap between outlines that meet they may be either.
     let reach = SPOILED + 2.0 * SPOILED_BLURS * blur;
     let wrong = |outlines: &[Outline]| {

@@ -23,6 +23,8 @@ const POLYGON_SIGMA: f64 = 0.1;
 const WORTH_CUTTING: f64 = 70.0;
 /// Windows from one place where a stretch may be cut to the next, at first.
 const STEP: usize = 3;
+/// Windows of a stretch among which such a place is looked for.
+const FIRST_LOOKS: usize = 48;
 /// Most stretches of one boundary: more are the edge of something that is uneven.
 const MOST_STRETCHES: usize = 64;
 
@@ -125,8 +127,10 @@ fn extent(outline: &Outline) -> (Vec2<f64>, f64, f64) {
 
 /// The things that stretches are of: again and again those two parts become one that cost least more by it. None if what is of none is more than a
 /// few windows.
-pub(super) fn share(mut left: Stretches, heap: &Heap<'_>) -> Option<Shared> {
+pub(super) fn share(mut left: Stretches, most: f64, heap: &Heap<'_>) -> Option<Shared> {
     let (mut parts, mut stretches) = (Vec::new(), Vec::new());
+    // What nothing explains is most often long.
+    left.samples.sort_by_key(Vec::len);
     while let Some(stretch) = left.samples.pop() {
         // Short ones, and what only cracks tell, say nothing: pixels do.
         let is_told = |sample: &Sample| sample.sigma < tuning::CRACK_SIGMA;
@@ -139,7 +143,11 @@ pub(super) fn share(mut left: Stretches, heap: &Heap<'_>) -> Option<Shared> {
             continue;
         }
         stretches.push(stretch);
-        parts.push(Part::new(vec![parts.len()], Vec::new(), &stretches, heap));
+        let part = Part::new(vec![parts.len()], Vec::new(), &stretches, heap);
+        if part.outline.is_none() && part.bits > most {
+            return None;
+        }
+        parts.push(part);
         if stretches.len() > MOST_STRETCHES {
             return None;
         }
@@ -160,15 +168,21 @@ fn cut(stretch: &[Sample], left: &Stretches, heap: &Heap<'_>) -> Option<(Vec2<f6
     if whole < WORTH_CUTTING {
         return None;
     }
-    let halves = |k: usize| {
+    let halves = |stretch: &[Sample], k: usize| {
         let halves = left.halves(stretch, stretch[k].point);
         // What nobody explains then costs what it does as a polygon.
         let left_out = stretch.len() - halves.iter().map(Vec::len).sum::<usize>();
         (halves.iter().map(price).sum::<f64>() + polygon(left_out, heap.ruler), k, halves)
     };
-    let best = |places: &mut dyn Iterator<Item = usize>| places.map(halves).min_by(|a, b| a.0.total_cmp(&b.0));
-    let (_, near, _) = best(&mut (0..stretch.len()).step_by(STEP))?;
-    let (bits, k, halves) = best(&mut (near.saturating_sub(STEP - 1)..(near + STEP).min(stretch.len())))?;
+    // Few windows tell where.
+    let every = stretch.len().div_ceil(FIRST_LOOKS);
+    let few: Vec<Sample> = stretch.iter().step_by(every).copied().collect();
+    let best = |places: &mut dyn Iterator<Item = usize>| {
+        places.map(|k| halves(&few, k)).min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, k, _)| k)
+    };
+    let near = best(&mut (0..few.len()).step_by(STEP))?;
+    let near = best(&mut (near.saturating_sub(STEP - 1)..(near + STEP).min(few.len())))?;
+    let (bits, k, halves) = halves(stretch, every * near);
     (bits < whole).then(|| (stretch[k].point, halves))
 }
 
