@@ -8,15 +8,11 @@ use dvp_core::contour::contains;
 use dvp_core::geometry::{LineSegment, convex_hull};
 
 use super::super::raster;
-use super::share::{Heap, Part};
+use super::share::{HELD_SIGMA, Heap, MOST_HELD, Part};
 use crate::outline::Outline;
 use crate::sample::Sample;
 use crate::tuning;
 
-/// Standard deviation (pixels) of the place that an outline reaches to: it is told by whole pixels.
-const HELD_SIGMA: f64 = 0.5;
-/// Most places that an outline is held to.
-const MOST_HELD: usize = 8;
 /// Most regions that are looked at.
 const MOST_REGIONS: usize = 32;
 

@@ -25,6 +25,12 @@ const WORTH_CUTTING: f64 = 70.0;
 const STEP: usize = 3;
 /// Windows of a stretch among which such a place is looked for.
 const FIRST_LOOKS: usize = 48;
+/// Standard deviation (pixels) of a place that an outline reaches to, or not beyond: it is told by whole pixels.
+pub(super) const HELD_SIGMA: f64 = 0.5;
+/// Most places that an outline is held to.
+pub(super) const MOST_HELD: usize = 8;
+/// How far outlines are followed beyond a heap, in steps of [`INSIDE`].
+const MOST_DEPTH: usize = 16;
 /// Most stretches of one boundary: more are the edge of something that is uneven.
 const MOST_STRETCHES: usize = 64;
 
@@ -40,6 +46,44 @@ pub(super) struct Heap<'a> {
     /// Whether a place is of the heap, or may be.
     pub(super) may_be: &'a dyn Fn(Vec2<f64>) -> bool,
     pub(super) ruler: &'a Ruler,
+}
+
+impl Heap<'_> {
+    /// The cheapest round outline around stretches, and through some places, that costs less than `most` bits and covers nothing but pixels of the heap.
+    fn round(&self, runs: &[Vec<Sample>], held: &[Sample], most: f64) -> Option<Outline> {
+        let fit = |held: &[Sample], may_be: &dyn Fn(&Outline) -> bool| {
+            let mut runs = runs.to_vec();
+            match runs.last_mut() {
+                Some(last) => last.extend(held),
+                None => runs.push(held.to_vec()),
+            }
+            fit_round(&RingSamples { runs, closed: false }, most, self.ruler, may_be)
+        };
+        let found = fit(held, &|outline| is_around(outline, runs) && self.spilled(outline).is_none());
+        // What one of few numbers covers beyond the heap holds another one.
+        let mut held = held.to_vec();
+        let mut tries = 0..MOST_HELD;
+        found.or_else(|| {
+            tries.find_map(|_| {
+                let Some(outline) = fit(&held, &|outline| is_around(outline, runs)) else { return Some(None) };
+                let Some(edge) = self.spilled(&outline) else { return Some(Some(outline)) };
+                held.push(edge);
+                None
+            })?
+        })
+    }
+
+    /// Where an outline goes farthest beyond the heap: the place that it should go through.
+    fn spilled(&self, outline: &Outline) -> Option<Sample> {
+        let polygon = raster::polygon(outline).unwrap_or_default();
+        let depths = LineSegment::closed(&polygon).filter_map(|side| {
+            let inward = side.along.normalized()?.perp();
+            let at = |depth: usize| side.from + side.along * 0.5 + inward * (INSIDE * depth as f64);
+            let depth = (1..=MOST_DEPTH).find(|&depth| (self.may_be)(at(depth))).unwrap_or(MOST_DEPTH);
+            (depth > 1).then(|| (depth, Sample::new(at(depth - 1), inward, HELD_SIGMA)))
+        });
+        depths.max_by_key(|&(depth, _)| depth).map(|(_, edge)| edge)
+    }
 }
 
 /// Stretches of one thing.
@@ -58,19 +102,12 @@ pub(super) struct Part {
 
 impl Part {
     pub(super) fn new(stretches: Vec<usize>, held: Vec<Sample>, of: &[Vec<Sample>], heap: &Heap<'_>) -> Self {
-        let mut runs: Vec<Vec<Sample>> = stretches.iter().map(|&k| of[k].clone()).collect();
+        let runs: Vec<Vec<Sample>> = stretches.iter().map(|&k| of[k].clone()).collect();
         let count: usize = runs.iter().map(Vec::len).sum();
         let polygon = polygon(count, heap.ruler);
         let price = |outline: &Outline| outline.bits + outline.misfit;
-        let seen = runs.clone();
-        match runs.last_mut() {
-            Some(last) => last.extend(&held),
-            None => runs.push(held.clone()),
-        }
-        let rings = RingSamples { runs, closed: false };
-        let may_be = |outline: &Outline| is_around(outline, &seen) && is_in(outline, heap);
         let most = if count == 0 { f64::INFINITY } else { polygon };
-        let outline = fit_round(&rings, most, heap.ruler, &may_be);
+        let outline = heap.round(&runs, &held, most);
         let bits = outline.as_ref().map_or(polygon, price);
         Self { stretches, held, count, outline, bits }
     }
@@ -107,16 +144,6 @@ fn is_around(outline: &Outline, runs: &[Vec<Sample>]) -> bool {
         || steps.map(|pair| (pair[0].point - center).cross(pair[1].point - pair[0].point)).sum::<f64>() > 0.0
 }
 
-/// Whether an outline covers nothing but pixels of the heap.
-fn is_in(outline: &Outline, heap: &Heap<'_>) -> bool {
-    let polygon = raster::polygon(outline).unwrap_or_default();
-    let mut sides = LineSegment::closed(&polygon);
-    sides.all(|side| {
-        let inward = side.along.normalized().unwrap_or_default().perp() * INSIDE;
-        (heap.may_be)(side.from + side.along * 0.5 + inward)
-    })
-}
-
 /// The middle of an outline, half of its mean width and height, and its length.
 fn extent(outline: &Outline) -> (Vec2<f64>, f64, f64) {
     let polygon = raster::polygon(outline).unwrap_or_default();
@@ -144,7 +171,7 @@ pub(super) fn share(mut left: Stretches, most: f64, heap: &Heap<'_>) -> Option<S
         }
         stretches.push(stretch);
         let part = Part::new(vec![parts.len()], Vec::new(), &stretches, heap);
-        if part.outline.is_none() && part.bits > most {
+        if part.outline.is_none() && part.bits > 2.0 * most {
             return None;
         }
         parts.push(part);
