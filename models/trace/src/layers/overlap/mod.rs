@@ -31,7 +31,7 @@ use super::complete::{Completed, Completion};
 use super::join::Group;
 use super::walk;
 use crate::outline::{Outline, OutlineShape};
-use crate::partition::OUTSIDE;
+use crate::partition::{OUTSIDE, Partition};
 use crate::ruler::Ruler;
 use crate::tuning;
 use model::Model;
@@ -44,6 +44,9 @@ const SPOILED: f64 = 2.0;
 const SPOILED_BLURS: f64 = 2.0;
 /// What a blur moves an edge by beside another one, standard deviations of the blur.
 const BLURRED_SIGMA: f64 = 0.05;
+/// Share of the bits of an outline that things in it may need where pixels tell of some of them, and no windows: of heaps of cells most need .45 to .85, of
+/// things that are one and uneven .9 and more.
+const SURE: f64 = 0.9;
 /// Radii closer than so many of their standard deviations together may be equal.
 const EQUAL: f64 = 3.0;
 /// Most corners outward of one boundary: more are those of something uneven.
@@ -53,8 +56,9 @@ const LEAST_SEEN: f64 = 0.25;
 
 /// Puts several things where the outlines of a group are those of things that overlap.
 pub(super) fn part(completion: &Completion<'_>, groups: &mut [Group]) {
-    // Outlines along stairs are moved as a whole.
-    if completion.partition.is_hard {
+    // Outlines along stairs are moved as a whole, and a coder makes those uneven that are not.
+    let Partition { is_hard, blur, reading, .. } = completion.partition;
+    if *is_hard || reading.coded && *blur == 0.0 {
         return;
     }
     let color = |group: &Group| group.faces.first().map(|&face| completion.partition.faces[face as usize].color);
@@ -120,8 +124,8 @@ fn parts(completion: &Completion<'_>, group: &Group, kinds: &[Vec<Model>]) -> Op
         wrong.retain(|at| group.faces.contains(&completion.partition.face_at(*at)));
         wrong
     };
-    // What straight things leave is no thing that is round, and what a coder left beside an edge no pixel of anything.
-    if again.is_empty() && (blur > 0.0 || !completion.partition.reading.coded) {
+    // What straight things leave is no thing that is round.
+    if again.is_empty() {
         cover::cover(&mut parts, &stretches, &heap, &missed);
     }
     let outlines = outlines(&parts);
@@ -134,10 +138,10 @@ fn parts(completion: &Completion<'_>, group: &Group, kinds: &[Vec<Model>]) -> Op
     if outlines.len() < 2 {
         return None;
     }
-    // As many numbers say either: things that people draw hardly turn inward. Where pixels alone tell of things, these must be shorter.
-    let are_told = parts.iter().all(|part| part.outline.is_some() && part.held.is_empty());
-    let saved = if are_told { tuning::LEAST_SAVED * outlines.len() as f64 } else { 0.0 };
-    let most = completed.bits + saved + spared(&outlines, &completion.ruler);
+    // As many numbers say either: things that people draw hardly turn inward.
+    let are_told = parts.iter().all(|part| part.is_told);
+    let saved = tuning::LEAST_SAVED * outlines.len() as f64 + spared(&outlines, &completion.ruler);
+    let most = if are_told { completed.bits + saved } else { SURE * completed.bits };
     let wrong = wrong(&outlines);
     // A blur leaves a few wherever outlines are near each other.
     let count = if blur > 0.0 { cover::largest(&wrong).len() } else { wrong.len() };

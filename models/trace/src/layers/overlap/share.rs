@@ -49,8 +49,9 @@ pub(super) struct Heap<'a> {
 }
 
 impl Heap<'_> {
-    /// The cheapest round outline around stretches, and through some places, that costs less than `most` bits and covers nothing but pixels of the heap.
-    fn round(&self, runs: &[Vec<Sample>], held: &[Sample], most: f64) -> Option<Outline> {
+    /// The cheapest round outline around stretches, and through some places, that costs less than `most` bits and covers nothing but pixels of the heap; and
+    /// whether the stretches alone tell it.
+    fn round(&self, runs: &[Vec<Sample>], held: &[Sample], most: f64) -> Option<(Outline, bool)> {
         let fit = |held: &[Sample], may_be: &dyn Fn(&Outline) -> bool| {
             let mut runs = runs.to_vec();
             match runs.last_mut() {
@@ -59,18 +60,17 @@ impl Heap<'_> {
             }
             fit_round(&RingSamples { runs, closed: false }, most, self.ruler, may_be)
         };
-        let found = fit(held, &|outline| is_around(outline, runs) && self.spilled(outline).is_none());
+        if let Some(found) = fit(held, &|outline| is_around(outline, runs) && self.spilled(outline).is_none()) {
+            return Some((found, held.is_empty()));
+        }
         // What one of few numbers covers beyond the heap holds another one.
         let mut held = held.to_vec();
-        let mut tries = 0..MOST_HELD;
-        found.or_else(|| {
-            tries.find_map(|_| {
-                let Some(outline) = fit(&held, &|outline| is_around(outline, runs)) else { return Some(None) };
-                let Some(edge) = self.spilled(&outline) else { return Some(Some(outline)) };
-                held.push(edge);
-                None
-            })?
-        })
+        for _ in 0..MOST_HELD {
+            let outline = fit(&held, &|outline| is_around(outline, runs))?;
+            let Some(edge) = self.spilled(&outline) else { return Some((outline, false)) };
+            held.push(edge);
+        }
+        None
     }
 
     /// Where an outline goes farthest beyond the heap: the place that it should go through.
@@ -98,6 +98,8 @@ pub(super) struct Part {
     pub(super) outline: Option<Outline>,
     /// Bits of that, or of the polygon through them.
     pub(super) bits: f64,
+    /// Whether windows alone tell of it.
+    pub(super) is_told: bool,
 }
 
 impl Part {
@@ -107,15 +109,16 @@ impl Part {
         let polygon = polygon(count, heap.ruler);
         let price = |outline: &Outline| outline.bits + outline.misfit;
         let most = if count == 0 { f64::INFINITY } else { polygon };
-        let outline = heap.round(&runs, &held, most);
+        let (outline, is_told) =
+            heap.round(&runs, &held, most).map_or((None, false), |(outline, is_told)| (Some(outline), is_told));
         let bits = outline.as_ref().map_or(polygon, price);
-        Self { stretches, held, count, outline, bits }
+        Self { stretches, held, count, outline, bits, is_told }
     }
 
     /// A thing of which so many windows are seen.
     pub(super) fn again(outline: Outline, count: usize) -> Self {
         let bits = outline.bits + outline.misfit;
-        Self { stretches: Vec::new(), held: Vec::new(), count, outline: Some(outline), bits }
+        Self { stretches: Vec::new(), held: Vec::new(), count, outline: Some(outline), bits, is_told: true }
     }
 
     /// Whether it may be of the same thing as another one: their outlines lie on one another, if they have such.
