@@ -1,5 +1,7 @@
 //! Things of one color that lie on one another.
 
+use dvp_core::shape::Ellipse;
+
 use super::*;
 
 /// Disks of red in places and of radii, painted.
@@ -33,6 +35,43 @@ fn disks_that_overlap_are_circles() {
         let picture = disks(made);
         let found = found(&picture);
         assert!(are_found(&found, made, 0.05), "{found:?}");
+        assert!(error(&picture, &found) < 1e-3);
+    }
+}
+
+#[test]
+fn ellipses_that_overlap_are_found() {
+    // What is covered by none tells of one of which little is seen, and how far one goes.
+    let hidden = [([16.9, 39.7], [7.4, 6.0], 1.69), ([27.4, 40.0], [7.1, 6.1], 1.93), ([32.0, 47.8], [7.3, 6.1], 2.92)];
+    let far = [
+        ([25.8, 61.1], [7.4, 6.4], 0.23),
+        ([32.8, 50.5], [8.5, 5.4], 1.1),
+        ([38.9, 62.2], [12.2, 9.5], 1.15),
+        ([17.6, 42.1], [12.8, 10.7], 0.16),
+    ];
+    // The outline shows no corner where two meet; nor that what is seen of one, as a disk, would go beyond the heap.
+    let smooth =
+        [([76.9, 45.9], [10.4, 6.4], 0.59), ([72.2, 60.4], [10.5, 9.7], 1.46), ([74.6, 25.7], [12.9, 10.0], 1.04)];
+    let beyond = [
+        ([82.0, 61.9], [8.5, 5.7], 1.28),
+        ([78.2, 42.8], [12.0, 8.2], 2.05),
+        ([65.4, 32.5], [8.9, 5.5], 3.04),
+        ([60.4, 19.2], [11.1, 6.7], 2.31),
+    ];
+    for made in [&hidden[..], &far, &smooth, &beyond] {
+        let ellipse = |&(at, radii, turn): &([f64; 2], [f64; 2], f64)| {
+            object(AnyShape::Ellipse(Ellipse { radii }), at, turn, RED)
+        };
+        let picture = paint(&scene(WHITE, made.iter().map(ellipse).collect()));
+        let found = found(&picture);
+        assert_eq!(found.objects.len(), made.len(), "{found:?}");
+        for &([x, y], ..) in made {
+            let off = |object: &Object<f32>| {
+                let [found_x, found_y] = object.pose.translation.map(|value| f64::from(value) * SIZE as f64);
+                (found_x - x).hypot(found_y - y)
+            };
+            assert!(found.objects.iter().map(off).fold(f64::INFINITY, f64::min) < 0.5);
+        }
         assert!(error(&picture, &found) < 1e-3);
     }
 }

@@ -101,6 +101,15 @@ fn a_blur_is_taken_off_and_told() {
 }
 
 #[test]
+fn small_round_things_tell_of_a_blur() {
+    let disks = [([20.3, 22.6], 6.3), ([50.7, 30.2], 7.1), ([29.4, 60.8], 5.6), ([70.1, 68.9], 6.8)];
+    let disks = disks.map(|(at, radius)| object(circle(radius), at, 0.0, RED));
+    let picture = blurred(&paint(&scene(WHITE, disks.to_vec())), 0.8);
+    let traced = trace(&picture.view(), &Known::default().with_spoiled(true)).unwrap();
+    assert!((traced.blur / 0.8 - 1.0).abs() < 0.1, "{}", traced.blur);
+}
+
+#[test]
 fn a_clean_picture_has_no_blur() {
     let traced = trace(&paint(&drawn()).view(), &Known::default().with_spoiled(true)).unwrap();
     assert!(traced.blur < 0.05, "{}", traced.blur);

@@ -10,6 +10,7 @@ use dvp_core::geometry::{Bounds, LineSegment, Similarity};
 #[cfg(not(feature = "std"))]
 use num_traits::Float as _;
 
+use super::heap::{Heap, INSIDE};
 use super::model::Model;
 use super::share::Part;
 use super::stretch::{Corner, Stretches};
@@ -25,8 +26,7 @@ const ALONG: f64 = 0.1;
 const NEAR: f64 = 0.4;
 /// Fewest windows that only one thing explains: as many as tell of one side that it is there.
 const LEAST_TOLD: usize = 3;
-/// So far inside (pixels) of each side, at these shares of it, pixels are of the heap: where the side is not that of a pixel too, half of that is.
-pub(super) const INSIDE: f64 = 0.75;
+/// Shares of each side at which pixels just inside of it are of the heap.
 const PROBES: [f64; 4] = [0.125, 0.375, 0.625, 0.875];
 /// Things are side by side that are closer (pixels), or overlap by less, but for what they may be longer.
 const BESIDE: f64 = 0.1;
@@ -35,14 +35,9 @@ const STEPS: usize = 3;
 
 /// The things of one kind that have corners of the outlines of a heap, and lie in it; what is left of the stretches of its boundary stays. Each kind is
 /// given as the models that may be of it: things of several kinds that lie on one another are a figure. So are things that lie side by side: then none.
-pub(super) fn take(
-    kinds: &[Vec<Model>],
-    stretches: &mut Stretches,
-    is_heap: &dyn Fn(Vec2<f64>) -> bool,
-    ruler: &Ruler,
-) -> Option<Vec<Part>> {
+pub(super) fn take(kinds: &[Vec<Model>], stretches: &mut Stretches, heap: &Heap<'_>) -> Option<Vec<Part>> {
     let samples: Vec<Sample> = stretches.samples.iter().flatten().copied().collect();
-    let taken = kinds.iter().map(|kind| Taken::of(kind, stretches, &samples, is_heap));
+    let taken = kinds.iter().map(|kind| Taken::of(kind, stretches, &samples, heap));
     let Some(taken) = taken.max_by_key(Taken::told) else { return Some(Vec::new()) };
     if taken.is_figure() {
         return None;
@@ -56,8 +51,8 @@ pub(super) fn take(
     stretches.samples = stretches.samples.iter().flat_map(&mut left).collect();
     let choice = (kinds.len() as f64).log2() + tuning::OUTLINE_PIECE_BITS;
     let parts = taken.places.iter().enumerate().map(|(k, (place, on))| {
-        let first = if k == 0 { choice + place.model.bits(ruler) } else { 0.0 };
-        Part::again(place.outline(on, first, ruler), on.len())
+        let first = if k == 0 { choice + place.model.bits(heap.ruler) } else { 0.0 };
+        Part::again(place.outline(on, first, heap.ruler), on.len())
     });
     Some(parts.collect())
 }
@@ -72,12 +67,12 @@ struct Taken<'a> {
 
 impl<'a> Taken<'a> {
     /// Those of which a corner is seen; if these explain most of the boundary, then those of which two sides are.
-    fn of(kind: &'a [Model], of: &Stretches, samples: &[Sample], is_heap: &dyn Fn(Vec2<f64>) -> bool) -> Self {
+    fn of(kind: &'a [Model], of: &Stretches, samples: &[Sample], heap: &Heap<'_>) -> Self {
         let mut taken = Self { places: Vec::new(), is_told: vec![false; samples.len()] };
-        taken.take(kind.iter().flat_map(|model| at_corners(model, &of.corners)), samples, is_heap);
+        taken.take(kind.iter().flat_map(|model| at_corners(model, &of.corners)), samples, heap);
         let told = taken.told();
         if told < samples.len() && 2 * told > samples.len() {
-            taken.take(kind.iter().flat_map(|model| at_sides(model, &of.sides)), samples, is_heap);
+            taken.take(kind.iter().flat_map(|model| at_sides(model, &of.sides)), samples, heap);
         }
         taken
     }
@@ -88,13 +83,8 @@ impl<'a> Taken<'a> {
     }
 
     /// Takes the place that explains most of what is left of a boundary, again and again.
-    fn take(
-        &mut self,
-        places: impl Iterator<Item = Place<'a>>,
-        samples: &[Sample],
-        is_heap: &dyn Fn(Vec2<f64>) -> bool,
-    ) {
-        let left = places.filter(|place| place.is_in(is_heap));
+    fn take(&mut self, places: impl Iterator<Item = Place<'a>>, samples: &[Sample], heap: &Heap<'_>) {
+        let left = places.filter(|place| place.is_in(heap));
         let mut left: Vec<(Place<'_>, Vec<usize>)> = left.map(|place| place.told(samples)).collect();
         loop {
             left.iter_mut().for_each(|(_, told)| told.retain(|&k| !self.is_told[k]));
@@ -189,10 +179,10 @@ impl<'a> Place<'a> {
     }
 
     /// Whether it covers nothing but pixels of the heap.
-    fn is_in(&self, is_heap: &dyn Fn(Vec2<f64>) -> bool) -> bool {
+    fn is_in(&self, heap: &Heap<'_>) -> bool {
         self.model.sides.iter().all(|side| {
             let inward = side.along.normalized().unwrap_or_default().perp() * INSIDE;
-            PROBES.iter().all(|&share| is_heap(side.from + side.along * share + inward + self.shift))
+            PROBES.iter().all(|&share| (heap.may_be)(side.from + side.along * share + inward + self.shift))
         })
     }
 

@@ -8,7 +8,8 @@ use dvp_core::contour::contains;
 use dvp_core::geometry::{LineSegment, convex_hull};
 
 use super::super::raster;
-use super::share::{HELD_SIGMA, Heap, MOST_HELD, Part};
+use super::heap::{HELD_SIGMA, Heap, MOST_HELD};
+use super::share::Part;
 use crate::outline::Outline;
 use crate::sample::Sample;
 use crate::tuning;

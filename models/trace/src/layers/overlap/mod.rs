@@ -3,6 +3,7 @@
 //!
 //! | file | holds |
 //! |---|---|
+//! | `heap` | a heap, and round outlines in it |
 //! | `stretch` | what of a boundary lies between corners inward |
 //! | `share` | which stretches are of one thing |
 //! | `cover` | what these leave uncovered |
@@ -13,6 +14,7 @@
 
 mod again;
 mod cover;
+mod heap;
 mod model;
 mod share;
 mod stretch;
@@ -31,11 +33,12 @@ use super::complete::{Completed, Completion};
 use super::join::Group;
 use super::walk;
 use crate::outline::{Outline, OutlineShape};
-use crate::partition::{OUTSIDE, Partition};
+use crate::partition::OUTSIDE;
 use crate::ruler::Ruler;
 use crate::tuning;
+use heap::Heap;
 use model::Model;
-use share::{Heap, Part, Shared};
+use share::{Part, Shared};
 use stretch::Stretches;
 
 /// Windows so near to a corner (pixels) see both sides of it.
@@ -56,9 +59,8 @@ const LEAST_SEEN: f64 = 0.25;
 
 /// Puts several things where the outlines of a group are those of things that overlap.
 pub(super) fn part(completion: &Completion<'_>, groups: &mut [Group]) {
-    // Outlines along stairs are moved as a whole, and a coder makes those uneven that are not.
-    let Partition { is_hard, blur, reading, .. } = completion.partition;
-    if *is_hard || reading.coded && *blur == 0.0 {
+    // Outlines along stairs are moved as a whole.
+    if completion.partition.is_hard {
         return;
     }
     let color = |group: &Group| group.faces.first().map(|&face| completion.partition.faces[face as usize].color);
@@ -103,8 +105,8 @@ fn parts(completion: &Completion<'_>, group: &Group, kinds: &[Vec<Model>]) -> Op
         let face = if x < 0.0 || y < 0.0 { OUTSIDE } else { completion.partition.face_at([x as usize, y as usize]) };
         face == OUTSIDE || group.faces.contains(&face) || place.is_behind(face)
     };
-    let again = again::take(kinds, &mut stretches, &may_be_heap, &completion.ruler)?;
     let heap = Heap { may_be: &may_be_heap, ruler: &completion.ruler };
+    let again = again::take(kinds, &mut stretches, &heap)?;
     let Shared { mut parts, cuts, stretches } = share::share(stretches, completed.bits, &heap)?;
     // Pixels that are covered and should not be, or not and should; where a blur fills the gap between outlines that meet they may be either.
     let reach = SPOILED + 2.0 * SPOILED_BLURS * blur;
@@ -140,6 +142,10 @@ fn parts(completion: &Completion<'_>, group: &Group, kinds: &[Vec<Model>]) -> Op
     }
     // As many numbers say either: things that people draw hardly turn inward.
     let are_told = parts.iter().all(|part| part.is_told);
+    // A coder makes edges uneven that are not.
+    if !are_told && completion.partition.reading.coded && blur == 0.0 {
+        return None;
+    }
     let saved = tuning::LEAST_SAVED * outlines.len() as f64 + spared(&outlines, &completion.ruler);
     let most = if are_told { completed.bits + saved } else { SURE * completed.bits };
     let wrong = wrong(&outlines);
