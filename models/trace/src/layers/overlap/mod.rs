@@ -24,6 +24,8 @@ use alloc::rc::Rc;
 use alloc::vec::Vec;
 
 use dvp_core::Vec2;
+use dvp_core::contour::contains;
+use dvp_core::geometry::{LineSegment, convex_hull};
 use dvp_core::shape::FillRule;
 use dvp_core::sort;
 #[cfg(not(feature = "std"))]
@@ -31,7 +33,7 @@ use num_traits::Float as _;
 
 use super::complete::{Completed, Completion};
 use super::join::Group;
-use super::walk;
+use super::{raster, walk};
 use crate::outline::{Outline, OutlineShape};
 use crate::partition::OUTSIDE;
 use crate::ruler::Ruler;
@@ -50,6 +52,9 @@ const BLURRED_SIGMA: f64 = 0.05;
 /// Share of the bits of an outline that things in it may need where pixels tell of some of them, and no windows: of heaps of cells most need .45 to .85, of
 /// things that are one and uneven .9 and more.
 const SURE: f64 = 0.9;
+/// Least depth of the notch between two things, as a share of half the size of the smaller: two disks of one size leave as much where 45 % of either is
+/// hidden.
+const LEAST_NOTCH: f64 = 0.2;
 /// Radii closer than so many of their standard deviations together may be equal.
 const EQUAL: f64 = 3.0;
 /// Most corners outward of one boundary: more are those of something uneven.
@@ -131,13 +136,14 @@ fn parts(completion: &Completion<'_>, group: &Group, kinds: &[Vec<Model>]) -> Op
         cover::cover(&mut parts, &stretches, &heap, &missed);
     }
     let outlines = outlines(&parts);
+    let are_round = again.is_empty();
     parts.extend(again);
     // Of what goes on behind others no pixel tells that it is not there.
     if !is_closed && parts.iter().any(|part| part.seen() < LEAST_SEEN) {
         return None;
     }
     let bits = parts.iter().map(|part| part.bits).sum();
-    if outlines.len() < 2 {
+    if outlines.len() < 2 || are_round && !has_notch(&outlines, &cuts, SPOILED + SPOILED_BLURS * blur) {
         return None;
     }
     // As many numbers say either: things that people draw hardly turn inward.
@@ -153,6 +159,24 @@ fn parts(completion: &Completion<'_>, group: &Group, kinds: &[Vec<Model>]) -> Op
     let count = if blur > 0.0 { cover::largest(&wrong).len() } else { wrong.len() };
     let are_right = bits < most && count as f64 <= tuning::MOST_WRONG_PIXELS;
     are_right.then(|| Completed { are_things: true, bits, ..Completed::new(outlines, true) })
+}
+
+/// Whether the boundary turns in by more than a little where it was cut between any two outlines: else they are what one thing may be that is uneven.
+fn has_notch(outlines: &[Outline], cuts: &[Vec2<f64>], reach: f64) -> bool {
+    let outlines: Vec<(Vec<[f64; 2]>, f64)> =
+        outlines.iter().filter_map(|outline| Some((raster::polygon(outline)?, heap::extent(outline).1))).collect();
+    let distance = |at: Vec2<f64>, polygon: &[[f64; 2]]| {
+        LineSegment::closed(polygon).map(|side| side.nearest(at).distance()).fold(f64::INFINITY, f64::min)
+    };
+    let is_notch = |(one, size): &(Vec<[f64; 2]>, f64), (other, other_size): &(Vec<[f64; 2]>, f64)| {
+        let hull = convex_hull(&[one.as_slice(), other].concat());
+        let is_deep = |cut: Vec2<f64>| {
+            let is_between = distance(cut, one).max(distance(cut, other)) < reach;
+            is_between && contains(&hull, cut.to_array()) && distance(cut, &hull) > LEAST_NOTCH * size.min(*other_size)
+        };
+        cuts.iter().any(|&cut| is_deep(cut))
+    };
+    (0..outlines.len()).any(|k| outlines[..k].iter().any(|other| is_notch(&outlines[k], other)))
 }
 
 /// Bits of radii that are told once: those of a path are equal by now if they are to be.

@@ -144,7 +144,8 @@ fn cut(stretch: &[Sample], left: &Stretches, heap: &Heap<'_>) -> Option<(Vec2<f6
     let near = best(&mut (0..few.len()).step_by(STEP))?;
     let near = best(&mut (near.saturating_sub(STEP - 1)..(near + STEP).min(few.len())))?;
     let (bits, k, halves) = halves(stretch, every * near);
-    (bits < whole).then(|| (stretch[k].point, halves))
+    let at = stretch[k].point;
+    (bits < whole).then_some((at, halves))
 }
 
 /// Joins parts as long as that makes the description shorter.
