@@ -143,7 +143,10 @@ fn parts(completion: &Completion<'_>, group: &Group, kinds: &[Vec<Model>]) -> Op
         return None;
     }
     let bits = parts.iter().map(|part| part.bits).sum();
-    if outlines.len() < 2 || are_round && !has_notch(&outlines, &cuts, SPOILED + SPOILED_BLURS * blur) {
+    // What is uneven is not two disks by chance.
+    let is_disk = |outline: &Outline| matches!(outline.shape, OutlineShape::Circle { .. });
+    let may_be_one = are_round && !outlines.iter().all(is_disk);
+    if outlines.len() < 2 || may_be_one && !has_notch(&outlines, &cuts, SPOILED + SPOILED_BLURS * blur) {
         return None;
     }
     // As many numbers say either: things that people draw hardly turn inward.
