@@ -18,13 +18,14 @@ use crate::tuning;
 const MOST_REGIONS: usize = 32;
 
 /// Covers what is missed, region by region: by the thing that costs least more by it, or another one; small ones only by what is there.
+#[inline(never)]
 pub(super) fn cover(
     parts: &mut Vec<Part>,
     stretches: &[Vec<Sample>],
     heap: &Heap<'_>,
     missed: &dyn Fn(&[Part]) -> Vec<[usize; 2]>,
 ) {
-    let mut left_out = BTreeSet::new();
+    let mut left_out: Vec<[usize; 2]> = Vec::new();
     for _ in 0..MOST_REGIONS {
         let mut missed = missed(parts);
         missed.retain(|at| !left_out.contains(at));
@@ -50,6 +51,7 @@ pub(super) fn cover(
 }
 
 /// The part with an outline that covers a region too.
+#[inline(never)]
 fn grown(part: &Part, region: &[Vec2<f64>], of: &[Vec<Sample>], heap: &Heap<'_>) -> Option<Part> {
     if part.stretches.is_empty() {
         return None;
@@ -68,11 +70,13 @@ fn grown(part: &Part, region: &[Vec2<f64>], of: &[Vec<Sample>], heap: &Heap<'_>)
 }
 
 /// A thing of which a region alone is known.
+#[inline(never)]
 fn another(region: &[Vec2<f64>], of: &[Vec<Sample>], heap: &Heap<'_>) -> Option<Part> {
     Some(Part::new(Vec::new(), corners(region), of, heap)).filter(|part| part.outline.is_some())
 }
 
 /// The corners of the hull of a region.
+#[inline(never)]
 fn corners(region: &[Vec2<f64>]) -> Vec<Sample> {
     let points: Vec<[f64; 2]> = region
         .iter()
@@ -89,6 +93,7 @@ fn corners(region: &[Vec2<f64>]) -> Vec<Sample> {
 }
 
 /// The place of a region that is farthest outside of an outline; none if it covers all of it.
+#[inline(never)]
 fn farthest(outline: &Outline, region: &[Vec2<f64>]) -> Option<Sample> {
     let polygon = raster::polygon(outline)?;
     let off = |at: &Vec2<f64>| {
@@ -102,15 +107,20 @@ fn farthest(outline: &Outline, region: &[Vec2<f64>]) -> Option<Sample> {
 }
 
 /// The largest region of pixels that hang together.
+#[inline(never)]
 pub(super) fn largest(pixels: &[[usize; 2]]) -> Vec<[usize; 2]> {
-    let mut left: BTreeSet<[usize; 2]> = pixels.iter().copied().collect();
+    let mut left: BTreeSet<(u32, u32)> = pixels.iter().map(|&[x, y]| (x as u32, y as u32)).collect();
     let mut largest: Vec<[usize; 2]> = Vec::new();
-    while let Some(first) = left.pop_first() {
+    for &[x, y] in pixels {
+        let first = (x as u32, y as u32);
+        if !left.remove(&first) {
+            continue;
+        }
         let (mut region, mut next) = (Vec::new(), Vec::from([first]));
-        while let Some([x, y]) = next.pop() {
-            let beside = [[x + 1, y], [x.wrapping_sub(1), y], [x, y + 1], [x, y.wrapping_sub(1)]];
+        while let Some((x, y)) = next.pop() {
+            let beside = [(x + 1, y), (x.wrapping_sub(1), y), (x, y + 1), (x, y.wrapping_sub(1))];
             next.extend(beside.into_iter().filter(|at| left.remove(at)));
-            region.push([x, y]);
+            region.push([x as usize, y as usize]);
         }
         if region.len() > largest.len() {
             largest = region;

@@ -30,6 +30,7 @@ pub(super) struct Heap<'a> {
 impl Heap<'_> {
     /// The cheapest round outline around stretches, and through some places, that costs less than `most` bits and covers nothing but pixels of the heap; and
     /// whether the stretches alone tell it.
+    #[inline(never)]
     pub(super) fn round(&self, runs: &[Vec<Sample>], held: &[Sample], most: f64) -> Option<(Outline, bool)> {
         let fit = |held: &[Sample], may_be: &dyn Fn(&Outline) -> bool| {
             let mut runs = runs.to_vec();
@@ -53,6 +54,7 @@ impl Heap<'_> {
     }
 
     /// Where an outline goes farthest beyond the heap: the place that it should go through.
+    #[inline(never)]
     fn spilled(&self, outline: &Outline) -> Option<Sample> {
         let polygon = raster::polygon(outline).unwrap_or_default();
         let depths = LineSegment::closed(&polygon).filter_map(|side| {
@@ -66,6 +68,7 @@ impl Heap<'_> {
 }
 
 /// Whether stretches lead around what a round outline covers: around an opening they lead the other way.
+#[inline(never)]
 fn is_around(outline: &Outline, runs: &[Vec<Sample>]) -> bool {
     let (center, ..) = extent(outline);
     let steps = runs.iter().flat_map(|run| run.windows(2));
@@ -74,6 +77,7 @@ fn is_around(outline: &Outline, runs: &[Vec<Sample>]) -> bool {
 }
 
 /// The middle of an outline, half of its mean width and height, and its length.
+#[inline(never)]
 pub(super) fn extent(outline: &Outline) -> (Vec2<f64>, f64, f64) {
     let polygon = raster::polygon(outline).unwrap_or_default();
     let bounds = Bounds::of_vertices(&polygon);

@@ -165,6 +165,7 @@ fn parts(completion: &Completion<'_>, group: &Group, kinds: &[Vec<Model>]) -> Op
 }
 
 /// Whether the boundary turns in by more than a little where it was cut between any two outlines: else they are what one thing may be that is uneven.
+#[inline(never)]
 fn has_notch(outlines: &[Outline], cuts: &[Vec2<f64>], reach: f64) -> bool {
     let outlines: Vec<(Vec<[f64; 2]>, f64)> =
         outlines.iter().filter_map(|outline| Some((raster::polygon(outline)?, heap::extent(outline).1))).collect();
@@ -183,6 +184,7 @@ fn has_notch(outlines: &[Outline], cuts: &[Vec2<f64>], reach: f64) -> bool {
 }
 
 /// Bits of radii that are told once: those of a path are equal by now if they are to be.
+#[inline(never)]
 fn spared(outlines: &[Outline], ruler: &Ruler) -> f64 {
     let radius = |outline: &Outline| match outline.shape {
         OutlineShape::Circle { radius, .. } => Some((radius, outline.covariance.get(8)?.sqrt())),

@@ -50,6 +50,7 @@ pub(super) struct Part {
 
 impl Part {
     /// What is of stretches, of all that there are, and reaches to some places.
+    #[inline(never)]
     pub(super) fn new(stretches: Vec<usize>, held: Vec<Sample>, of: &[Vec<Sample>], heap: &Heap<'_>) -> Self {
         let runs: Vec<Vec<Sample>> = stretches.iter().map(|&k| of[k].clone()).collect();
         let count: usize = runs.iter().map(Vec::len).sum();
@@ -91,8 +92,8 @@ impl Part {
 pub(super) fn share(mut left: Stretches, most: f64, heap: &Heap<'_>) -> Option<Shared> {
     let (mut parts, mut stretches) = (Vec::new(), Vec::new());
     // What nothing explains is most often long.
-    left.samples.sort_by_key(Vec::len);
-    while let Some(stretch) = left.samples.pop() {
+    while let Some(longest) = (0..left.samples.len()).max_by_key(|&k| left.samples[k].len()) {
+        let stretch = left.samples.swap_remove(longest);
         // Short ones, and what only cracks tell, say nothing: pixels do.
         let is_told = |sample: &Sample| sample.sigma < tuning::CRACK_SIGMA;
         if stretch.len() < SHORTEST || !stretch.iter().any(is_told) {
@@ -123,6 +124,7 @@ fn polygon(count: usize, ruler: &Ruler) -> f64 {
 }
 
 /// Where a stretch is two that cost less, and these.
+#[inline(never)]
 fn cut(stretch: &[Sample], left: &Stretches, heap: &Heap<'_>) -> Option<(Vec2<f64>, Vec<Vec<Sample>>)> {
     let price = |stretch: &Vec<Sample>| Part::new(vec![0], Vec::new(), core::slice::from_ref(stretch), heap).bits;
     let whole = price(&stretch.to_vec());
@@ -149,6 +151,7 @@ fn cut(stretch: &[Sample], left: &Stretches, heap: &Heap<'_>) -> Option<(Vec2<f6
 }
 
 /// Joins parts as long as that makes the description shorter.
+#[inline(never)]
 fn join(parts: &mut Vec<Part>, stretches: &[Vec<Sample>], heap: &Heap<'_>) {
     // The first stretches of two parts, the bits that joining them costs more, and the part that they make.
     let mut pairs: Vec<([usize; 2], f64, Part)> = Vec::new();
