@@ -15,7 +15,6 @@ use crate::partition::{Face, OUTSIDE, Partition};
 use crate::tuning;
 
 /// The polygon of an outline.
-#[inline(never)]
 pub(crate) fn polygon(outline: &Outline) -> Option<Vec<[f64; 2]>> {
     let path = Path { rings: vec![outline.shape.ring()], fill: FillRule::EvenOdd };
     let mut polygons = Polygons::default();

@@ -60,7 +60,6 @@ struct Missed {
 
 impl Trial<'_> {
     /// The outline if it costs less than `most` bits.
-    #[inline(never)]
     pub(super) fn run(&self, start: [f64; MOST_NUMBERS], most: f64) -> Option<Outline> {
         let few = self.samples.len().div_ceil(FIRST_LOOKS);
         // A few samples tell whether all can be met; with much room before the fit, and some after.
@@ -136,7 +135,6 @@ impl Trial<'_> {
     }
 
     /// Gauss-Newton on every `every`-th sample.
-    #[inline(never)]
     fn descend(&self, start: [f64; MOST_NUMBERS], every: usize) -> Option<([f64; MOST_NUMBERS], Equations)> {
         let mut numbers = start;
         let mut now = self.equations(&numbers, every)?;
@@ -182,7 +180,6 @@ impl Trial<'_> {
         Missed { distance, scale, misfit, weight, chi2: huber(misfit) }
     }
 
-    #[inline(never)]
     fn equations(&self, numbers: &[f64; MOST_NUMBERS], every: usize) -> Option<Equations> {
         let count = self.figure.number_count();
         let (placed, corners) = (self.figure.placed(numbers), self.figure.corners(numbers));

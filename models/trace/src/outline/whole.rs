@@ -51,7 +51,6 @@ pub(super) fn fit_round(track: &Track, most: f64, ruler: &Ruler, may_be: &dyn Fn
 }
 
 /// The cheapest of figures that may be and costs less than `most` bits.
-#[inline(never)]
 fn cheapest(
     starts: Vec<Start>,
     track: &Track,
@@ -85,7 +84,6 @@ fn starts(track: &Track, ring: &PathRing<f64>) -> Vec<Start> {
 }
 
 /// Circles and ellipses.
-#[inline(never)]
 fn rounds(track: &Track, starts: &mut Vec<Start>) {
     let all = [true; MOST_NUMBERS];
     if let Some(circle) = track.moments(0..track.len()).circle() {

@@ -51,7 +51,6 @@ pub(super) fn cover(
 }
 
 /// The part with an outline that covers a region too.
-#[inline(never)]
 fn grown(part: &Part, region: &[Vec2<f64>], of: &[Vec<Sample>], heap: &Heap<'_>) -> Option<Part> {
     if part.stretches.is_empty() {
         return None;
@@ -70,13 +69,11 @@ fn grown(part: &Part, region: &[Vec2<f64>], of: &[Vec<Sample>], heap: &Heap<'_>)
 }
 
 /// A thing of which a region alone is known.
-#[inline(never)]
 fn another(region: &[Vec2<f64>], of: &[Vec<Sample>], heap: &Heap<'_>) -> Option<Part> {
     Some(Part::new(Vec::new(), corners(region), of, heap)).filter(|part| part.outline.is_some())
 }
 
 /// The corners of the hull of a region.
-#[inline(never)]
 fn corners(region: &[Vec2<f64>]) -> Vec<Sample> {
     let points: Vec<[f64; 2]> = region
         .iter()
@@ -93,7 +90,6 @@ fn corners(region: &[Vec2<f64>]) -> Vec<Sample> {
 }
 
 /// The place of a region that is farthest outside of an outline; none if it covers all of it.
-#[inline(never)]
 fn farthest(outline: &Outline, region: &[Vec2<f64>]) -> Option<Sample> {
     let polygon = raster::polygon(outline)?;
     let off = |at: &Vec2<f64>| {

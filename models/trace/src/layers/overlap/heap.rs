@@ -68,7 +68,6 @@ impl Heap<'_> {
 }
 
 /// Whether stretches lead around what a round outline covers: around an opening they lead the other way.
-#[inline(never)]
 fn is_around(outline: &Outline, runs: &[Vec<Sample>]) -> bool {
     let (center, ..) = extent(outline);
     let steps = runs.iter().flat_map(|run| run.windows(2));

@@ -143,9 +143,9 @@ fn parts(completion: &Completion<'_>, group: &Group, kinds: &[Vec<Model>]) -> Op
         return None;
     }
     let bits = parts.iter().map(|part| part.bits).sum();
-    // What is uneven is not two disks by chance.
+    // What is uneven is not two disks by chance, where edges are clear.
     let is_disk = |outline: &Outline| matches!(outline.shape, OutlineShape::Circle { .. });
-    let may_be_one = are_round && !outlines.iter().all(is_disk);
+    let may_be_one = are_round && (blur > 0.0 || !outlines.iter().all(is_disk));
     if outlines.len() < 2 || may_be_one && !has_notch(&outlines, &cuts, SPOILED + SPOILED_BLURS * blur) {
         return None;
     }
@@ -165,7 +165,6 @@ fn parts(completion: &Completion<'_>, group: &Group, kinds: &[Vec<Model>]) -> Op
 }
 
 /// Whether the boundary turns in by more than a little where it was cut between any two outlines: else they are what one thing may be that is uneven.
-#[inline(never)]
 fn has_notch(outlines: &[Outline], cuts: &[Vec2<f64>], reach: f64) -> bool {
     let outlines: Vec<(Vec<[f64; 2]>, f64)> =
         outlines.iter().filter_map(|outline| Some((raster::polygon(outline)?, heap::extent(outline).1))).collect();
@@ -184,7 +183,6 @@ fn has_notch(outlines: &[Outline], cuts: &[Vec2<f64>], reach: f64) -> bool {
 }
 
 /// Bits of radii that are told once: those of a path are equal by now if they are to be.
-#[inline(never)]
 fn spared(outlines: &[Outline], ruler: &Ruler) -> f64 {
     let radius = |outline: &Outline| match outline.shape {
         OutlineShape::Circle { radius, .. } => Some((radius, outline.covariance.get(8)?.sqrt())),

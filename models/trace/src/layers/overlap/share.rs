@@ -99,13 +99,14 @@ pub(super) fn share(mut left: Stretches, most: f64, heap: &Heap<'_>) -> Option<S
         if stretch.len() < SHORTEST || !stretch.iter().any(is_told) {
             continue;
         }
-        if let Some((cut, halves)) = cut(&stretch, &left, heap) {
+        stretches.push(stretch);
+        let part = Part::new(vec![parts.len()], Vec::new(), &stretches, heap);
+        if let Some((cut, halves)) = cut(stretches.last()?, part.bits, &left, heap) {
+            stretches.pop();
             left.samples.extend(halves);
             left.cuts.push(cut);
             continue;
         }
-        stretches.push(stretch);
-        let part = Part::new(vec![parts.len()], Vec::new(), &stretches, heap);
         if part.outline.is_none() && part.bits > 2.0 * most {
             return None;
         }
@@ -123,11 +124,10 @@ fn polygon(count: usize, ruler: &Ruler) -> f64 {
     2.0 * count as f64 * ruler.number(POLYGON_SIGMA)
 }
 
-/// Where a stretch is two that cost less, and these.
+/// Where a stretch is two that cost less than it does, `whole` bits, and these.
 #[inline(never)]
-fn cut(stretch: &[Sample], left: &Stretches, heap: &Heap<'_>) -> Option<(Vec2<f64>, Vec<Vec<Sample>>)> {
+fn cut(stretch: &[Sample], whole: f64, left: &Stretches, heap: &Heap<'_>) -> Option<(Vec2<f64>, Vec<Vec<Sample>>)> {
     let price = |stretch: &Vec<Sample>| Part::new(vec![0], Vec::new(), core::slice::from_ref(stretch), heap).bits;
-    let whole = price(&stretch.to_vec());
     if whole < WORTH_CUTTING {
         return None;
     }
@@ -146,8 +146,7 @@ fn cut(stretch: &[Sample], left: &Stretches, heap: &Heap<'_>) -> Option<(Vec2<f6
     let near = best(&mut (0..few.len()).step_by(STEP))?;
     let near = best(&mut (near.saturating_sub(STEP - 1)..(near + STEP).min(few.len())))?;
     let (bits, k, halves) = halves(stretch, every * near);
-    let at = stretch[k].point;
-    (bits < whole).then_some((at, halves))
+    (bits < whole).then(|| (stretch[k].point, halves))
 }
 
 /// Joins parts as long as that makes the description shorter.
