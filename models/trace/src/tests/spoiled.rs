@@ -110,6 +110,23 @@ fn small_round_things_tell_of_a_blur() {
 }
 
 #[test]
+fn uneven_things_under_a_blur_are_one_each() {
+    for k in 0..24 {
+        let phase = 0.7 * f64::from(k);
+        let point = |i: usize| {
+            let turn = core::f64::consts::TAU * i as f64 / 96.0;
+            let radius = 11.0 * (1.0 + 0.12 * (2.0 * turn).cos() + 0.05 * (3.0 * turn + phase).cos());
+            [radius * turn.cos(), radius * turn.sin()]
+        };
+        let ring = PathRing::polygon((0..96).map(point).collect());
+        let cell = AnyShape::Path(Path { rings: vec![ring], fill: FillRule::EvenOdd });
+        let picture = blurred(&paint(&scene(WHITE, vec![object(cell, [47.3, 48.6], 0.3 * phase, RED)])), 1.0);
+        let traced = trace(&picture.view(), &Known::default().with_spoiled(true)).unwrap();
+        assert_eq!(traced.scene.objects.len(), 1, "{k}");
+    }
+}
+
+#[test]
 fn a_clean_picture_has_no_blur() {
     let traced = trace(&paint(&drawn()).view(), &Known::default().with_spoiled(true)).unwrap();
     assert!(traced.blur < 0.05, "{}", traced.blur);
