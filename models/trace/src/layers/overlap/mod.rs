@@ -112,6 +112,10 @@ fn parts(completion: &Completion<'_>, group: &Group, kinds: &[Vec<Model>]) -> Op
     };
     let heap = Heap { may_be: &may_be_heap, ruler: &completion.ruler };
     let again = again::take(kinds, &mut stretches, &heap)?;
+    // A blur fills corners.
+    if again.is_empty() && blur == 0.0 && !stretches.may_be_round(&completed.outlines) {
+        return None;
+    }
     let Shared { mut parts, cuts, stretches } = share::share(stretches, completed.bits, &heap)?;
     // Pixels that are covered and should not be, or not and should; where a blur fills the gap between outlines that meet they may be either.
     let reach = SPOILED + 2.0 * SPOILED_BLURS * blur;

@@ -5,6 +5,8 @@ use alloc::vec::Vec;
 use dvp_core::Vec2;
 use dvp_core::geometry::LineSegment;
 use dvp_core::shape::Piece;
+#[cfg(not(feature = "std"))]
+use num_traits::Float as _;
 
 use crate::outline::{Outline, OutlineShape};
 use crate::sample::{RingSamples, Sample};
@@ -14,6 +16,11 @@ use crate::stroke::piece::{direction, pieces};
 pub(super) const LEAST_TURN: f64 = 0.3;
 /// Windows so near to a corner outward (pixels) hold it: they tell of both sides.
 const CORNER: f64 = 1.0;
+
+/// A turn (radians) of a corner outward, or inward along half of a piece, that no outline of round things has.
+const UNLIKE_TURN: f64 = 0.5;
+/// Least length (pixels) of the pieces that say so: shorter ones may be what little is seen of a round thing.
+const UNLIKE_LENGTH: f64 = 4.0;
 
 /// Stretches of a boundary.
 pub(super) struct Stretches {
@@ -45,6 +52,34 @@ impl Stretches {
             }
         }
         Self { samples, cuts, corners: outward, sides, spoiled }
+    }
+
+    /// Whether outlines with clear edges may be those of round things that overlap. Such turn outward along a thing, and inward where two meet: what is seen
+    /// to have a corner outward, or to turn inward along a piece, need not be shared out among round things, which takes long.
+    #[inline(never)]
+    pub(super) fn may_be_round(&self, outlines: &[Outline]) -> bool {
+        let is_seen = |at: Vec2<f64>| {
+            self.samples.iter().flatten().any(|sample| (sample.point - at).length() < 0.5 * UNLIKE_LENGTH)
+        };
+        let turn = |[before, after]: [Vec2<f64>; 2]| before.cross(after).atan2(before.dot(after));
+        let is_long = |piece: &Piece<f64>| (piece.to() - piece.from()).length() > UNLIKE_LENGTH;
+        let is_hollow = |piece: &Piece<f64>| {
+            let [first, middle, last] = [0.0, 0.5, 1.0].map(|t| direction(piece, t));
+            let turns = [[first, middle], [middle, last]].map(turn);
+            turns[0].min(turns[1]) < -UNLIKE_TURN && is_long(piece) && is_seen(piece.point(0.5))
+        };
+        let is_corner = |(before, after): (&Piece<f64>, &Piece<f64>)| {
+            let (at, sides) = (after.from(), [direction(before, 1.0), direction(after, 0.0)]);
+            let are_seen = || is_seen(at - sides[0] * UNLIKE_LENGTH) && is_seen(at + sides[1] * UNLIKE_LENGTH);
+            turn(sides) > UNLIKE_TURN && is_long(before) && is_long(after) && are_seen()
+        };
+        let is_unlike = |outline: &Outline| {
+            let OutlineShape::Path(ring) = &outline.shape else { return false };
+            let pieces = pieces(ring);
+            let before = pieces.iter().cycle().skip(pieces.len().saturating_sub(1));
+            pieces.iter().any(is_hollow) || before.zip(&pieces).any(is_corner)
+        };
+        !outlines.iter().any(is_unlike)
     }
 
     /// What is left of a stretch that is cut.
