@@ -17,10 +17,13 @@ pub(super) const LEAST_TURN: f64 = 0.3;
 /// Windows so near to a corner outward (pixels) hold it: they tell of both sides.
 const CORNER: f64 = 1.0;
 
-/// A turn (radians) of a corner outward, or inward along half of a piece, that no outline of round things has.
-const UNLIKE_TURN: f64 = 0.5;
-/// Least length (pixels) of the pieces that say so: shorter ones may be what little is seen of a round thing.
-const UNLIKE_LENGTH: f64 = 4.0;
+/// Sine of the turn of a corner outward, and turn (radians) inward along half of a piece, that no outline drawn through round things has: one that is drawn
+/// through noise may turn by half as much.
+const UNLIKE_TURN: f64 = 0.8;
+/// Least length (pixels) of the pieces that say so: what is seen between two things that nearly touch is half as long.
+const UNLIKE_LENGTH: f64 = 8.0;
+/// Windows so far from a corner (pixels) show that its sides are seen.
+const SEEN: f64 = 4.0;
 
 /// Stretches of a boundary.
 pub(super) struct Stretches {
@@ -58,9 +61,8 @@ impl Stretches {
     /// to have a corner outward, or to turn inward along a piece, need not be shared out among round things, which takes long.
     #[inline(never)]
     pub(super) fn may_be_round(&self, outlines: &[Outline]) -> bool {
-        let is_seen = |at: Vec2<f64>| {
-            self.samples.iter().flatten().any(|sample| (sample.point - at).length() < 0.5 * UNLIKE_LENGTH)
-        };
+        let is_seen =
+            |at: Vec2<f64>| self.samples.iter().flatten().any(|sample| (sample.point - at).length() < 0.5 * SEEN);
         let turn = |[before, after]: [Vec2<f64>; 2]| before.cross(after).atan2(before.dot(after));
         let is_long = |piece: &Piece<f64>| (piece.to() - piece.from()).length() > UNLIKE_LENGTH;
         let is_hollow = |piece: &Piece<f64>| {
@@ -70,8 +72,8 @@ impl Stretches {
         };
         let is_corner = |(before, after): (&Piece<f64>, &Piece<f64>)| {
             let (at, sides) = (after.from(), [direction(before, 1.0), direction(after, 0.0)]);
-            let are_seen = || is_seen(at - sides[0] * UNLIKE_LENGTH) && is_seen(at + sides[1] * UNLIKE_LENGTH);
-            turn(sides) > UNLIKE_TURN && is_long(before) && is_long(after) && are_seen()
+            let are_seen = || is_seen(at - sides[0] * SEEN) && is_seen(at + sides[1] * SEEN);
+            sides[0].cross(sides[1]) > UNLIKE_TURN && is_long(before) && is_long(after) && are_seen()
         };
         let is_unlike = |outline: &Outline| {
             let OutlineShape::Path(ring) = &outline.shape else { return false };
