@@ -3,6 +3,7 @@
 //! Two regions of one color that end at the same third object may be one object that goes on behind it. They are if one
 //! shape explains both outlines, and its description is shorter than that of two.
 
+use alloc::collections::BTreeMap;
 use alloc::vec;
 use alloc::vec::Vec;
 
@@ -15,21 +16,25 @@ use crate::tuning::MIXED_ORDER_BITS;
 /// Most pieces that are tried together.
 const MOST_PIECES: usize = 8;
 
+/// Bits that are known: of an object, in front at the borders that are named. Objects that are joined have others, and so what lies beside them.
+type Known = BTreeMap<(u32, Vec<usize>), f64>;
+
 impl<T: Real> Run<'_, T> {
     /// Joins pieces while that makes the description shorter. To be done before the order is decided.
     #[expect(clippy::cast_possible_truncation, reason = "objects are numbered in u32")]
     pub(super) fn join_pieces(&mut self) {
         let count = self.scratch.segmentation.segments().len() as u32;
+        let mut known = Known::new();
         for first in 0..count {
             // All that may belong together, else pairs of it.
             let group = self.pieces_of(first);
-            if group.len() < 2 || self.are_one(&group) {
+            if group.len() < 2 || self.are_one(&group, &mut known) {
                 continue;
             }
             for &second in &group[1..] {
                 let pair = [first, second];
                 if group.len() > 2 && !self.covers_of(&pair, 2).is_empty() {
-                    self.are_one(&pair);
+                    self.are_one(&pair, &mut known);
                 }
             }
         }
@@ -80,17 +85,17 @@ impl<T: Real> Run<'_, T> {
     }
 
     /// Whether one shape that goes on behind what lies between explains all pieces for fewer bits; they are joined then.
-    fn are_one(&mut self, pieces: &[u32]) -> bool {
+    fn are_one(&mut self, pieces: &[u32], known: &mut Known) -> bool {
         let covers = self.covers_of(pieces, 2);
         if covers.is_empty() {
             return false;
         }
-        let around = self.bits_around(&covers, pieces);
+        let around = self.bits_around(&covers, pieces, known);
         // Pieces on their own may be behind all covers, in front of all, or each where it fits best.
         let (mut front, mut apart) = (Vec::new(), [0.0; 3]);
         for &piece in pieces {
-            let behind = [self.part_bits(piece), self.bits_around(&covers, &[piece])];
-            let before = [self.bits_if_front(piece, &covers), self.bits_around(&covers, &[])];
+            let behind = [self.bits_if_front(piece, &[], known), self.bits_around(&covers, &[piece], known)];
+            let before = [self.bits_if_front(piece, &covers, known), self.bits_around(&covers, &[], known)];
             apart[0] += behind[0];
             apart[1] += before[0];
             if before[0] + before[1] < behind[0] + behind[1] {
@@ -102,13 +107,14 @@ impl<T: Real> Run<'_, T> {
         }
         let behind: Vec<u32> = pieces.iter().copied().filter(|piece| !front.contains(piece)).collect();
         apart[0] += around;
-        apart[1] += self.bits_around(&covers, &[]);
-        apart[2] += self.bits_around(&covers, &behind) + MIXED_ORDER_BITS;
+        apart[1] += self.bits_around(&covers, &[], known);
+        apart[2] += self.bits_around(&covers, &behind, known) + MIXED_ORDER_BITS;
         let others = f64::from(u32::try_from(pieces.len() - 1).unwrap_or(u32::MAX));
         let apart = self.fitter.options.prices.object_bits() * others + apart.into_iter().fold(f64::INFINITY, f64::min);
         let before = self.scratch.segmentation.join(pieces);
         let joined = self.part_bits(pieces[0]) + around;
         if joined < apart {
+            known.clear();
             return true;
         }
         self.scratch.segmentation.part(before);
@@ -116,25 +122,23 @@ impl<T: Real> Run<'_, T> {
     }
 
     /// Bits of the covers if they are in front of the pieces given.
-    fn bits_around(&mut self, covers: &[u32], pieces: &[u32]) -> f64 {
-        covers.iter().map(|&cover| self.bits_if_front(cover, pieces)).sum()
+    fn bits_around(&mut self, covers: &[u32], pieces: &[u32], known: &mut Known) -> f64 {
+        covers.iter().map(|&cover| self.bits_if_front(cover, pieces, known)).sum()
     }
 
     /// Bits of an object if it is in front of the others given.
-    fn bits_if_front(&mut self, object: u32, behind: &[u32]) -> f64 {
-        let mut changed = Vec::new();
-        for &other in behind {
-            let objects = [object.min(other), object.max(other)];
-            let at = self.scratch.segmentation.borders().iter().position(|border| border.objects == objects);
-            if let Some(at) = at {
-                changed.push((at, self.scratch.segmentation.borders()[at].front));
-                self.scratch.segmentation.set_front(at, Some(object));
-            }
-        }
-        let bits = self.part_bits(object);
-        for (at, front) in changed {
-            self.scratch.segmentation.set_front(at, front);
-        }
-        bits
+    fn bits_if_front(&mut self, object: u32, behind: &[u32], known: &mut Known) -> f64 {
+        let pair = |other: u32| [object.min(other), object.max(other)];
+        let borders = self.scratch.segmentation.borders();
+        let at = |&other: &u32| borders.iter().position(|border| border.objects == pair(other));
+        let mut changed: Vec<usize> = behind.iter().filter_map(at).collect();
+        changed.sort_unstable();
+        let fronts: Vec<_> = changed.iter().map(|&at| borders[at].front).collect();
+        *known.entry((object, changed)).or_insert_with_key(|(_, changed)| {
+            changed.iter().for_each(|&at| self.scratch.segmentation.set_front(at, Some(object)));
+            let bits = self.part_bits(object);
+            changed.iter().zip(fronts).for_each(|(&at, front)| self.scratch.segmentation.set_front(at, front));
+            bits
+        })
     }
 }
