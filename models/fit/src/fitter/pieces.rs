@@ -3,7 +3,6 @@
 //! Two regions of one color that end at the same third object may be one object that goes on behind it. They are if one
 //! shape explains both outlines, and its description is shorter than that of two.
 
-use alloc::collections::BTreeMap;
 use alloc::vec;
 use alloc::vec::Vec;
 
@@ -17,7 +16,7 @@ use crate::tuning::MIXED_ORDER_BITS;
 const MOST_PIECES: usize = 8;
 
 /// Bits that are known: of an object, in front at the borders that are named. Objects that are joined have others, and so what lies beside them.
-type Known = BTreeMap<(u32, Vec<usize>), f64>;
+type Known = Vec<((u32, Vec<usize>), f64)>;
 
 impl<T: Real> Run<'_, T> {
     /// Joins pieces while that makes the description shorter. To be done before the order is decided.
@@ -134,11 +133,14 @@ impl<T: Real> Run<'_, T> {
         let mut changed: Vec<usize> = behind.iter().filter_map(at).collect();
         changed.sort_unstable();
         let fronts: Vec<_> = changed.iter().map(|&at| borders[at].front).collect();
-        *known.entry((object, changed)).or_insert_with_key(|(_, changed)| {
-            changed.iter().for_each(|&at| self.scratch.segmentation.set_front(at, Some(object)));
-            let bits = self.part_bits(object);
-            changed.iter().zip(fronts).for_each(|(&at, front)| self.scratch.segmentation.set_front(at, front));
-            bits
-        })
+        let key = (object, changed);
+        if let Some((_, bits)) = known.iter().find(|(of, _)| *of == key) {
+            return *bits;
+        }
+        key.1.iter().for_each(|&at| self.scratch.segmentation.set_front(at, Some(object)));
+        let bits = self.part_bits(object);
+        key.1.iter().zip(fronts).for_each(|(&at, front)| self.scratch.segmentation.set_front(at, front));
+        known.push((key, bits));
+        bits
     }
 }
